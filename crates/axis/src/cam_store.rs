@@ -1,22 +1,22 @@
-//! The cams that were selected: slots and pieces of a fixed number, in memory that whoever owns the axes sets up.
+//! The selected cams: a fixed number of slots and pieces, in memory that the owner of the axes sets up.
 //!
-//! A selection copies its table. Selected anew, a cam gets another slot, and the one before stays for the axes that are on it,
-//! until none is: nothing that moves changes under its slave.
+//! A selection copies its table. A cam that is selected anew gets another slot. The old one stays until
+//! no axis is on it, so a cam never changes under a moving slave.
 
 use crate::{AxisId, IecEnum, command::iec_enum};
 use standstill_planner::{Cam, CamBuild, CamFault, CamHead, CamPiece, CamRow, CamShape};
 
-/// Slots of a store unless it is told otherwise.
+/// Default number of slots of a store.
 pub const CAM_SLOTS: usize = 16;
 
-/// Pieces of a store, one less for each cam than it has rows, unless it is told otherwise.
+/// Default number of pieces of a store. A cam takes one piece less than it has rows.
 pub const CAM_PIECES: usize = 2048;
 
-/// Rows of a table that are looked at in one call.
+/// Rows of a table that are checked in one call.
 pub const CAM_ROWS_PER_CALL: usize = 32;
 
 iec_enum! {
-    /// How a cam runs from one row to the next (MC_CAM_LAW, vendor specific).
+    /// The curve of a cam from one row to the next (MC_CAM_LAW, vendor specific).
     CamCurve = "MC_CAM_LAW" {
         /// Derivatives are estimated from neighbours.
         Through = "mcCamThrough", 0;
@@ -34,7 +34,7 @@ iec_enum! {
 }
 
 impl CamCurve {
-    /// As the planner calls it.
+    /// The same for the planner.
     pub const fn shape(self) -> CamShape {
         match self {
             Self::Through => CamShape::Through,
@@ -53,14 +53,14 @@ iec_enum! {
     StartMode = "MC_START_MODE" {
         /// As it was selected.
         Absolute = "mcAbsolute", 0;
-        /// So that the slave is on it where it is.
+        /// At the present place of the slave.
         Relative = "mcRelative", 1;
         /// As mcAbsolute.
         RampIn = "mcRampIn", 2;
     }
 }
 
-/// A selected cam (CamTableID): a slot, and how often that was given away.
+/// A selected cam (CamTableID): its slot, and the number of times the slot was used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CamId(u32);
 
@@ -100,11 +100,11 @@ pub struct CamSelection {
     pub master: AxisId,
     /// The slave.
     pub slave: AxisId,
-    /// It goes on behind its last row as at its first.
+    /// The cam repeats: behind its last row it continues at its first.
     pub periodic: bool,
-    /// Its places of the master are those of the axis, not counted from where that is.
+    /// Its master places are absolute, not relative to the master's place at the start.
     pub master_absolute: bool,
-    /// Its places of the slave are.
+    /// Its slave places are absolute.
     pub slave_absolute: bool,
 }
 
@@ -113,7 +113,7 @@ pub struct CamSelection {
 enum Content {
     #[default]
     Free,
-    /// Rows are being looked at.
+    /// Rows are being checked.
     Made(CamBuild),
     /// A cam.
     Ready(CamHead),
@@ -124,7 +124,7 @@ enum Content {
 pub struct CamSlot {
     content: Content,
     generation: u16,
-    /// Selected anew, or not wanted any more: free as soon as no axis is on it.
+    /// Selected anew, or no longer needed: free as soon as no axis is on it.
     retired: bool,
     first: usize,
     count: usize,
@@ -140,13 +140,13 @@ impl CamSlot {
 /// Why a store has no room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoRoom {
-    /// For another cam: so many slots there are.
+    /// No slot for another cam; the store has this many.
     Slots(usize),
-    /// For so many pieces in a row, of so many in all.
+    /// No gap for this many pieces in a row, of this many in all.
     Pieces(usize, usize),
 }
 
-/// The store of cams, as it is lent for a call or a motion step.
+/// The store of cams, lent for a call or a motion step.
 #[derive(Debug)]
 pub struct Cams<'a> {
     slots: &'a mut [CamSlot],
@@ -160,7 +160,7 @@ impl Default for Cams<'_> {
 }
 
 impl<'a> Cams<'a> {
-    /// A store of this memory; of more than 65535 slots the rest is not used.
+    /// A store in this memory; slots beyond 65535 are not used.
     pub fn new(slots: &'a mut [CamSlot], pieces: &'a mut [CamPiece]) -> Self {
         Self { slots, pieces }
     }
@@ -183,7 +183,7 @@ impl<'a> Cams<'a> {
         (slot.generation == id.generation() && !slot.is_free()).then_some(slot)
     }
 
-    /// The cam of that number, also if it was selected anew since.
+    /// The cam of that number, even if it was selected anew since.
     pub fn cam(&self, id: CamId) -> Option<Cam<'_>> {
         let slot = self.slot(id)?;
         let Content::Ready(head) = &slot.content else {
@@ -193,25 +193,27 @@ impl<'a> Cams<'a> {
         Some(Cam { head, pieces })
     }
 
-    /// How the cam of that number was selected; none if it is not complete, or was selected anew.
+    /// The selection of that number; none if the cam is not complete, or was selected anew.
     pub fn selection(&self, id: CamId) -> Option<CamSelection> {
         let slot = self.slot(id).filter(|slot| !slot.retired)?;
         matches!(slot.content, Content::Ready(_)).then_some(slot.selection)
     }
 
-    /// Its owner wants it no more: it stays for the axes that are on it.
+    /// Its owner no longer needs it: it stays for the axes that are on it.
     pub fn retire(&mut self, id: CamId) {
         if let Some(slot) = self.slot_mut(id) {
             slot.retired = true;
         }
     }
 
-    /// Begins a cam of `rows` rows. `is_used` tells whether an axis is on a cam, or has a command for it that waits.
+    /// Begins a cam of `rows` rows. `is_used` returns whether an axis is on a cam, or has a waiting
+    /// command for it.
     ///
-    /// Cost: a look at each slot; for each of them, one at all others, and what `is_used` takes.
+    /// Cost: for each slot, a comparison with all others and a call of `is_used`.
     ///
     /// # Errors
-    /// The rows make no cam ([`CamFault`] in the outer, [`NoRoom`] in the inner result).
+    /// The rows make no cam ([`CamFault`] in the outer result), or there is no room ([`NoRoom`] in the
+    /// inner one).
     pub fn begin(
         &mut self,
         rows: usize,
@@ -235,7 +237,7 @@ impl<'a> Cams<'a> {
         let Some(slot) = self.slots.get_mut(free) else {
             return Ok(Err(NoRoom::Slots(usable)));
         };
-        // Generation 0 is never given, so that no number of a cam is 0 or small.
+        // Generation 0 is never used, so the number of a cam is never 0 or small.
         let generation = slot.generation.wrapping_add(1).max(1);
         *slot = CamSlot {
             content: Content::Made(build),
@@ -248,7 +250,7 @@ impl<'a> Cams<'a> {
         Ok(Ok(CamId::new(free, generation)))
     }
 
-    /// The first place with room for so many pieces: the beginning, or where a cam ends.
+    /// The first place with room for this many pieces: the beginning, or the end of a cam.
     fn gap(&self, count: usize) -> Option<usize> {
         let taken = || self.slots.iter().filter(|slot| !slot.is_free());
         let is_gap = |first: usize| {
@@ -263,8 +265,8 @@ impl<'a> Cams<'a> {
             .min()
     }
 
-    /// Looks at the next rows of a cam that was begun, at most [`CAM_ROWS_PER_CALL`]. Returns what is known of it once it is
-    /// complete; the slot is free again after a fault.
+    /// Checks the next rows of a cam that was begun, at most [`CAM_ROWS_PER_CALL`]. Returns the
+    /// properties of the cam once it is complete. After a fault the slot is free again.
     ///
     /// # Errors
     /// The rows make no cam.
@@ -284,7 +286,7 @@ impl<'a> Cams<'a> {
         };
         let end = slot.first.saturating_add(slot.count);
         let pieces = self.pieces.get_mut(slot.first..end).unwrap_or_default();
-        // A piece counts as the row it ends at, and the first call has the first row, too.
+        // A piece belongs to the row at its end; the first call also checks the first row.
         let most = if build.is_new() {
             CAM_ROWS_PER_CALL - 1
         } else {
@@ -303,7 +305,7 @@ impl<'a> Cams<'a> {
         }
     }
 
-    /// The slot of a cam that was refused for another reason is free again.
+    /// Frees the slot of a cam that was refused for another reason.
     pub fn give_back(&mut self, id: CamId) {
         if let Some(slot) = self.slot_mut(id) {
             slot.content = Content::Free;
@@ -346,7 +348,7 @@ mod tests {
         assert!(cams.selection(first).is_none() && cams.cam(first).is_some());
         let second = select(&mut cams, 11, &[first]).unwrap();
         assert_eq!(cams.cam(first).unwrap().pieces.len(), 10);
-        // Nobody is on it any more.
+        // No axis is on it any more.
         let third = select(&mut cams, 11, &[]).unwrap();
         assert!(cams.cam(first).is_none() && cams.cam(second).is_some());
         assert_ne!(first, third);
@@ -372,7 +374,8 @@ mod tests {
         }
     }
 
-    /// A table of the most rows is no spike in a scan, whatever its law: so many looks at rows in a call, and so many pieces.
+    /// A table with the most rows causes no peak in a scan, for any law: the rows checked and the pieces
+    /// made per call are bounded.
     ///
     /// Covers: G79
     #[test]

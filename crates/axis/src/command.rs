@@ -1,9 +1,9 @@
-//! The words blocks and axes share: who, what, and in which order.
+//! The vocabulary that blocks and axes share: axes, instances, commands and their values.
 
 use crate::{CamId, Edge, StartMode};
 
-/// Handle of an axis: its place in the slice of axes. It holds no live state, so it means the same when
-/// copied in and out around a call as when passed by reference (IEC 61131-3 VAR_IN_OUT).
+/// Handle of an axis: its index in the slice of axes. It holds no live state, so copying it in and out
+/// around a call has the same effect as passing it by reference (IEC 61131-3 VAR_IN_OUT).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct AxisId(u16);
 
@@ -16,12 +16,12 @@ impl AxisId {
         Self(index)
     }
 
-    /// Its number for people and hosts in other languages: from 1; 0 for no axis.
+    /// Its number for people and for hosts in other languages, from 1; 0 for no axis.
     pub const fn number(self) -> u16 {
         self.0.wrapping_add(1)
     }
 
-    /// Its place in the slice of axes.
+    /// Its index in the slice of axes.
     pub const fn index(self) -> usize {
         self.0 as usize
     }
@@ -33,7 +33,7 @@ impl Default for AxisId {
     }
 }
 
-/// Which block instance gave a command; only for records, the axis does not look at it.
+/// The block instance that gave a command. It is used in records only; the axis does not read it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct InstanceId(pub u16);
 
@@ -52,7 +52,7 @@ pub trait IecEnum: Copy + 'static {
     fn from_number(number: i32) -> Option<Self>;
 }
 
-/// The number at an enum pin, which a program may set to something undefined.
+/// The number at an enum pin, which a program may set to an undefined value.
 #[derive(Debug)]
 pub struct Raw<E> {
     number: i32,
@@ -73,7 +73,7 @@ impl<E> PartialEq for Raw<E> {
     }
 }
 
-/// The number 0, which an enumeration has.
+/// The number 0, which every enumeration defines.
 impl<E: IecEnum> Default for Raw<E> {
     fn default() -> Self {
         Self::new(0)
@@ -242,7 +242,8 @@ impl Trigger {
     }
 }
 
-/// Most commands that can wait behind the active one; the configured queue is at most this.
+/// The largest number of commands that can wait behind the active one; the configured queue is at most
+/// this.
 pub const QUEUE_MAX: usize = 16;
 
 /// The dynamic values at a block's pins, unchecked. For `acceleration`, `deceleration`, `jerk` and `snap`
@@ -261,7 +262,7 @@ pub struct Dynamics {
     pub snap: f64,
 }
 
-/// What an axis can be told to do: values as they stand at the pins, unchecked.
+/// A command for an axis: values at the pins, unchecked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
     /// To an absolute position; the velocity must be positive.
@@ -280,7 +281,7 @@ pub enum Command {
         /// Dynamic values.
         dynamics: Dynamics,
     },
-    /// By a distance from the last commanded target, or from the set position where there is none; the
+    /// By a distance from the last commanded target, or from the set position if there is none; the
     /// velocity must be positive.
     MoveAdditive {
         /// Distance (u), signed.
@@ -288,11 +289,11 @@ pub enum Command {
         /// Dynamic values.
         dynamics: Dynamics,
     },
-    /// To an absolute position and on from there without end; the velocity must be positive.
+    /// To an absolute position, and from there on without end; the velocity must be positive.
     MoveContinuousAbsolute {
         /// Target (u).
         position: f64,
-        /// Velocity at the target and from there on (u/s), signed.
+        /// Velocity at the target and after it (u/s), signed.
         end_velocity: f64,
         /// Dynamic values.
         dynamics: Dynamics,
@@ -315,18 +316,19 @@ pub enum Command {
         /// Its sign multiplies that of the velocity (V3).
         direction: Raw<Direction>,
     },
-    /// Not to a place or a velocity, but a torque within velocity and acceleration; a velocity of 0 takes the axis limit.
+    /// Holds a torque within velocity and acceleration limits, instead of moving to a place; a velocity
+    /// of 0 takes the axis limit.
     Torque {
         /// Torque to hold, in the drive's unit, signed.
         torque: f64,
-        /// Its largest change a second; 0 for none.
+        /// Its largest change per second; 0 for no limit.
         ramp: f64,
         /// Dynamic values.
         dynamics: Dynamics,
         /// Its sign multiplies that of the torque.
         direction: Raw<Direction>,
     },
-    /// MC_Jog: to an endless motion, or by a distance; the velocity must be positive.
+    /// MC_Jog: starts an endless motion, or moves by a distance; the velocity must be positive.
     Jog {
         /// Towards larger positions.
         forward: bool,
@@ -335,74 +337,80 @@ pub enum Command {
         /// Dynamic values.
         dynamics: Dynamics,
     },
-    /// To velocity zero; other commands may interrupt. The velocity of `dynamics` is not read.
+    /// To velocity zero; other commands may interrupt it. The velocity of `dynamics` is not read.
     Halt {
         /// Dynamic values.
         dynamics: Dynamics,
     },
-    /// To velocity zero; locks the axis until released. The velocity of `dynamics` is not read.
+    /// To velocity zero; locks the axis until it is released. The velocity of `dynamics` is not read.
     Stop {
         /// Dynamic values.
         dynamics: Dynamics,
     },
-    /// The present position is from now on called `position`.
+    /// Names the present position `position` from now on.
     Home {
         /// New name of the present position (u).
         position: f64,
     },
-    /// MC_GearIn and MC_GearInPos: behind a master. Give it by [`couple`](crate::couple), which sees both axes.
+    /// MC_GearIn and MC_GearInPos: follows a master. Give this command through [`couple`](crate::couple),
+    /// which sees both axes.
     GearIn {
         /// The master, and how it is followed.
         followed: Followed,
-        /// MC_GearInPos: the places that belong together; none for MC_GearIn, where they are those in which it comes into gear.
+        /// MC_GearInPos: the places that belong together. None for MC_GearIn, which uses the places where
+        /// it comes into gear.
         sync: Option<SyncPoint>,
-        /// Dynamic values until the slave is in gear. The velocity is read with a sync point only; 0 takes the axis limit.
+        /// Dynamic values until the slave is in gear. The velocity is read only with a sync point; 0
+        /// takes the axis limit.
         dynamics: Dynamics,
     },
-    /// MC_CombineAxes: behind two masters, whose geared ways are added. Give it by [`couple`](crate::couple).
+    /// MC_CombineAxes: follows two masters, whose ways are added after their gear ratios. Give it through
+    /// [`couple`](crate::couple).
     CombineAxes {
         /// The masters, and how each is followed.
         masters: [Followed; 2],
-        /// Whether the way of the second is added or taken away.
+        /// Whether the way of the second is added or subtracted.
         mode: Raw<CombineMode>,
     },
-    /// MC_GearOut: no longer behind a master; the velocity is kept.
+    /// MC_GearOut: no longer follows its master; keeps the velocity.
     GearOut,
-    /// MC_CamIn: behind a master on a cam. Give it by [`couple`](crate::couple).
+    /// MC_CamIn: follows a master on a cam. Give it through [`couple`](crate::couple).
     CamIn(CamIn),
-    /// MC_CamOut: no longer on a cam; the velocity is kept.
+    /// MC_CamOut: leaves its cam; keeps the velocity.
     CamOut,
 }
 
-/// MC_CamIn: values as they stand at the pins, unchecked.
+/// MC_CamIn: values at the pins, unchecked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CamIn {
     /// The master.
     pub master: Master,
-    /// Which values of it are followed.
+    /// The followed values of the master.
     pub source: Raw<ValueSource>,
     /// The cam.
     pub table: CamId,
     /// Where the cam lies.
     pub start_mode: Raw<StartMode>,
-    /// Where the cam's place 0 of the master lies (u of the master).
+    /// The place of the master where the cam's place 0 is (u of the master).
     pub master_offset: f64,
-    /// Where its place 0 of the slave lies (u).
+    /// The place of the slave where the cam's place 0 is (u).
     pub slave_offset: f64,
-    /// The master's side of the cam is this much longer.
+    /// Factor of the lengths on the master's side of the cam.
     pub master_scaling: f64,
     /// The slave's side.
     pub slave_scaling: f64,
-    /// How far before the sync position the slave sets off (u of the master).
+    /// Distance of the master before the sync position at which the slave starts (u of the master).
     pub start_distance: f64,
-    /// Where in the cam the slave is to be in sync first (u of the cam's master side); 0 leaves it open.
+    /// The place on the cam where the slave is in sync first (u of the cam's master side); 0 leaves it
+    /// open.
     pub sync_position: f64,
-    /// Where in the cam before it takes over (u of that cam's master side); 0 for its end.
+    /// The place on the previous cam where this one takes over (u of that cam's master side); 0 for its
+    /// end.
     pub switch_at: f64,
 }
 
 impl CamIn {
-    /// All but the master, as bits.
+    /// All values but the master, as bits.
     fn bits(&self) -> ([u64; 7], [i64; 3]) {
         let values = [
             self.master_offset,
@@ -422,7 +430,7 @@ impl CamIn {
     }
 }
 
-/// How a master is followed: values as they stand at the pins, unchecked.
+/// How a master is followed: values at the pins, unchecked.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Followed {
     /// The master.
@@ -431,7 +439,7 @@ pub struct Followed {
     pub numerator: i16,
     /// Denominator, above 0.
     pub denominator: i32,
-    /// Which values of the master are followed.
+    /// The followed values of the master.
     pub source: Raw<ValueSource>,
 }
 
@@ -442,7 +450,7 @@ impl Followed {
     }
 }
 
-/// A master, as a command names it.
+/// A master as a command names it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Master {
     /// The axis.
@@ -451,7 +459,7 @@ pub struct Master {
     pub turn: Option<f64>,
 }
 
-/// Places of a master and its slave that belong together, and how the slave comes there: pins of MC_GearInPos.
+/// Places of a master and its slave that belong together, and the way there: pins of MC_GearInPos.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SyncPoint {
     /// Of the master (u).
@@ -478,7 +486,7 @@ impl Dynamics {
 }
 
 impl Command {
-    /// Whether `other` has the same values, to the bit; masters aside.
+    /// Whether `other` has the same values, bit for bit; masters are not compared.
     pub fn is_same(&self, other: &Self) -> bool {
         let law = |command: &Self| match command {
             Self::GearIn { followed, sync, .. } => ([followed.values(), [0; 3]], 0, *sync),
@@ -542,14 +550,14 @@ impl Command {
     }
 }
 
-/// A command and how it enters the axis.
+/// A command and its buffer mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
     /// What to do.
     pub command: Command,
-    /// How it follows the motion in progress.
+    /// Its buffer mode.
     pub buffer_mode: Raw<BufferMode>,
-    /// The command the same instance holds, which this one replaces (R32).
+    /// The command that the same instance gave before and that this one replaces (R32).
     pub replaces: Option<CommandId>,
 }
 
@@ -564,32 +572,33 @@ impl Request {
     }
 }
 
-/// MC_PhasingAbsolute, MC_PhasingRelative: values as they stand at the pins, unchecked.
+/// MC_PhasingAbsolute, MC_PhasingRelative: values at the pins, unchecked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhaseShift {
-    /// The master whose place is to be seen elsewhere.
+    /// The master whose place is shifted.
     pub master: AxisId,
-    /// The shift (u of the master), signed: ahead of where it is if positive.
+    /// The shift (u of the master), signed; positive means ahead of its real place.
     pub shift: f64,
-    /// It is added to the shift there is.
+    /// Whether it is added to the present shift.
     pub is_relative: bool,
-    /// Dynamic values of the shift (u of the master); 0 takes what the limits of the slave leave.
+    /// Dynamic values of the shift (u of the master); 0 takes the part that the limits of the slave
+    /// leave.
     pub dynamics: Dynamics,
-    /// How it follows the phasing before it; blending modes are as mcBuffered.
+    /// How it follows an earlier phasing; blending modes act as mcBuffered.
     pub buffer_mode: Raw<BufferMode>,
 }
 
-/// MC_MoveSuperimposed: values as they stand at the pins, unchecked.
+/// MC_MoveSuperimposed: values at the pins, unchecked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Superimpose {
     /// Distance to add (u), signed.
     pub distance: f64,
-    /// Dynamic values of what is added; the velocity (VelocityDiff) must be positive.
+    /// Dynamic values of the added motion; the velocity (VelocityDiff) must be positive.
     pub dynamics: Dynamics,
 }
 
 impl Superimpose {
-    /// Whether `other` has the same values, to the bit.
+    /// Whether `other` has the same values, bit for bit.
     pub fn is_same(&self, other: &Self) -> bool {
         self.distance.to_bits() == other.distance.to_bits() && self.dynamics.bits() == other.dynamics.bits()
     }

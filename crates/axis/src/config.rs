@@ -1,4 +1,4 @@
-//! How an axis is set up, checked once before the first scan.
+//! The configuration of an axis, checked once before the first scan.
 
 use crate::keys::{self, Bounds, Holds};
 use crate::{Homing, Procedure, QUEUE_MAX, Scaling};
@@ -34,24 +34,25 @@ pub enum OnLimit {
     /// It lags, and catches up onto the same law as soon as it can.
     #[default]
     Lag,
-    /// It is an axis error (420), while a stop still keeps the limits.
+    /// It is an axis error (420), raised while a stop still keeps the limits.
     Error,
-    /// Once it was in gear its master asks for no more than the slave has: every plan of the master keeps what the limits of
-    /// its slaves leave. What no plan of the master is made with (docs/coupling.md) makes it lag.
+    /// Once in gear, its master asks for no more than the slave can do: every plan of the master keeps
+    /// the limits that its slaves leave. For motions of the master without such a plan (docs/coupling.md)
+    /// the slave lags.
     SlowMaster,
 }
 
-/// What a slave does when the set-point of its master is no longer the result of a plan.
+/// The reaction of a slave when the set-point of its master is no longer the result of a plan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OnMasterLost {
     /// It is an axis error (421).
     #[default]
     Error,
-    /// It comes to rest with the stop dynamics and stays, coupled, until a block couples it anew.
+    /// It comes to rest with the stop dynamics and stays coupled at rest, until a block couples it anew.
     Hold,
 }
 
-/// What a held jog does at a software limit.
+/// The behaviour of a held jog at a software limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum JogAtLimit {
     /// It goes on towards the limit, and the axis stops before it with an error.
@@ -61,7 +62,7 @@ pub enum JogAtLimit {
     Stop,
 }
 
-/// What becomes of the target of an absolute move that is outside the first turn of a modulo axis.
+/// The treatment of an absolute target outside the first turn of a modulo axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ModuloTargets {
     /// The move is refused (119).
@@ -71,13 +72,13 @@ pub enum ModuloTargets {
     Wrap,
 }
 
-/// What a rising edge of Execute does while the instance is Busy.
+/// The effect of a rising edge of Execute while the instance is Busy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EdgeWhileBusy {
     /// It starts the command anew, with the values at the pins.
     #[default]
     Restart,
-    /// Nothing: the instance goes on with its command.
+    /// No effect: the instance continues its command.
     Ignore,
 }
 
@@ -95,27 +96,30 @@ pub struct StopLimits {
 /// How an axis follows another one, and how others follow its actual values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Following {
-    /// What it does when it cannot keep up.
+    /// The reaction when it cannot keep up.
     pub on_limit: OnLimit,
-    /// How far it may be off the law once it was in gear (u), then it is an axis error (420); `None` for any distance.
+    /// The largest distance from the law once it was in gear (u). Beyond it is an axis error (420);
+    /// `None` for no limit.
     pub max_deviation: Option<f64>,
-    /// What it does when its master goes out of operation.
+    /// The reaction when its master goes out of operation.
     pub on_master_lost: OnMasterLost,
-    /// As a master of actual values: scans of each of the four averages its slaves see them through, at most
-    /// [`ACTUAL_FILTER_MAX`]; 0 for no filter.
+    /// As a master of actual values: scans per average of the four that filter its position for slaves,
+    /// at most [`ACTUAL_FILTER_MAX`]; 0 for no filter.
     pub actual_filter: u32,
-    /// As a master of actual values: its slaves see it ahead by what the filter delays at its present velocity.
+    /// As a master of actual values: whether its slaves see it ahead by the delay of the filter at its
+    /// present velocity.
     pub actual_lead: bool,
-    /// How many derivatives of a cam must go on without a jump, at most [`CAM_CONTINUITY_MAX`]; `None` for as many as its order
-    /// asks for: 3 with a snap limit, 2 with a jerk limit, 1 without. Where that is more, it comes to rest at the rows at which one
-    /// jumps.
+    /// The number of derivatives of a cam that must be continuous, at most [`CAM_CONTINUITY_MAX`]; `None`
+    /// for its order: 3 with a snap limit, 2 with a jerk limit, 1 without. If the order is higher than
+    /// this number, it comes to rest at the rows where a derivative jumps.
     pub cam_continuity: Option<u8>,
 }
 
-/// Longest average of the filter of actual values (scans). Its ring takes 16 bytes of every axis for each.
+/// Longest average of the filter of actual values (scans). For each of them the ring takes 16 bytes of
+/// every axis.
 pub const ACTUAL_FILTER_MAX: u32 = 64;
 
-/// Most derivatives of a cam that can be asked to go on.
+/// The largest number of derivatives of a cam that can be required to be continuous.
 pub const CAM_CONTINUITY_MAX: u8 = 3;
 
 impl Default for Following {
@@ -125,7 +129,8 @@ impl Default for Following {
 }
 
 impl Following {
-    /// It lags as far as it must; a lost master is an error; averages of 16 scans, without a lead; cams as smooth as its order.
+    /// It lags as far as necessary; a lost master is an error; averages of 16 scans, without lead; cams
+    /// as smooth as its order.
     pub const DEFAULT: Self = Self {
         on_limit: OnLimit::Lag,
         max_deviation: None,
@@ -146,7 +151,7 @@ pub enum StartState {
     Standstill,
 }
 
-/// What 0 at a pin stands for; `None` takes the limit.
+/// The meaning of 0 at a pin; `None` takes the limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Defaults {
     /// Acceleration (u/s^2).
@@ -171,34 +176,35 @@ pub struct InPosition {
 /// Everything about an axis that does not change while it runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisConfig {
-    /// What no set-point exceeds.
+    /// Limits of all set-points.
     pub limits: Limits,
-    /// What commands get at most, each at most the limit of the axis, until MC_WriteParameter changes it; `None` for the limits.
+    /// Limits of commands, each at most the limit of the axis, until MC_WriteParameter changes them;
+    /// `None` for the limits of the axis.
     pub application_limits: Option<Limits>,
-    /// What 0 at a pin stands for.
+    /// The meaning of 0 at a pin.
     pub defaults: Defaults,
     /// Position at the start (u).
     pub position: f64,
     /// State at the start.
     pub start: StartState,
-    /// Drive increments, or `None` if the drive speaks user units.
+    /// Drive increments, or `None` if the drive uses user units.
     pub scaling: Option<Scaling>,
-    /// Length of one turn (u): positions are in [0, this) and come round. `None` for a linear axis.
+    /// Length of one turn (u): positions are in [0, this) and wrap. `None` for a linear axis.
     pub modulo: Option<f64>,
     /// Lowest and highest position (u) a move may end at.
     pub software_limits: Option<(f64, f64)>,
-    /// What happens to values above the limits.
+    /// The treatment of values above the limits.
     pub above_limit: AboveLimit,
     /// How moves to a position are planned.
     pub profile: MoveProfile,
     /// Commands that can wait, the active one not counted; at most [`QUEUE_MAX`].
     pub queue: usize,
-    /// Deceleration of ramps nobody commanded (u/s^2); `None` takes the limit.
+    /// Deceleration of ramps that no command asks for (u/s^2); `None` takes the limit.
     pub stop_deceleration: Option<f64>,
-    /// Jerk of ramps nobody commanded (u/s^3); `None` takes the limit.
+    /// Jerk of ramps that no command asks for (u/s^3); `None` takes the limit.
     pub stop_jerk: Option<f64>,
-    /// Dynamics of MC_Stop and of ramps nobody commanded, which may exceed the limits; then `stop_deceleration` and `stop_jerk`
-    /// are `None`.
+    /// Dynamics of MC_Stop and of ramps that no command asks for. They may exceed the limits;
+    /// `stop_deceleration` and `stop_jerk` are then `None`.
     pub stop: Option<StopLimits>,
     /// How the axis stops when switched off while moving.
     pub on_power_off: PowerOff,
@@ -208,10 +214,10 @@ pub struct AxisConfig {
     pub hardware_limits: bool,
     /// Absolute moves need MC_Home first (V11a).
     pub needs_homed: bool,
-    /// Largest factor MC_SetOverride takes, at least 1; above 1 the limits hold all the same (V16).
+    /// Largest factor MC_SetOverride takes, at least 1. The limits also apply to factors above 1 (V16).
     pub override_max: f64,
-    /// Scans from the first request for power to its confirmation by the drive, at least 1: one that takes longer is an error of
-    /// MC_Power (503), and power is asked for no longer. `None` if it may take for ever.
+    /// Scans from the first request for power to its confirmation by the drive, at least 1. If it takes
+    /// longer, MC_Power has an error (503), and power is no longer requested. `None` for no time-out.
     pub power_timeout: Option<u64>,
     /// Largest following error (u); a larger one is an axis error. `None` if it is not supervised.
     pub max_following_error: Option<f64>,
@@ -222,7 +228,7 @@ pub struct AxisConfig {
     pub following: Following,
     /// What a held jog does at a software limit.
     pub jog_at_limit: JogAtLimit,
-    /// What becomes of absolute targets outside the first turn.
+    /// The treatment of absolute targets outside the first turn.
     pub modulo_targets: ModuloTargets,
     /// What a rising edge of Execute does while the instance is Busy.
     pub edge_while_busy: EdgeWhileBusy,
@@ -231,7 +237,7 @@ pub struct AxisConfig {
 }
 
 impl AxisConfig {
-    /// An axis at 0 within `limits`, everything else at its default.
+    /// An axis at 0 within `limits`, with defaults for everything else.
     pub const fn new(limits: Limits) -> Self {
         Self {
             limits,
@@ -272,7 +278,7 @@ impl AxisConfig {
     /// Checks every value.
     ///
     /// # Errors
-    /// [`ConfigError`] names the first key that is not usable, with its value.
+    /// [`ConfigError`] names the first invalid key, with its value.
     pub fn check(&self) -> Result<(), ConfigError> {
         self.check_positive()?;
         let application = |part: fn(&Limits) -> f64| self.application_limits.as_ref().map(part);
@@ -426,7 +432,7 @@ impl AxisConfig {
         wrong
     }
 
-    /// Refuses a profile that could serve no move of the axis, because it cannot keep one of its limits.
+    /// Refuses a profile that can serve no move of the axis, because it cannot keep one of its limits.
     fn check_profile(&self) -> Result<(), ConfigError> {
         let snap = ("limits.snap", self.limits.snap);
         let jerk = ("limits.jerk", self.limits.jerk);
@@ -469,10 +475,10 @@ impl AxisConfig {
     }
 }
 
-/// Longest turn (u): from there on positions resolve no more than a whole unit.
+/// Longest turn (u): beyond it positions resolve no better than a whole unit.
 pub const MODULO_MAX: f64 = 9_007_199_254_740_992.0;
 
-/// Why an axis was not set up.
+/// The reason why an axis was not set up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ConfigError {
@@ -534,14 +540,14 @@ pub enum ConfigError {
         /// Length of a turn (u).
         length: f64,
     },
-    /// Software limits on an axis whose positions come round.
+    /// Software limits on a modulo axis.
     ModuloWithSoftwareLimits,
-    /// A turn is no fraction of drive increments with parts below 2^63.
+    /// A turn cannot be written as a fraction of drive increments with parts below 2^63.
     ModuloNotRational {
         /// Length (u).
         value: f64,
     },
-    /// More derivatives of a cam are to go on than are looked at.
+    /// More derivatives of a cam are required to be continuous than are checked.
     CamContinuity {
         /// So many.
         value: u8,
@@ -551,7 +557,8 @@ pub enum ConfigError {
         /// Scans asked for.
         value: u32,
     },
-    /// No filter on increments of an axis with a snap limit, which a single one exceeds.
+    /// The filter is off for an axis that counts increments and has a snap limit, which a single
+    /// increment exceeds.
     ActualFilterOff {
         /// The limit (u/s^4).
         snap: f64,
@@ -575,14 +582,14 @@ pub enum ConfigError {
         /// The limit.
         limit: f64,
     },
-    /// A key of `homing` that means nothing for its procedure.
+    /// A key of `homing` that its procedure does not use.
     HomingKey {
         /// The configuration key.
         key: &'static str,
         /// The procedure.
         procedure: Procedure,
     },
-    /// A velocity of `homing` that may not be above that of the search.
+    /// A velocity of `homing` that must not be above that of the search.
     HomingFaster {
         /// The configuration key.
         key: &'static str,
@@ -610,7 +617,7 @@ pub enum ConfigError {
 }
 
 impl ConfigError {
-    /// The configuration key it speaks of.
+    /// The configuration key it refers to.
     pub const fn key(&self) -> &'static str {
         match self {
             Self::NotPositive { key, .. }

@@ -1,7 +1,7 @@
-//! Couplings, seen from above all axes: who may follow whom, and in which order they move.
+//! Couplings, seen from above all axes: which axis may follow which, and in which order they move.
 //!
-//! Masters move before their slaves, whatever their numbers and whichever block was called first. A ring is refused where it
-//! would close.
+//! Masters move before their slaves, whatever their numbers and the order of block calls. A command that
+//! would close a ring is refused.
 
 use crate::axis::{Future, Part, Seen, Turn, Values, View};
 use crate::{
@@ -9,14 +9,16 @@ use crate::{
     ValueSource,
 };
 
-/// Gives `slave` a command that may couple it to a master; any other command is given as it is.
+/// Gives `slave` a command that may couple it to a master. Any other command is passed on unchanged.
 ///
-/// Cost: that of the command, and of a look up the chains of masters, at most as many looks at all axes as there are.
+/// Cost: that of the command, and a search of the chains of masters. The search visits all axes at most
+/// as many times as there are axes.
 ///
 /// # Errors
-/// What [`Axis::command`] refuses; besides [`ErrorId::AxisUnknown`] if there is no such slave or master,
-/// [`ErrorId::CouplingRing`] if the master follows the slave, [`ErrorId::MasterLost`] if it is not in operation, for actual values
-/// if its drive tells none, [`ErrorId::MasterSourceInvalid`] if it has none that could be followed. Nothing changes then.
+/// The errors of [`Axis::command`], and: [`ErrorId::AxisUnknown`] if there is no such slave or master;
+/// [`ErrorId::CouplingRing`] if the master follows the slave; [`ErrorId::MasterLost`] if the master is
+/// not in operation, or for actual values if its drive reports none; [`ErrorId::MasterSourceInvalid`] if
+/// it has no values that can be followed. Nothing changes then.
 pub fn couple<P: Planner>(
     axes: &mut [Axis<P>],
     slave: AxisId,
@@ -24,7 +26,8 @@ pub fn couple<P: Planner>(
     scope: &mut Scope<'_>,
 ) -> Result<CommandId, ErrorId> {
     let state = axes.get(slave.index()).map(Axis::state);
-    // Where the slave can't take it now its own state says so, and what waits is asked again when its turn comes.
+    // If the slave can't take it now, its own state gives the reason; a waiting command is checked again
+    // when it becomes active.
     let takes = matches!(
         state,
         Some(
@@ -37,12 +40,14 @@ pub fn couple<P: Planner>(
     check(axes, slave, &request.command, takes, scope)?.command(request, scope)
 }
 
-/// Gives a command of `slave` that couples it new values, as [`Axis::update`] does; any other command is given them as it is.
+/// Gives a command of `slave` that couples it new values, as [`Axis::update`] does. Any other command is
+/// passed on unchanged.
 ///
 /// Cost: that of [`couple`].
 ///
 /// # Errors
-/// What [`couple`] refuses, but for a master that is not in operation now. It is recorded, and the command goes on as it was.
+/// The errors of [`couple`], except for a master that is not in operation now. The error is recorded, and
+/// the command continues unchanged.
 pub fn update_coupled<P: Planner>(
     axes: &mut [Axis<P>],
     slave: AxisId,
@@ -53,7 +58,8 @@ pub fn update_coupled<P: Planner>(
     check(axes, slave, command, false, scope)?.update(id, command, scope)
 }
 
-/// The slave, if it may follow the masters of this command; masters out of operation do not mind where it `takes` no command.
+/// The slave, if it may follow the masters of this command. Masters out of operation are accepted if it
+/// `takes` no command.
 fn check<'a, P: Planner>(
     axes: &'a mut [Axis<P>],
     slave: AxisId,
@@ -100,7 +106,7 @@ fn check<'a, P: Planner>(
     Ok(axis)
 }
 
-/// Why `slave` can't follow these values of a master now.
+/// The reason why `slave` can't follow these values of a master now.
 fn obstacle<P: Planner>(axes: &mut [Axis<P>], slave: AxisId, (master, source): Values) -> Option<ErrorId> {
     let Some(axis) = axes.get(master.index()) else {
         return Some(ErrorId::AxisUnknown);
@@ -140,10 +146,11 @@ fn seen_before<P: Planner>(axes: &[Axis<P>], (master, source): Values, scan: u64
     })
 }
 
-/// Whether `upper` is among `lower`, its masters, and theirs. A command that waits for a place of a master counts: its slave moves
-/// behind that already, and masters and slaves that wait for each other would have no order.
+/// Whether `upper` is among `lower`, its masters, and theirs. A command that waits for a place of a
+/// master counts: its slave already moves behind the master, and masters and slaves that wait for each
+/// other would have no order.
 ///
-/// Cost: as many looks at all axes as the longest chain has axes.
+/// Cost: it visits all axes as many times as the longest chain has axes.
 fn is_above<P: Planner>(axes: &mut [Axis<P>], upper: AxisId, lower: AxisId) -> bool {
     for axis in axes.iter_mut() {
         let is_lower = axis.id() == lower;
@@ -175,7 +182,8 @@ fn is_above<P: Planner>(axes: &mut [Axis<P>], upper: AxisId, lower: AxisId) -> b
     false
 }
 
-/// The motion step where some axis may follow another: masters first, axes of one rank in the order of their numbers.
+/// The motion step if some axis may follow another: masters first, axes of one rank in the order of their
+/// numbers.
 #[inline(never)]
 pub(crate) fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
     let is_known = axes
@@ -196,8 +204,8 @@ pub(crate) fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
     }
 }
 
-/// Before any axis has moved in this scan, where something is new: finds the order anew if it is another, and slaves take note of
-/// their masters.
+/// Before any axis has moved in this scan, if something is new: finds the order again if it has changed,
+/// and slaves note their masters.
 #[inline(never)]
 fn prepare<P: Planner>(axes: &mut [Axis<P>], scan: u64) {
     if !is_in_order(axes) {
@@ -208,7 +216,7 @@ fn prepare<P: Planner>(axes: &mut [Axis<P>], scan: u64) {
     }
 }
 
-/// Before any axis has moved in this scan: the masters of a slave for which something may be new are there.
+/// Before any axis has moved in this scan: a slave for which something may be new notes its masters.
 fn note_masters<P: Planner>(axes: &mut [Axis<P>], index: usize, scan: u64) {
     let Some(axis) = axes.get_mut(index).filter(|axis| !axis.is_settled()) else {
         return;
@@ -234,10 +242,11 @@ fn note_masters<P: Planner>(axes: &mut [Axis<P>], index: usize, scan: u64) {
     }
 }
 
-/// What slaves leave of the limits of their masters, from the next motion step on: from the lowest slaves up, because what a
-/// slave has left counts for its master.
+/// Collects the limits that slaves leave to their masters, for the next motion step on. It starts with
+/// the lowest slaves, because the bound of a slave also limits its master.
 ///
-/// Cost: a look at each axis; where a slave slows its master, one for each rank, and where a bound changes that of an override.
+/// Cost: a check of each axis. If a slave slows its master, one such pass for each rank; if a bound
+/// changes, the cost of an override.
 fn slow_masters<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
     for axis in axes.iter_mut() {
         axis.begin_bound();
@@ -258,9 +267,9 @@ fn slow_masters<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
     }
 }
 
-/// Whether the order found last is the one of ranks and numbers: each axis is in it once, and masters stand above their slaves.
+/// Whether the last order is still right: each axis is in it once, and masters are above their slaves.
 ///
-/// Cost: a look at each axis, and at its masters.
+/// Cost: a check of each axis and its masters.
 fn is_in_order<P: Planner>(axes: &[Axis<P>]) -> bool {
     let mut last = None;
     axes.iter().all(|axis| {
@@ -273,11 +282,11 @@ fn is_in_order<P: Planner>(axes: &[Axis<P>]) -> bool {
     })
 }
 
-/// Finds the order in which axes move: how many masters stand above each, those included whose place a command waits for, and which
-/// axis moves after how many.
+/// Finds the order in which axes move: the number of masters above each, including those whose place a
+/// command waits for, and the order of the axes.
 ///
-/// Cost: two times as many looks at all axes as the longest chain has axes. What waits may close a ring, which takes one for each
-/// axis.
+/// Cost: it visits all axes two times as many times as the longest chain has axes. Waiting commands may
+/// close a ring, which takes one pass for each axis.
 #[cold]
 #[inline(never)]
 fn set_order<P: Planner>(axes: &mut [Axis<P>]) {
@@ -295,7 +304,7 @@ fn set_order<P: Planner>(axes: &mut [Axis<P>]) {
     }
 }
 
-/// Tells every axis how many masters stand above it. Returns the most.
+/// Sets the number of masters above every axis. Returns the largest.
 fn set_ranks<P: Planner>(axes: &mut [Axis<P>]) -> u16 {
     for axis in axes.iter_mut() {
         axis.links_mut().set_rank(0);
@@ -329,7 +338,8 @@ fn rank_below<P: Planner>(axes: &[Axis<P>], axis: &Axis<P>) -> u16 {
     rank.unwrap_or(0)
 }
 
-/// What waits behind a motion may become active in this step: if it could not then, it is told before.
+/// A command that waits behind a motion may become active in this step. If it could not follow then, it
+/// is told before.
 fn bar_rings<P: Planner>(axes: &mut [Axis<P>], index: usize) {
     let Some(axis) = axes.get_mut(index).filter(|axis| axis.links().is_bound()) else {
         return;
@@ -368,7 +378,7 @@ fn advance_one<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Scope
     goes_on
 }
 
-/// The step of a slave for which nothing is new. Returns FALSE, and nothing has moved, if something is.
+/// The step of a slave for which nothing is new. Returns FALSE and moves nothing if something is new.
 #[inline(always)]
 fn goes_on<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Scope<'_>) -> bool {
     let Some(master) = axes.get(index).and_then(Axis::steady_master) else {
@@ -406,7 +416,8 @@ fn advance_bound<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Sco
     }
 }
 
-/// What waits for a place of its master takes over when that is there, before the step of its slave.
+/// A command that waits for a place of its master takes over when the master is there, before the step of
+/// its slave.
 fn start_at_point<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Scope<'_>) {
     let Some(followed) = axes.get(index).and_then(Axis::awaited_values) else {
         return;
@@ -434,7 +445,7 @@ fn turn_of<P: Planner>(axes: &[Axis<P>], (master, _): Values) -> Option<f64> {
     axes.get(master.index())?.config().modulo
 }
 
-/// Lets the axis at `index` act with a look at these values of its masters.
+/// Runs a step of the axis at `index` with a view of these values of its masters.
 fn look<P: Planner>(
     axes: &mut [Axis<P>],
     index: usize,
@@ -454,7 +465,7 @@ fn look<P: Planner>(
     let Some((slave, after)) = rest.split_first_mut() else {
         return;
     };
-    // Never the slave: a ring was refused where it would have closed.
+    // Never the slave itself: a ring was refused when it would have closed.
     let part = |root: &Root| {
         let own = before.get(root.axis);
         let axis = own.or_else(|| after.get(root.axis.checked_sub(index)?.checked_sub(1)?));
@@ -481,13 +492,13 @@ fn look<P: Planner>(
     act(slave, &view, scope);
 }
 
-/// Whose plan a master follows.
+/// The axis whose plan a master follows.
 struct Root {
     /// Its index.
     axis: usize,
-    /// What the derivatives of that plan are multiplied by to be those of the master.
+    /// The factor from the derivatives of that plan to those of the master.
     factor: f64,
-    /// The step of this scan was another source's.
+    /// The step of this scan had another source.
     is_new: bool,
     /// Its actual values are followed, not its plan.
     is_actual: bool,

@@ -1,18 +1,18 @@
-//! The border between an axis and whatever moves: two plain values and one trait.
+//! The border between an axis and its drive: two plain values and one trait.
 //!
-//! Nothing here knows buses. Scaling to user units happens above, in the axis.
+//! This module knows no buses. The axis converts to user units.
 
 /// A position at the drive border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DrivePosition {
     /// User units (u), for drives of axes without scaling.
     Units(f64),
-    /// Increments, already extended past the drive's own counter range.
+    /// Increments, extended beyond the range of the drive's own counter.
     Increments(i64),
 }
 
 impl DrivePosition {
-    /// Whether it is a number; increments always are.
+    /// Whether it is finite; increments always are.
     #[inline]
     pub const fn is_finite(&self) -> bool {
         match self {
@@ -28,10 +28,10 @@ pub enum Comms {
     /// This scan's feedback is fresh.
     #[default]
     Ok,
-    /// No valid feedback; what is given is old.
+    /// No valid feedback; the values are old.
     Lost,
-    /// Feedback came, and something in it is no number. An axis looks itself, so only a drive that drops such feedback has
-    /// to say so.
+    /// Feedback arrived, and a value in it is not a number. The axis checks this itself, so only a drive
+    /// that drops such feedback has to report it.
     Invalid,
 }
 
@@ -44,7 +44,7 @@ pub struct Fault {
     pub cause_present: bool,
 }
 
-/// What a drive may report beside its position and its power stage; what it does not know stays FALSE.
+/// Signals that a drive may report beside its position and its power stage; unknown ones stay FALSE.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DriveSignals {
     /// The drive is simulated.
@@ -59,7 +59,7 @@ pub struct DriveSignals {
     pub warning: bool,
 }
 
-/// What a drive tells, latched once a scan.
+/// The feedback of a drive, latched once a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveFeedback {
     /// Operation is enabled: the power stage is on and follows the command (MC_Power.Status).
@@ -76,7 +76,7 @@ pub struct DriveFeedback {
     pub signals: DriveSignals,
 }
 
-/// What the axis asks of the power stage.
+/// The request of the axis to the power stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DriveRequest {
     /// Power stage off; the axis coasts.
@@ -90,7 +90,7 @@ pub enum DriveRequest {
     FaultReset,
 }
 
-/// What a drive is told, once a scan.
+/// The command for a drive, once a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveCommand {
     /// Power stage.
@@ -99,9 +99,9 @@ pub struct DriveCommand {
     pub position: DrivePosition,
     /// Velocity feed-forward (u/s).
     pub velocity: f64,
-    /// For drives that speak units: from now on the present commanded position, that of the command before, is
-    /// called this (u), and every other position moves by as much (MC_Home, MC_SetPosition). Increments never
-    /// change their names.
+    /// For drives that use units: the present commanded position, that of the command before, is called
+    /// this (u) from now on, and every other position shifts by the same amount (MC_Home,
+    /// MC_SetPosition). Increments never change their names.
     pub rename: Option<f64>,
 }
 
@@ -111,7 +111,7 @@ pub const DIGITAL: u32 = u32::BITS;
 /// Touch probes of a drive.
 pub const PROBES: usize = 2;
 
-/// What a probe has seen since it was armed.
+/// The events of a probe since it was armed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ProbeReport {
     /// It waits for edges, as ordered.
@@ -120,14 +120,14 @@ pub struct ProbeReport {
     pub latched: Option<DrivePosition>,
 }
 
-/// What a drive tells of its torque, or force, in the unit it is set up with.
+/// The torque, or force, that a drive reports, in its configured unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TorqueReport {
     /// Actual torque; positive towards larger positions.
     pub actual: f64,
     /// The largest torque it can hold; 0 if it only measures.
     pub most: f64,
-    /// It does not hold the torque it is asked for: it is at a limit of the velocity or of its own.
+    /// It does not hold the torque it was asked for: it is at a limit of the velocity, or at its own.
     pub limited: bool,
 }
 
@@ -140,7 +140,7 @@ pub struct TorqueOrder {
     pub velocity: (f64, f64),
 }
 
-/// What a drive has that a homing may need.
+/// The equipment of a drive that a homing may need.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Equipment {
     /// A home switch.
@@ -153,30 +153,31 @@ pub struct Equipment {
     pub homing: bool,
 }
 
-/// What a drive that homes by itself is doing.
+/// The state of a drive that homes by itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum DriveHoming {
     /// It follows the command.
     #[default]
     Off,
-    /// It moves as it likes, or is about to, or has yet to return to the command.
+    /// It moves by itself, is about to, or has not returned to the command yet.
     Busy,
     /// The same, and its positions have been named anew: from this scan on the reference is here.
     Attained(DrivePosition),
-    /// It stands, and the reference is here. It stays so until it is asked no longer.
+    /// It stands, and the reference is here. It stays in this state until it is no longer asked to home.
     Done(DrivePosition),
-    /// It gave up, with its own error code, 0 if it has none. It stays so until it is asked no longer.
+    /// It gave up, with its own error code, 0 if it has none. It stays in this state until it is no
+    /// longer asked to home.
     Failed(u16),
 }
 
-/// What a drive tells beside its motion. What it does not know stays as in the default.
+/// The report of a drive beside its motion. Unknown values keep their default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DriveReport {
-    /// Its torque; none if it does not know it.
+    /// Its torque; none if it is unknown.
     pub torque: Option<TorqueReport>,
     /// Its digital inputs, 0 to 31, one bit each.
     pub inputs: u32,
-    /// What its digital outputs show, 0 to 31.
+    /// The levels of its digital outputs, 0 to 31.
     pub outputs: u32,
     /// Its probes.
     pub probes: [ProbeReport; PROBES],
@@ -189,7 +190,7 @@ pub struct DriveReport {
 }
 
 impl DriveReport {
-    /// Whether every number in it is one; only the largest torque may be infinite.
+    /// Whether all its numbers are finite; only the largest torque may be infinite.
     #[inline]
     pub fn is_finite(&self) -> bool {
         let reference = match self.homing {
@@ -213,23 +214,24 @@ pub enum Edge {
     Falling,
 }
 
-/// What a drive is asked beside its motion.
+/// The orders for a drive beside its motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DriveOrder {
-    /// The torque to hold instead of the position; only of a drive that told it can.
+    /// The torque to hold instead of the position; only for a drive that reported that it can.
     pub torque: Option<TorqueOrder>,
     /// Its digital outputs.
     pub outputs: u32,
-    /// Which edge each probe is to latch; none disarms it. A probe is armed anew by one scan without an edge.
+    /// The edge each probe is to latch; none disarms it. One scan without an edge arms a probe anew.
     pub probes: [Option<Edge>; PROBES],
-    /// It is to latch the next reference pulse.
+    /// Whether to latch the next reference pulse.
     pub marker: bool,
-    /// It is to home by itself, or to go on doing so. Falling before it is done it stops.
+    /// Whether to home by itself, or to continue to. If it falls before the homing is done, the homing
+    /// stops.
     pub homing: bool,
 }
 
-/// A drive. `read` then `write`, each exactly once a scan; then `report` right after the one and `order` right
-/// before the other, for what a drive has beside its motion.
+/// A drive. `read` and then `write`, each exactly once a scan. `report` comes right after `read`, and
+/// `order` right before `write`; they carry the values beside its motion.
 pub trait Drive {
     /// This scan's feedback.
     fn read(&mut self, now_ns: i64) -> DriveFeedback;
@@ -237,9 +239,9 @@ pub trait Drive {
     /// This scan's command.
     fn write(&mut self, now_ns: i64, command: &DriveCommand);
 
-    /// Fills in what the drive has to tell in this scan; a drive that has nothing leaves it alone.
+    /// Fills in the report of this scan; a drive without one does nothing.
     fn report(&mut self, _report: &mut DriveReport) {}
 
-    /// What the drive is asked in this scan; a drive that knows none of it leaves it alone.
+    /// Takes the orders of this scan; a drive that supports none does nothing.
     fn order(&mut self, _order: &DriveOrder) {}
 }

@@ -3,7 +3,7 @@
 //! Numbers are interface: they are never reused and never change their meaning. A new error takes the next
 //! free number of its class.
 
-/// What an error is about; the hundreds of its number.
+/// The subject of an error; the hundreds of its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorClass {
     /// 0: no error.
@@ -40,7 +40,7 @@ macro_rules! error_ids {
             /// All errors in rising order of their numbers.
             pub const ALL: &'static [Self] = &[$(Self::$name),*];
 
-            /// The error's name as it stands in docs and traces.
+            /// The error's name as in docs and traces.
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$name => stringify!($name)),* }
             }
@@ -275,7 +275,7 @@ error_ids! {
         "This is a defect of standstill: please report the trace.";
 }
 
-/// Numbers that earlier versions showed and no version will show again, each with what it said.
+/// Numbers that earlier versions showed and no version will show again, each with its old meaning.
 pub const RETIRED: &[(u16, &str)] = &[
     (701, "Blending buffer modes were not supported."),
     (702, "ContinuousUpdate was not supported."),
@@ -287,7 +287,7 @@ pub const RETIRED: &[(u16, &str)] = &[
     ),
 ];
 
-// Deriving it needs an attribute on a variant that the table above writes.
+// Deriving it needs an attribute on a variant, but the table above writes the variants.
 #[allow(clippy::derivable_impls)]
 impl Default for ErrorId {
     fn default() -> Self {
@@ -306,7 +306,7 @@ impl ErrorId {
         Self::ALL.iter().copied().find(|id| id.number() == number)
     }
 
-    /// What the error is about.
+    /// The subject of the error.
     pub const fn class(self) -> ErrorClass {
         match self.number() / 100 {
             0 => ErrorClass::None,

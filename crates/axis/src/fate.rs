@@ -1,17 +1,18 @@
-//! What became of commands (R94, R95): kept long enough for their instances to ask.
+//! The results of commands (R94, R95), kept long enough for their instances to ask.
 
 use crate::{CommandId, ErrorId};
 
-/// Ended commands an axis remembers. An instance that is not called while this many later commands end
-/// finds its result gone and reports [`ErrorId::FateLost`].
+/// Number of ended commands an axis remembers. An instance that is not called while this many later
+/// commands end loses its result and reports [`ErrorId::FateLost`].
 pub const FATES_KEPT: usize = 64;
 
-/// What became of a command.
+/// The state or result of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fate {
-    /// In the buffer; a superimposed command: until there is room for it.
+    /// In the buffer; for a superimposed command: waits for room.
     Waiting,
-    /// Owns the axis, or is being superimposed; `reached` once an endless motion runs at its goal, or a held stop stands.
+    /// Owns the axis, or is being superimposed. `reached` is TRUE once an endless motion runs at its
+    /// goal, or a held stop stands.
     Active {
         /// The goal is reached.
         reached: bool,
@@ -62,7 +63,7 @@ impl Fates {
         self.next = (self.next + 1) % FATES_KEPT;
     }
 
-    /// Looks an ended command up; bounded by [`FATES_KEPT`] comparisons.
+    /// Finds an ended command; bounded by [`FATES_KEPT`] comparisons.
     pub(crate) fn find(&self, id: CommandId) -> Option<Fate> {
         self.ended
             .iter()

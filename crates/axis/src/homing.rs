@@ -1,23 +1,23 @@
-//! How an axis is homed: what MC_Home does, set per axis.
+//! The homing procedure of an axis: the configuration of MC_Home.
 
 use crate::ConfigError;
 use standstill_planner::Limits;
 
-/// What MC_Home does to find the reference.
+/// The procedure of MC_Home to find the reference.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Procedure {
-    /// Nothing moves: the place where the axis stands is the reference.
+    /// No motion: the present place of the axis is the reference.
     #[default]
     Direct,
     /// An edge of the home switch.
     AbsoluteSwitch,
-    /// Where the limit switch goes off again.
+    /// The place where the limit switch goes off again.
     LimitSwitch,
     /// The next reference pulse (index, marker) of the encoder, latched by the drive.
     ReferencePulse,
     /// A mechanical stop.
     Block,
-    /// What the drive does by itself: CiA 402 homing mode.
+    /// The drive homes by itself: CiA 402 homing mode.
     Drive,
 }
 
@@ -80,7 +80,7 @@ pub enum SwitchEdge {
     SwitchNegative,
 }
 
-/// When an axis counts as standing at a mechanical stop.
+/// The condition for standing at a mechanical stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlockDetection {
     /// The actual velocity is below this (u/s) ..
@@ -100,15 +100,15 @@ pub struct Homing {
     pub edge: SwitchEdge,
     /// Velocity of the search (u/s).
     pub velocity: f64,
-    /// Velocity of a second, slower approach of a switch (u/s); `None`: the first one counts.
+    /// Velocity of a second, slower approach of a switch (u/s); `None` if the first one counts.
     pub creep: Option<f64>,
     /// The reference is the next reference pulse behind the edge of the switch.
     pub pulse: bool,
     /// For a mechanical stop.
     pub block: Option<BlockDetection>,
-    /// Scans the search may take; `None`: as long as it takes.
+    /// Scans the search may take; `None` for no limit.
     pub time_limit: Option<u64>,
-    /// Way the axis may go in the search (u), all its parts added; `None`: any.
+    /// Way the axis may go in the search (u), all parts added; `None` for no limit.
     pub distance_limit: Option<f64>,
 }
 
@@ -141,7 +141,7 @@ impl Homing {
         }
     }
 
-    /// Refuses values that cannot be used, and keys that mean nothing for the procedure.
+    /// Refuses invalid values, and keys that the procedure does not use.
     pub(crate) fn check(&self, limits: &Limits) -> Result<(), ConfigError> {
         let searches = self.searches();
         let switch = matches!(self.procedure, Procedure::AbsoluteSwitch | Procedure::LimitSwitch);

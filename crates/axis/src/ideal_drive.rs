@@ -1,4 +1,5 @@
-//! A simulated drive that follows its command exactly, some scans late, and can be made to fail.
+//! A simulated drive that follows its command exactly, after a delay of some scans, and can be made to
+//! fail.
 
 use crate::{Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, DriveSignals, Fault};
 
@@ -8,13 +9,13 @@ pub const DELAY_MAX: usize = 64;
 /// Follows every set-point `delay` scans late; confirms power `power_on` scans late.
 #[derive(Clone, Copy, Debug)]
 pub struct IdealDrive {
-    /// Commanded positions on their way, a ring; the oldest is the actual position.
+    /// Commanded positions that are still delayed, as a ring; the oldest is the actual position.
     line: [DrivePosition; DELAY_MAX + 1],
     head: usize,
     delay: usize,
     power_on: Option<u32>,
     enabled: bool,
-    /// Scans Enable has been asked for without being confirmed.
+    /// Scans since Enable was asked for without being confirmed.
     waited: u32,
     fault: Option<Fault>,
     voltage: bool,
@@ -23,8 +24,9 @@ pub struct IdealDrive {
 }
 
 impl IdealDrive {
-    /// A drive at rest at `position`, `delay` scans late (at most [`DELAY_MAX`], larger values are cut),
-    /// that confirms power after `power_on` further scans, or never; `enabled` from the start or not.
+    /// A drive at rest at `position` with a delay of `delay` scans (at most [`DELAY_MAX`], larger values
+    /// are cut). It confirms power after `power_on` further scans, or never. `enabled` says whether it is
+    /// on from the start.
     pub fn new(position: DrivePosition, delay: usize, power_on: Option<u32>, enabled: bool) -> Self {
         Self {
             line: [position; DELAY_MAX + 1],
@@ -40,7 +42,7 @@ impl IdealDrive {
         }
     }
 
-    /// A drive fault with the drive's own `code`: the power stage goes off.
+    /// Raises a drive fault with the drive's own `code`: the power stage goes off.
     pub fn fail(&mut self, code: u16) {
         self.fault = Some(Fault {
             code,
@@ -49,7 +51,7 @@ impl IdealDrive {
         self.enabled = false;
     }
 
-    /// The supply of the power stage is gone.
+    /// The power stage loses its supply.
     pub fn cut_power(&mut self) {
         self.voltage = false;
         self.enabled = false;
@@ -61,7 +63,7 @@ impl IdealDrive {
         self.comms = Comms::Lost;
     }
 
-    /// The cause of whatever fault is gone. A drive fault stays until it is reset.
+    /// Removes the causes of all faults. A drive fault stays until it is reset.
     pub fn clear_cause(&mut self) {
         if let Some(fault) = &mut self.fault {
             fault.cause_present = false;
@@ -99,7 +101,7 @@ impl IdealDrive {
             .unwrap_or(self.stale)
     }
 
-    /// Stands at `position`: nothing is on its way any more.
+    /// Stands at `position`; delayed positions are dropped.
     fn hold(&mut self, position: DrivePosition) {
         self.line = [position; DELAY_MAX + 1];
     }
@@ -111,14 +113,14 @@ impl IdealDrive {
         }
     }
 
-    /// Calls the newest commanded position `name` and shifts what is on its way by as much.
+    /// Calls the newest commanded position `name`, and shifts the delayed positions by the same amount.
     fn rename(&mut self, name: f64) {
         let Some(&DrivePosition::Units(newest)) = self.line.get(self.head) else {
             return;
         };
         for place in &mut self.line {
             if let DrivePosition::Units(old) = place {
-                // What already arrived takes the name exactly, without rounding a shift.
+                // A position that already arrived gets the name exactly, without the rounding of a shift.
                 *old = if *old == newest {
                     name
                 } else {
@@ -142,7 +144,7 @@ impl Drive for IdealDrive {
             fault: self.fault,
             position: if lost { self.stale } else { self.actual() },
             comms: self.comms,
-            // An ideal drive has no switches and nothing to warn of.
+            // An ideal drive has no switches and no warnings.
             signals: DriveSignals {
                 simulated: true,
                 ..DriveSignals::default()
@@ -175,7 +177,7 @@ impl Drive for IdealDrive {
 }
 
 impl IdealDrive {
-    /// Without power the axis stands where it is; what was on its way is dropped.
+    /// Without power the axis stops where it is; delayed positions are dropped.
     fn switch_off(&mut self) {
         self.enabled = false;
         self.waited = 0;
@@ -274,7 +276,7 @@ mod tests {
         for place in [1.0, 3.0, 7.0] {
             drive.write(0, &command(DriveRequest::Enable, place));
         }
-        // 7 was commanded last and is called 100: what is on its way keeps its distance.
+        // 7 was commanded last and is called 100: the delayed positions keep their distance.
         drive.write(
             0,
             &DriveCommand {

@@ -1,12 +1,12 @@
-//! What an axis did with the commands it was given: a ring of fixed size a host can read.
+//! Records of what an axis did with its commands: a ring of fixed size that a host can read.
 
 use crate::{AxisId, CamId, ErrorId, InstanceId};
 use standstill_planner::Excess;
 
-/// Records the ring holds; older ones are overwritten.
+/// Number of records the ring holds; older ones are overwritten.
 pub const LOG_KEPT: usize = 64;
 
-/// What a plan leads to.
+/// The goal of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
     /// Rest at a position (u).
@@ -22,7 +22,7 @@ pub enum Goal {
     },
 }
 
-/// How a slave comes onto the law of its gear.
+/// The way in which a slave comes onto the law of its gear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Approach {
     /// Beside the law, until the difference is 0.
@@ -95,18 +95,19 @@ pub enum Event {
         /// The value used instead.
         limit: f64,
     },
-    /// A value above what the limits of slaves leave was lowered to it (on_limit slow_master).
+    /// A value above the limits that slaves leave was lowered to them (on_limit slow_master).
     Slowed {
         /// IEC name of the pin.
         pin: &'static str,
-        /// What it would be without the slaves.
+        /// The value without the slaves.
         value: f64,
         /// What is used instead.
         limit: f64,
     },
-    /// The start state forces the plan out of its limits by this much.
+    /// The start state forces the plan beyond its limits by this much.
     Unavoidable(Excess),
-    /// The coordinates were moved: from this scan on the same place is called this much more (u). No motion.
+    /// The coordinates were moved: from this scan on the same place is called this much more (u). No
+    /// motion.
     Shifted {
         /// By how much (u).
         by: f64,
@@ -127,15 +128,16 @@ pub enum Event {
     },
     /// A superimposed command waits until the motion under it leaves room below the axis limits.
     RoomAwaited,
-    /// MC_Power bars a direction the motion needs: it brakes, and goes on when it may.
+    /// MC_Power bars a direction the motion needs: it brakes, and continues when the direction is
+    /// permitted.
     Paused {
         /// Which direction.
         error: ErrorId,
     },
-    /// The instance was triggered anew and its new command refused, or given to another axis: the motion it gave before goes
-    /// on to its end with no block that follows it.
+    /// The instance was triggered anew, and its new command was refused or given to another axis: its
+    /// earlier motion goes on to its end, and no block follows it.
     Orphaned,
-    /// The axis is behind a master.
+    /// The axis follows a master.
     Coupled {
         /// Which.
         master: AxisId,
@@ -148,7 +150,7 @@ pub enum Event {
     Approaching {
         /// How.
         way: Approach,
-        /// The velocity (u/s) it leads to; that to be taken off, beside the law.
+        /// The velocity (u/s) it leads to; beside the law, the velocity to be taken off.
         velocity: f64,
         /// Its scans.
         scans: u32,
@@ -162,12 +164,12 @@ pub enum Event {
         /// Its scans.
         scans: u32,
     },
-    /// The slave is in sync after its master has come by the sync point.
+    /// The slave is in sync after its master has passed the sync point.
     SyncLate {
-        /// How far the master is past it (u).
+        /// The distance of the master past it (u).
         by: f64,
     },
-    /// The slave can't stay on the law of its gear: that asks for more than a limit.
+    /// The slave can't stay on the law of its gear, because the law exceeds a limit.
     GearLost {
         /// Of what.
         what: &'static str,
@@ -176,25 +178,27 @@ pub enum Event {
         /// The limit.
         limit: f64,
     },
-    /// The masters of a slave in gear are commanded to where it must not go.
+    /// The masters of a slave in gear are commanded to a place where it must not go.
     LeadsOutside {
-        /// Where the slave would come to rest (u).
+        /// The place where the slave would come to rest (u).
         position: f64,
         /// Its software limit on that side (u).
         limit: f64,
     },
-    /// A cam was selected: the highest constant velocity of its master with which the slave can follow it.
+    /// A cam was selected: the highest constant velocity of its master with which the slave can follow
+    /// it.
     CamSelected {
         /// That (u/s of the master).
         velocity: f64,
         /// The velocity limit of the master.
         limit: f64,
     },
-    /// A cam was selected at a row of which the slave comes to rest, as its limits do not let a derivative jump.
+    /// A cam was selected at one of whose rows the slave comes to rest, because its limits do not let a
+    /// derivative jump.
     CamStops {
         /// The row with the largest jump, from 1.
         row: u16,
-        /// Which derivative, as a table calls it.
+        /// The derivative, with the name of a table.
         what: &'static str,
         /// By how much.
         jump: f64,
@@ -210,15 +214,15 @@ pub enum Event {
     OntoCam {
         /// How.
         way: Approach,
-        /// Where a move leads (u); else the velocity a shadow comes to (u/s of the master), that to be taken off beside the
-        /// master.
+        /// The place to which a move leads (u). Otherwise the velocity a shadow comes to (u/s of the
+        /// master); beside the master, the velocity to be taken off.
         value: f64,
         /// Its scans.
         scans: u32,
     },
     /// From this scan on the slave is on its cam at the place of its master.
     InSync,
-    /// The slave can't stay there: that asks for more than a limit.
+    /// The slave can't stay there, because the cam exceeds a limit.
     SyncLost {
         /// Of what.
         what: &'static str,
@@ -285,7 +289,7 @@ impl Log {
         self.total
     }
 
-    /// The records from number `from` (counted from 0 since start) on that are still held, oldest first.
+    /// The records still held from number `from` on (counted from 0 since start), oldest first.
     pub fn since(&self, from: u64) -> impl Iterator<Item = &Record> {
         let oldest = self.total.saturating_sub(LOG_KEPT as u64);
         (from.max(oldest)..self.total)

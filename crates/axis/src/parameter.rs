@@ -2,7 +2,7 @@
 
 use crate::ErrorId;
 
-/// A parameter of an axis, by its number: below 1000 in the standard, from there on ours.
+/// A parameter of an axis, by its number: below 1000 in the standard, from 1000 on ours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
     /// 1: the set position last published (u).
@@ -58,7 +58,7 @@ pub enum Parameter {
 }
 
 impl Parameter {
-    /// Those of the standard, in the order of the numbers from 1 on.
+    /// The parameters of the standard, by number from 1.
     pub const ALL: [Self; 17] = [
         Self::CommandedPosition,
         Self::SwLimitPos,
@@ -99,7 +99,7 @@ impl Parameter {
     }
 }
 
-/// What is read from or written to a parameter.
+/// The value of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ParameterValue {
     /// REAL.

@@ -1,4 +1,4 @@
-//! User units to drive increments and back, by an integer ratio.
+//! Converts user units to drive increments and back, by an integer ratio.
 
 use crate::ConfigError;
 use core::num::NonZero;
@@ -9,7 +9,7 @@ use standstill_planner::turns::split;
 /// A set-point is rounded once, from the exact position, half away from zero; nothing is accumulated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scaling {
-    // Not zero by type, so that no division by them can panic.
+    // Not zero by type, so that a division by them cannot panic.
     increments: NonZero<u32>,
     units: NonZero<u32>,
     invert: bool,
@@ -74,7 +74,8 @@ impl Scaling {
         }
     }
 
-    /// The distance of `position` (u) from the offset, as the drive has its sign: whole units and the rest.
+    /// The distance of `position` (u) from the offset, with the sign of the drive: whole units and the
+    /// rest.
     #[inline]
     fn split(&self, position: f64) -> (i64, f64) {
         let position = if self.invert {
@@ -82,12 +83,12 @@ impl Scaling {
         } else {
             position - self.offset
         };
-        // A saturating conversion: NaN gives 0, which the axis never lets come here.
+        // A saturating conversion: NaN gives 0, but the axis never passes NaN here.
         let whole = position as i64;
         (whole, position - whole as f64)
     }
 
-    /// What the whole increments of whole units leave, and those of a fraction of a unit: a few increments.
+    /// The increments of the fraction of a unit, plus the remainder of the whole units: a few increments.
     #[inline]
     fn rest_of(&self, rest: f64, fraction: f64) -> f64 {
         (rest + fraction * f64::from(self.increments.get())) / f64::from(self.units.get())
@@ -112,8 +113,8 @@ impl Scaling {
     }
 }
 
-/// `value * factor / divisor` as a whole number, towards minus infinity, and what is left over the divisor; none
-/// where the product takes more than 64 bits, which is far beyond a machine's way.
+/// `value * factor / divisor` as a whole number, rounded towards minus infinity, and the remainder. None
+/// if the product takes more than 64 bits, which is far beyond a machine's way.
 #[inline]
 fn divided(value: i64, factor: NonZero<u32>, divisor: NonZero<u32>) -> Option<(i64, f64)> {
     let scaled = value.checked_mul(i64::from(factor.get()))?;
@@ -124,7 +125,7 @@ fn divided(value: i64, factor: NonZero<u32>, divisor: NonZero<u32>) -> Option<(i
     Some((scaled.div_euclid(divisor), scaled.rem_euclid(divisor) as f64))
 }
 
-/// The same for every value; it takes three times as long.
+/// The same for every value, at three times the cost.
 #[cold]
 fn divided_wide(value: i64, factor: NonZero<u32>, divisor: NonZero<u32>) -> (i128, f64) {
     let scaled = i128::from(value) * i128::from(factor.get());
@@ -160,7 +161,7 @@ impl Turn {
         self.increments.get()
     }
 
-    /// .. are so many turns; the two have no common divisor.
+    /// .. are this many turns; the two have no common divisor.
     pub const fn turns(&self) -> u64 {
         self.turns.get()
     }

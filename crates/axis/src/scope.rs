@@ -19,7 +19,8 @@ pub struct Scope<'a> {
 }
 
 impl<'a> Scope<'a> {
-    /// Scan `scan` with its ring, for calls that no instance makes: its number is 0 until [`Scope::with`] gives another.
+    /// Scan `scan` with its ring, for calls that no instance makes: the instance number is 0 until
+    /// [`Scope::with`] sets another.
     pub fn new(scan: u64, log: &'a mut Log) -> Self {
         Self {
             scan,
@@ -42,7 +43,7 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// Records that `axis` at `pin` is none of the `count` axes there are, which no axis could tell.
+    /// Records that `axis` at `pin` is not one of the `count` axes. No axis exists that could record it.
     #[cold]
     pub fn refuse_axis(&mut self, pin: &'static str, axis: AxisId, count: usize) -> ErrorId {
         let error = ErrorId::AxisUnknown;

@@ -1,4 +1,4 @@
-//! The PLCopen axis state machine: the function that runs, and the standard's arrows beside it as data.
+//! The PLCopen axis state machine: the function that runs, and the standard's arrows as data beside it.
 //!
 //! Source: PLCopen Motion Control Part 1, section on the state diagram and its notes 1 to 6. A test compares
 //! the two over all pairs, so a slip in either shows.
@@ -44,7 +44,7 @@ all_of! {
 }
 
 all_of! {
-    /// What can happen to an axis, after conditions such as "powered?" have been folded in.
+    /// An event of an axis, after conditions such as "powered?" have been evaluated.
     AxisEvent {
         /// Operation is enabled: MC_Power.Enable and Status are TRUE.
         PowerOn,
@@ -167,7 +167,7 @@ pub const fn next(state: AxisState, event: AxisEvent) -> Result<AxisState, Refus
     }
 }
 
-/// What the three motion states have in common.
+/// The common part of the three motion states.
 const fn in_any_motion(event: AxisEvent) -> Result<AxisState, Refused> {
     use {AxisEvent as E, AxisState as S};
     match event {
@@ -195,7 +195,7 @@ pub struct Arrow {
     pub on: AxisEvent,
     /// Where it ends.
     pub to: AxisState,
-    /// The note of the diagram, or what the arrow is drawn for.
+    /// The note of the diagram, or the purpose of the arrow.
     pub note: &'static str,
 }
 

@@ -1,11 +1,12 @@
-//! What a scan does to axes and the drives under them, in slices: hosts keep both where they like.
+//! The steps of a scan on axes and drives, which are given as slices: hosts keep both where they like.
 //!
-//! Which step follows which belongs to the host's scan. What happens in each of them, and in which order axes have their
-//! turn, stands here once: for the executor, the C library and a loop of one's own.
+//! The order of the steps belongs to the host's scan. The content of each step, and the order of the axes
+//! in it, are defined here once for the executor, the C library and a host's own loop.
 
 use crate::{Axis, AxisId, AxisState, Drive, DriveFeedback, Planner, Scope, couple};
 
-/// After every drive was read: takes what drives tell beside their motion, then lets the states follow, in axis order.
+/// After every drive was read: takes the reports of the drives beside their motion, then updates the
+/// states, in axis order.
 #[inline]
 pub fn follow<P: Planner, D: Drive>(
     axes: &mut [Axis<P>],
@@ -22,12 +23,13 @@ pub fn follow<P: Planner, D: Drive>(
     }
 }
 
-/// After all blocks were called: the set-point of every axis for the end of this scan, each advanced by one nominal tick in
-/// the order of their numbers, but masters before those that follow them. A late scan does not stretch a motion.
+/// After all blocks were called: computes the set-point of every axis for the end of this scan. Each axis
+/// advances by one nominal tick, in the order of their numbers, but masters before their slaves. A late
+/// scan does not stretch a motion.
 ///
-/// Cost: for each axis one evaluation of its plan; where a command completes, at most one plan for each that waits; with
-/// software limits a ramp plan in each scan of an endless motion or a stop. For a slave one evaluation of its law, and where
-/// the master got another plan at most seven plans.
+/// Cost: for each axis one evaluation of its plan. If a command completes: at most one plan for each that
+/// waits. With software limits: a ramp plan in each scan of an endless motion or a stop. For a slave: one
+/// evaluation of its law, and if the master got another plan at most seven plans.
 #[inline]
 pub fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
     if axes.iter().any(|axis| axis.links().is_bound()) {
@@ -49,14 +51,14 @@ pub fn publish<P: Planner, D: Drive>(axes: &mut [Axis<P>], drives: &mut [D], now
     }
 }
 
-/// Asks every axis to stop and switch off, each as its configuration says.
+/// Asks every axis to stop and switch off, each as it is configured.
 pub fn switch_off<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
     for axis in axes {
         axis.switch_off(scope);
     }
 }
 
-/// The first axis that is neither Disabled nor at rest in ErrorStop; nothing of a motion can be carried over a new
+/// The first axis that is neither Disabled nor at rest in ErrorStop; no motion can be carried over a new
 /// start.
 pub fn first_not_off<P: Planner>(axes: &[Axis<P>]) -> Option<(AxisId, AxisState)> {
     let on = axes.iter().find(|axis| match axis.state() {

@@ -1,4 +1,4 @@
-//! What an axis does with a command: refuse it, start it, or let it wait.
+//! How an axis takes a command: it refuses it, starts it, or lets it wait.
 //!
 //! Source: PLCopen Motion Control Part 1, state diagram and sections on aborting and buffered commands; the
 //! table "state x command" with the choices V6, V6a, V7a, V11.
@@ -14,8 +14,8 @@ use standstill_planner::{Limits, Planner, Setpoint};
 impl<P: Planner> Axis<P> {
     /// Takes a command, or refuses it without any effect on the axis or the queue (R38).
     ///
-    /// Cost: at most one plan; a blended command that waits costs a ramp, at most a root of ramps, for each
-    /// that waits, and the owner's plan with a blended end.
+    /// Cost: at most one plan. A blended command that waits costs in addition a ramp, or at most a root
+    /// of ramps, for each waiting command, and the owner's plan with a blended end.
     ///
     /// # Errors
     /// The [`ErrorId`] the block shows; the refusal is recorded with pin, value and limit.
@@ -53,7 +53,8 @@ impl<P: Planner> Axis<P> {
                 let before = self.limits_before(&entry.limits);
                 let kept = self.coupling_kept(&entry);
                 let phasing = self.lend_phasing(&entry);
-                // What is not to interrupt anything starts beside what waits for a start point.
+                // A command that must not interrupt the motion starts beside a command that waits for its
+                // start point.
                 let awaited = self.awaited.take_if(|_| mode != BufferMode::Aborting);
                 self.end_all(Fate::Aborted, Fate::Aborted);
                 self.coupling = kept;
@@ -79,7 +80,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// [`Axis::admit`], a refusal recorded.
+    /// Calls [`Axis::admit`] and records a refusal.
     pub(super) fn admit_recorded(
         &self,
         request: &Request,
@@ -128,7 +129,7 @@ impl<P: Planner> Axis<P> {
         let stop = matches!(request.command, Command::Stop { .. });
         let home = matches!(request.command, Command::Home { .. });
         let refuse = |error| Err(("", error));
-        // MC_Home starts at rest, so it cannot follow what does not end.
+        // MC_Home starts at rest, so it cannot follow an endless motion.
         let wait = || {
             if home && self.predecessor_is_endless() {
                 refuse(ErrorId::InMotion)
@@ -139,7 +140,7 @@ impl<P: Planner> Axis<P> {
         match self.state {
             AxisState::Disabled => refuse(ErrorId::NotPowered),
             AxisState::ErrorStop => refuse(ErrorId::InErrorStop),
-            // An idle axis starts at once whatever the mode (B9); something waits only in the scan in which
+            // An idle axis starts at once in every mode (B9). A command waits only in the scan in which
             // MC_Stop released the axis.
             AxisState::Standstill if buffered && !self.queue.is_empty() => wait(),
             AxisState::Standstill => Ok(Start::Now),
@@ -174,13 +175,13 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether a command that waits now would follow a motion without an end, so not start at rest.
+    /// Whether a command that waits now would follow an endless motion, and so could not start at rest.
     fn predecessor_is_endless(&self) -> bool {
         let last = self.queue.last_motion().or(self.owner.as_ref());
         last.is_some_and(Entry::is_endless)
     }
 
-    /// The values at the pins.
+    /// Checks the values at the pins.
     pub(super) fn check(
         &self,
         command: &Command,
@@ -219,7 +220,8 @@ impl<P: Planner> Axis<P> {
             } => {
                 let distance = self.finite("Distance", distance, scope)?;
                 let work = match self.commanded_target() {
-                    // Waiting, it counts from the end of the one before it, which is the last commanded target.
+                    // A waiting command counts from the end of the one before it, which is the last
+                    // commanded target.
                     Some(target) if start == Start::Now => {
                         let position = self.finite("Distance", target + distance, scope)?;
                         self.inside("Distance", position, scope)?;
@@ -349,8 +351,8 @@ impl<P: Planner> Axis<P> {
         Ok((Work::Through { to, end_velocity }, limits))
     }
 
-    /// Where the owner of a discrete motion leads (u): its target, or where the ramp of MC_Halt comes to
-    /// rest (V13, V13b).
+    /// The place where the owner of a discrete motion ends (u): its target, or where the ramp of MC_Halt
+    /// comes to rest (V13, V13b).
     fn commanded_target(&self) -> Option<f64> {
         let owner = self.owner.as_ref()?;
         match owner.work.manner().ending {
@@ -380,7 +382,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// Sign of Velocity times sign of Direction (V3).
+    /// The sign of Velocity times the sign of Direction (V3).
     fn directed(&self, velocity: f64, direction: Raw<Direction>) -> Option<Work> {
         match direction.get()? {
             Direction::Unset | Direction::Positive => Some(Work::Velocity {
@@ -399,11 +401,11 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Plans a command from the present set-point; its limits are raised where the axis could not be kept inside
-    /// its own with them. Nothing changes but `entry`.
+    /// Plans a command from the present set-point. Its limits are raised if the axis could not stay
+    /// inside its own with them. Only `entry` changes.
     pub(super) fn plan_for(&self, entry: &mut Entry) -> Result<Motion<P::Plan>, ErrorId> {
         let before = if self.passes_its_end() {
-            // From a blended end on the limits of the second command hold, and no others (B5).
+            // From a blended end on, the limits of the second command apply alone (B5).
             entry.limits
         } else {
             self.limits_before(&entry.limits)
@@ -476,7 +478,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Records why a plan was refused, with the pin that asked for it.
+    /// Records why a plan was refused, with the pin that caused it.
     pub(super) fn refuse_plan(&self, entry: &Entry, error: ErrorId, scope: &mut Scope<'_>) -> ErrorId {
         let (pin, value) = match entry.work {
             Work::Position(target)
@@ -524,7 +526,7 @@ impl<P: Planner> Axis<P> {
             self.begin_homing();
         }
         if self.moves_itself() {
-            // A drive that homes by itself is stopped by it first.
+            // A drive that homes by itself is stopped first.
             self.motion = Motion::Follow;
         }
     }

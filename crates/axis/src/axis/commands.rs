@@ -1,4 +1,5 @@
-//! Commands as the axis keeps them: what each does, when it starts, and how it ends. Values only; nothing here knows an axis.
+//! Commands as the axis stores them: what each does, when it starts, and how it ends. These are values
+//! only; nothing here knows an axis.
 
 use crate::{
     AxisEvent, AxisId, BufferMode, CamId, Command, CommandId, Direction, ErrorId, InstanceId, Parameter,
@@ -6,10 +7,11 @@ use crate::{
 };
 use standstill_planner::{CamLaw, Field, Gear, Limits, Passage, PlanError, ProfileKind};
 
-/// How far, relative to a limit, rounding may carry a state beyond it (contract: limits hold to 1e-9).
+/// How far rounding may take a state beyond a limit, relative to the limit (contract: limits hold to
+/// 1e-9).
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// At its end a command comes to rest.
+/// A command that comes to rest at its end.
 pub(super) const REST: Passage = Passage {
     wanted: 0.0,
     most: 0.0,
@@ -53,7 +55,7 @@ pub(super) enum Place {
     By(f64),
 }
 
-/// What a command writes when its turn comes.
+/// A value that a command writes when it becomes active.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Write {
     /// A digital output of the drive.
@@ -72,11 +74,11 @@ pub(super) enum Work {
     Position(f64),
     /// By a distance (u) from where it becomes active (B10).
     Distance(f64),
-    /// By way of a place with an end velocity (u/s, signed), which is kept.
+    /// Through a place with an end velocity (u/s, signed), which is then kept.
     Through { to: Place, end_velocity: f64 },
     /// To a velocity (u/s); with `along` its sign is taken relative to the motion when it becomes active.
     Velocity { velocity: f64, along: bool },
-    /// Along a curve; with `due` its points have yet to come from its block, when it owns the axis.
+    /// Along a curve. With `due` it owns the axis but its block has not given the points yet.
     Profile {
         kind: ProfileKind,
         due: bool,
@@ -84,34 +86,35 @@ pub(super) enum Work {
         since: f64,
         time_scale: f64,
     },
-    /// A torque, changed by so much a second (0: at once); with `along` its sign is relative to the motion when it becomes
-    /// active.
+    /// A torque that changes by this much per second (0: at once). With `along` its sign is relative to
+    /// the motion when it becomes active.
     Torque { torque: f64, ramp: f64, along: bool },
     /// Behind a master.
     Gear(Gearing),
     /// Behind a master on a cam.
     Cam(Camming),
-    /// On with a velocity (u/s), no longer behind a master.
+    /// Continues at a velocity (u/s), no longer behind a master.
     Release(f64),
     /// To velocity zero.
     Halt,
     /// To velocity zero, locked.
     Stop,
-    /// The present position gets a name (u).
+    /// The present position gets this name (u).
     Home(f64),
-    /// The coordinates move: the actual position becomes this, or grows by it (u).
+    /// Moves the coordinates: the actual position becomes this value, or grows by it (u).
     SetPosition { position: f64, relative: bool },
-    /// Something beside the motion is written.
+    /// Writes a value that is not part of the motion.
     Write(Write),
 }
 
-/// How a slave follows which master, or which two.
+/// How a slave follows one master or two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gearing {
     pub first: Leg,
-    /// MC_CombineAxes: the second master, whose way is added.
+    /// MC_CombineAxes: the second master; its way is added.
     pub second: Option<Leg>,
-    /// The places that belong together, if they are given; else those in which it comes into gear.
+    /// The places of master and slave that belong together, if given; else the places in which the slave
+    /// comes into gear.
     pub sync: Option<Sync>,
 }
 
@@ -119,7 +122,7 @@ pub(super) struct Gearing {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Leg {
     pub master: AxisId,
-    /// Which values of it: set or actual ones.
+    /// Which values of the master: set or actual.
     pub source: ValueSource,
     pub gear: Gear,
 }
@@ -131,11 +134,12 @@ pub(super) struct Sync {
     pub master: f64,
     pub slave: f64,
     pub mode: SyncMode,
-    /// How far before its place the master is where the slave sets off (u), with the sign of its direction; 0 for at once.
+    /// The distance before its place at which the master starts the slave (u), with the sign of its
+    /// direction; 0 to start at once.
     pub start_distance: f64,
 }
 
-/// On which cam a slave follows which master, checked.
+/// The cam and the master that a slave follows, checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Camming {
     pub master: AxisId,
@@ -153,17 +157,18 @@ pub(super) struct Camming {
     pub slave_absolute: bool,
     pub master_offset: f64,
     pub slave_offset: f64,
-    /// Where in the cam the slave is to be in sync first, if that is given (u of the cam's master side).
+    /// The place on the cam where the slave is in sync first, if given (u of the cam's master side).
     pub sync: Option<f64>,
-    /// How far before that its master is where the slave sets off (u of the cam's master side), with the sign of its direction; 0
-    /// for at once.
+    /// The distance before that place at which the master starts the slave (u of the cam's master side),
+    /// with the sign of its direction; 0 to start at once.
     pub start_distance: f64,
-    /// Where in the cam before it takes over, if not at its end (u of that cam's master side).
+    /// The place on the previous cam at which this one takes over, if not at its end (u of that cam's
+    /// master side).
     pub switch_at: Option<f64>,
 }
 
 impl Work {
-    /// The slave sets off where its master is at a place, not at once.
+    /// Whether the slave starts when its master reaches a place, and not at once.
     pub fn waits_for_start(&self) -> bool {
         match self {
             Self::Gear(gearing) => gearing.sync.is_some_and(|sync| sync.start_distance != 0.0),
@@ -173,33 +178,34 @@ impl Work {
     }
 }
 
-/// What a kind of work is: said here once for all who ask. What only one of them asks stands there.
+/// The properties of a kind of work, in one table for all users. A property that only one user needs is
+/// defined there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Manner {
     /// Its name.
     pub kind: WorkKind,
     /// The arrow of the state diagram along which it starts.
     pub start: AxisEvent,
-    /// What happens when its motion has come to its goal.
+    /// The action when its motion has reached its goal.
     pub ending: Ending,
-    /// How the software limits look at its motion.
+    /// How its motion is checked against the software limits.
     pub watch: Watch,
-    /// Where it leads, if anywhere.
+    /// The place where it ends, if there is one.
     pub place: Option<Place>,
-    /// The velocity (u/s) it goes on with, 0 if it ends at rest.
+    /// The velocity (u/s) at its end; 0 if it ends at rest.
     pub velocity: f64,
-    /// It goes on until another command takes over.
+    /// It continues until another command takes over.
     pub endless: bool,
-    /// The override holds for it: it does for moves, not for what stops or names places, nor for a profile, which keeps its
-    /// times, nor for a torque, which is no motion (V16).
+    /// The override applies to it. It applies to moves, but not to stops, to commands that name places,
+    /// to profiles, which keep their times, or to torques, which are no motion (V16).
     pub overridden: bool,
     /// It takes new values from its pins while it runs (ContinuousUpdate).
     pub updated: bool,
-    /// It leads on, so a direction it needs can be barred by MC_Power.
+    /// It moves the axis on, so MC_Power can bar the direction it needs.
     pub barred: bool,
     /// It can pass its end in motion, for a blended command that waits (B12).
     pub blends: bool,
-    /// It moves the axis when its turn comes, rather than writing something.
+    /// It moves the axis when it becomes active; other kinds write something.
     pub moves: bool,
 }
 
@@ -210,13 +216,13 @@ pub(super) enum Ending {
     InPosition,
     /// It is done.
     AtRest,
-    /// It holds what it has reached, and gives way to what waits.
+    /// It holds the value it has reached, and a waiting command may take over.
     Holds,
     /// It is done, and the motion goes on.
     RunsOn,
-    /// It goes on behind its master, and gives way to what waits once it is in gear.
+    /// It continues behind its master. A waiting command may take over once it is in gear.
     Follows,
-    /// Nothing: its block has yet to give its points.
+    /// No action: its block has not given its points yet.
     Due,
     /// It locks the axis while its Execute is TRUE.
     Locks,
@@ -226,18 +232,19 @@ pub(super) enum Ending {
     Never,
 }
 
-/// How the software limits look at a motion.
+/// How a motion is checked against the software limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Watch {
     /// It may leave them in any scan.
     Always,
-    /// A curve, which was checked to its end.
+    /// A curve, which was checked over its whole length.
     Curve,
     /// A straight way to a place.
     Way,
     /// A ramp to rest.
     Ramp,
-    /// A torque, which is watched after every latch; only barred it has a plan, which leads to rest.
+    /// A torque, which is checked after every latch. It has a plan only while it is barred, and that plan
+    /// leads to rest.
     Torque,
     /// Not at all.
     Never,
@@ -254,7 +261,7 @@ pub enum WorkKind {
     Through,
     /// To a velocity.
     Velocity,
-    /// A profile whose points have yet to come.
+    /// A profile whose block has not given its points yet.
     ProfileDue,
     /// A profile.
     Profile,
@@ -264,7 +271,7 @@ pub enum WorkKind {
     Gear,
     /// Behind a master on a cam.
     Cam,
-    /// On with a velocity, no longer behind a master.
+    /// Continues at a velocity, no longer behind a master.
     Release,
     /// To velocity zero.
     Halt,
@@ -346,7 +353,7 @@ impl Manner {
         ..Self::RAMP
     };
 
-    /// No motion: it writes something when its turn comes.
+    /// No motion: it writes a value when it becomes active.
     const WRITING: Self = Self {
         ending: Ending::Never,
         moves: false,
@@ -453,7 +460,7 @@ impl Work {
         }
     }
 
-    /// Where it leads (u), counted from `from` where it must be; `None` for what leads nowhere.
+    /// The place where it ends (u); relative kinds count from `from`. `None` if it has no end.
     pub fn end(&self, from: f64) -> Option<f64> {
         Some(match self.manner().place? {
             Place::At(position) => position,
@@ -461,7 +468,7 @@ impl Work {
         })
     }
 
-    /// The same with another velocity to go on with (u/s).
+    /// The same with another end velocity (u/s).
     pub fn with_velocity(self, velocity: f64) -> Self {
         match self {
             Self::Through { to, .. } => Self::Through {
@@ -487,27 +494,28 @@ impl Work {
 pub(super) struct Entry {
     pub id: CommandId,
     pub instance: InstanceId,
-    /// What it does; velocities as the override has them.
+    /// What it does; velocities as the override scales them.
     pub work: Work,
-    /// Its limits, as the override has them.
+    /// Its limits as the override scales them.
     pub limits: Limits,
-    /// What the program asked for, before the override.
+    /// The values of the program, before the override.
     pub asked: Asked,
-    /// The override holds it at rest: it goes on when the factor of the velocity is raised.
+    /// The override holds it at rest. It continues when the factor of the velocity is raised.
     pub halted: bool,
-    /// It has passed the place it leads through, and goes on with its end velocity.
+    /// It has passed its place, and continues with its end velocity.
     pub passed: bool,
-    /// Where its distance counts from (u), once that is known (R13).
+    /// The place from which its distance counts (u), once it is known (R13).
     pub from: f64,
-    /// mcCurrentDirection of a velocity, as it was when the command became active.
+    /// The sign for mcCurrentDirection of a velocity, taken when the command became active.
     pub sign: f64,
-    /// Way round to a position on a modulo axis; `None` where the position is one of the frame, some turns on.
+    /// The way round to a position on a modulo axis. `None` if the position is one of the frame, with its
+    /// turns.
     pub direction: Option<Direction>,
-    /// Whole turns the frame of a modulo axis moves on by when it begins.
+    /// Whole turns by which the frame of a modulo axis moves on when it begins.
     pub turns: i64,
     /// How it follows the command before it.
     pub mode: BufferMode,
-    /// Where it ends (u), once it is known: when the command is planned.
+    /// The place where it ends (u); known once the command is planned.
     pub end: Option<f64>,
     /// How it is to pass its end, for a blended successor.
     pub passage: Passage,
@@ -519,9 +527,9 @@ pub(super) struct Entry {
     pub paused: bool,
     /// No block follows it: its instance was triggered anew and refused.
     pub orphaned: bool,
-    /// What its instance gave after it, and follows now (B19).
+    /// The command that its instance gave after it and follows now (B19).
     pub heir: Option<CommandId>,
-    /// Why it can't go behind its master now; looked at before each motion step.
+    /// The reason why it can't follow its master now; checked before each motion step.
     pub barred: Option<ErrorId>,
 }
 
@@ -534,7 +542,7 @@ pub(super) struct Asked {
 }
 
 impl Entry {
-    /// A command that starts at rest, or with what the one before leaves it.
+    /// A command that starts at rest or with the state its predecessor leaves.
     pub fn new(id: CommandId, instance: InstanceId, work: Work, limits: Limits, mode: BufferMode) -> Self {
         Self {
             id,
@@ -607,7 +615,7 @@ pub(super) fn direction_of(command: &Command) -> Option<Direction> {
     }
 }
 
-/// What a block shows of a planner's refusal.
+/// The error that a block shows for a refusal of the planner.
 pub(super) fn refusal(error: PlanError) -> ErrorId {
     match error {
         PlanError::TooLong { .. } => ErrorId::MoveTooLong,

@@ -1,8 +1,8 @@
-//! Coordinates that move: MC_SetPosition, and the new name MC_Home gives.
+//! Moving coordinates: MC_SetPosition, and the new name that MC_Home gives.
 //!
-//! The axis stays where it is and goes on as it goes; what changes is what its places are called. Set and actual
-//! position move by the same amount, so neither the following error nor the velocity has a step, and a drive
-//! that counts increments gets the same increments as before.
+//! The axis keeps its place and its motion; only the names of places change. Set and actual position
+//! change by the same amount, so neither the following error nor the velocity has a step. A drive that
+//! counts increments gets the same increments as before.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_SetPosition; V15, T39 i.
 
@@ -13,19 +13,20 @@ use standstill_planner::turns::split;
 use standstill_planner::{Plan, Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
-    /// MC_SetPosition: the actual position becomes `position` (u), or with `relative` grows by it; the set
-    /// position moves by the same amount. In every state, at rest and in motion, and never changing the state.
+    /// MC_SetPosition: the actual position becomes `position` (u), or with `relative` grows by it. The
+    /// set position changes by the same amount. Works in every state, at rest and in motion, and never
+    /// changes the state.
     ///
-    /// A running absolute move keeps the number of its target, so its way left changes: it is planned anew
-    /// from the present state. All other motions go on as they are. With `mcQueued` it waits like a buffered
-    /// command while the axis has an owner.
+    /// A running absolute move keeps the number of its target, so its remaining way changes: it is
+    /// planned anew from the present state. All other motions continue unchanged. With `mcQueued` the
+    /// command waits like a buffered one while the axis has an owner.
     ///
     /// Cost: at most one plan.
     ///
     /// # Errors
-    /// The [`ErrorId`] the block shows: a position that is not finite or outside the first turn of a modulo axis, in
-    /// motion one so large that numbers do not tell a set-point from the next, an undefined mode, a full buffer, or a
-    /// move that could not be planned anew. Nothing changes then.
+    /// The [`ErrorId`] the block shows. Causes: a position that is not finite or outside the first turn
+    /// of a modulo axis; in motion, a position so large that two set-points have the same number; an
+    /// undefined mode; a full buffer; a move that could not be planned anew. Nothing changes then.
     pub fn set_position(
         &mut self,
         position: f64,
@@ -49,8 +50,8 @@ impl<P: Planner> Axis<P> {
         Ok(id)
     }
 
-    /// Whether the next command in the buffer moves the coordinates. It does so at the next latch, so that
-    /// this scan still publishes what it was about to.
+    /// Whether the next command in the buffer moves the coordinates. It takes effect at the next latch,
+    /// so that this scan still publishes its set-point.
     pub(super) fn queue_waits_for_shift(&mut self) -> bool {
         self.stir();
         self.shift_due = self
@@ -60,7 +61,8 @@ impl<P: Planner> Axis<P> {
         self.shift_due
     }
 
-    /// The coordinates move as the commands at the head of the buffer say, then the next one has its turn.
+    /// Moves the coordinates as the commands at the head of the buffer say. Then the next command becomes
+    /// active.
     #[cold]
     pub(super) fn take_queued_shifts(&mut self, scope: &mut Scope<'_>) {
         for _ in 0..QUEUE_MAX {
@@ -81,8 +83,8 @@ impl<P: Planner> Axis<P> {
         self.hand_over(self.setpoint.position, scope);
     }
 
-    /// Grows whenever coordinates move (MC_SetPosition, MC_Home), and comes round: positions taken at different numbers
-    /// cannot be compared.
+    /// A number that grows whenever coordinates move (MC_SetPosition, MC_Home), and wraps. Positions
+    /// taken at different numbers cannot be compared.
     pub fn coordinates(&self) -> u32 {
         self.frame.moves()
     }
@@ -98,12 +100,13 @@ impl<P: Planner> Axis<P> {
         } else {
             position - self.feedback.position()
         };
-        // Whole turns change nothing but the resolution of what is planned.
+        // Whole turns change only the resolution of what is planned.
         let by = match &self.modulo {
             Some(modulo) if by.abs() >= modulo.length => split(by, modulo.length).1,
             _ => by,
         };
-        // Where no turns are counted, an axis without lag is at the very number asked for, however far it was.
+        // If no turns are counted, an axis without lag is exactly at the requested number, however far it
+        // was.
         let at = if !relative && self.modulo.is_none() && self.setpoint.position == self.feedback.position() {
             position
         } else {
@@ -112,7 +115,8 @@ impl<P: Planner> Axis<P> {
         let is_finite = at.is_finite()
             && (self.feedback.position() + by).is_finite()
             && (self.frame.shift() + by).is_finite();
-        // A motion among numbers that do not tell its set-points apart is not found again among others.
+        // A motion whose set-points could not be told apart at the old numbers cannot be recovered at the
+        // new ones.
         let is_resolved =
             self.setpoint.is_at_rest() || (self.is_resolved(at) && self.is_resolved(self.setpoint.position));
         if !(is_finite && is_resolved) {
@@ -149,7 +153,7 @@ impl<P: Planner> Axis<P> {
         if self.config.scaling.is_some() {
             self.frame.shift_by(by);
         } else {
-            // Out of operation the drive stands at its actual position, where it may have been pushed to.
+            // Out of operation the drive stands at its actual position, to which it may have been pushed.
             self.stir();
             self.frame.rename(self.setpoint().position);
         }
@@ -159,13 +163,14 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
-    /// Whether a number of 64 bits tells `position` (u) from where the axis is a scan later at its velocity limit.
+    /// Whether a 64-bit number distinguishes `position` (u) from the position one scan later at the
+    /// velocity limit.
     fn is_resolved(&self, position: f64) -> bool {
         position.abs() * f64::EPSILON <= self.config.limits.velocity * self.planner.cycle()
     }
 
-    /// The motion in progress in coordinates moved by `by` (u): an absolute move is planned anew to the same
-    /// number, every other one goes on as it is.
+    /// Moves the motion in progress to coordinates that are `by` (u) larger. An absolute move is planned
+    /// anew to the same number; all others continue unchanged.
     fn move_motion(&mut self, by: f64, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         let is_halted = self.owner.as_ref().is_some_and(|owner| owner.halted);
         if self.is_paused() || is_halted {
@@ -194,7 +199,7 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
-    /// Coordinates were moved by `by` (u).
+    /// Tells the parts of the axis that coordinates moved by `by` (u).
     pub(super) fn tell_moved(&mut self, by: f64, scope: &mut Scope<'_>) {
         self.frame.note_moved(scope.scan, by);
         self.record(Event::Shifted { by }, scope);

@@ -1,10 +1,11 @@
-//! Behind a master, or two: MC_GearIn, MC_CombineAxes and MC_GearOut on the slave's side.
+//! A slave behind one master or two: MC_GearIn, MC_CombineAxes and MC_GearOut on the slave's side.
 //!
-//! Once in gear the set-point *is* the law, a function of the master's place in the same scan
-//! ([`Gear`](standstill_planner::Gear)); InGear is that state and no comparison. Until then, and after the slave could not
-//! keep up, it moves on plans of its own within its limits, in one of three ways (rungs): beside the moving law, onto the next
-//! stretch of constant velocity of it, or as fast as it may. Nothing is planned when a command is taken: in the motion step the
-//! master has moved already, and whatever was commanded to it in this scan counts.
+//! In gear the set-point *is* the law, a function of the master's place in the same scan
+//! ([`Gear`](standstill_planner::Gear)). InGear is that state; positions are not compared. A slave that
+//! is not in gear yet, or could not keep up, moves on plans of its own within its limits, in one of three
+//! ways (rungs): beside the moving law, onto the law's next stretch of constant velocity, or as fast as
+//! it may. A command plans nothing when it is taken. The plan is made in the motion step, after the
+//! master has moved, so that everything commanded to the master in this scan counts.
 //!
 //! | file | subject |
 //! | --- | --- |
@@ -56,10 +57,10 @@ pub(super) use view::{end_of, way_to_rest};
 /// A master, and which of its values are followed.
 pub(crate) type Values = (AxisId, ValueSource);
 
-/// Places further from 0 than this (u) are no sync points and have no cam: numbers tell them too coarsely.
+/// The furthest place from 0 (u) for sync points and cams: beyond it numbers are too coarse.
 const FURTHEST: f64 = 1e15;
 
-/// How a slave that is not in gear comes there.
+/// The way in which a slave that is not in gear comes into gear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Rung {
     /// The next motion step decides.
@@ -70,12 +71,12 @@ enum Rung {
     Own,
     /// A plan beside the law through this anchor.
     BesideLaw(Anchor),
-    /// The same beside the law of measured values, within this room.
+    /// The same beside a law of measured values, within this room.
     BesideMeasured { anchor: Anchor, room: Limits },
-    /// The master went out of operation: the slave rests until a block couples it anew.
+    /// The master went out of operation: the slave stands until a block couples it anew.
     Lost,
-    /// A plan beside a straight line, onto which the law leads in so many scans from the start of the plan: its place then and
-    /// its velocity (u/s).
+    /// A plan beside a straight line. The law joins the line this many scans after the start of the plan.
+    /// The line has this place at the start, and this velocity (u/s).
     BesideLine { start: Place, velocity: f64, begin: u64 },
 }
 
@@ -85,24 +86,24 @@ impl Rung {
     }
 }
 
-/// How an axis follows its master: what a trace shows of it.
+/// How an axis follows its master, for traces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coupled {
     /// The master.
     pub master: AxisId,
-    /// Set position less that of the law (u); 0 in gear, and before it was there.
+    /// Set position less that of the law (u); 0 in gear, and before it was in gear.
     pub deviation: f64,
-    /// By how much the master is seen further on than it is (u of the master).
+    /// The phase shift: how far ahead of its real place the master is seen (u of the master).
     pub phase: f64,
-    /// The second master of MC_CombineAxes, and by how much that is seen further on.
+    /// The second master of MC_CombineAxes, and its phase shift.
     pub second: Option<(AxisId, f64)>,
-    /// What was superimposed on the law since it lies where it does (u).
+    /// The distance superimposed on the law since the law was laid (u).
     pub superimposed: f64,
-    /// On a cam: the place of the master the slave is at (u of the master), if it is on the curve.
+    /// On a cam: the place of the master at which the slave is (u of the master), if it is on the curve.
     pub shadow: Option<f64>,
 }
 
-/// The names of the pins that say how a master is followed.
+/// The names of the pins for one master.
 struct LegPins {
     master: &'static str,
     numerator: &'static str,
@@ -136,32 +137,32 @@ const COMBINED_PINS: [LegPins; 2] = [
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Coupling {
     gearing: Gearing,
-    /// Where the law lies: where the slave was in gear first, or as given.
+    /// The place of the law: where the slave was in gear first, or as given.
     anchor: Option<Anchor>,
     /// It has been in gear.
     was_in_gear: bool,
-    /// It was in gear when the same gear was commanded once more, and no motion step has been since.
+    /// It was in gear when the same gear was commanded again, and no motion step has followed yet.
     is_kept: bool,
     rung: Rung,
     /// The masters at the end of the scan before, in their coordinates of now.
     was: SeenBoth,
-    /// What was known of their way ahead.
+    /// The known part of their way ahead.
     known: view::Known,
-    /// Scans until the way onto the law is looked for again; the largest number for never.
+    /// Scans until the way onto the law is searched again; the largest number for never.
     left: u64,
     /// The way recorded last, and its velocity (u/s).
     told: Option<(Approach, f64)>,
-    /// Where the masters lead it (u), if that is outside its software limits.
+    /// The place to which the masters lead it (u), if that is outside its software limits.
     leads_outside: Option<f64>,
-    /// The limits it was last held against.
+    /// The limits that its way was last checked against.
     limits: Limits,
-    /// How often the slave's own coordinates had moved.
+    /// The number of moves of the slave's own coordinates.
     moves: u32,
-    /// By how much the slave is off the law (u); 0 in gear, and before it was there.
+    /// The distance of the slave from the law (u); 0 in gear, and before it was in gear.
     deviation: f64,
-    /// Its master keeps the limits of the slave.
+    /// Its master is slowed to keep the limits of the slave.
     slows: bool,
-    /// What was superimposed on the law, less the place of the layer that is added to it (u).
+    /// The distance superimposed on the law, less the place of the layer that is added to it (u).
     lead: f64,
 }
 
@@ -175,12 +176,12 @@ impl Gearing {
         self.legs().map(|leg| leg.map(|leg| leg.master))
     }
 
-    /// The masters, and which values of each are followed.
+    /// The masters, and the values of each that are followed.
     fn values(&self) -> [Option<Values>; 2] {
         self.legs().map(|leg| leg.map(|leg| (leg.master, leg.source)))
     }
 
-    /// Where the slave is for masters that are there.
+    /// The place of the slave for the given masters.
     pub(super) fn slave(&self, anchor: &Anchor, masters: [Place; 2]) -> Place {
         let gear = &self.first.gear;
         match &self.second {
@@ -189,7 +190,7 @@ impl Gearing {
         }
     }
 
-    /// The slave's derivative for those of the masters.
+    /// The slave's derivative for given derivatives of the masters.
     pub(super) fn derivative(&self, of_masters: [f64; 2]) -> f64 {
         let first = self.first.gear.derivative(of_masters[0]);
         match &self.second {
@@ -198,7 +199,8 @@ impl Gearing {
         }
     }
 
-    /// What a derivative of the master of this number is multiplied by to be its part of that of the slave; `by` comes before.
+    /// The factor from a derivative of master number `leg` to its part of the slave's derivative. `by` is
+    /// applied first.
     pub(super) fn factor(&self, leg: usize, by: f64) -> f64 {
         match (&self.second, leg) {
             (_, 0) => self.first.gear.derivative(by),
@@ -209,23 +211,23 @@ impl Gearing {
 }
 
 impl Coupling {
-    /// What is added from now on moves the law on from where it is: the layer is at `place` (u).
+    /// Distances added from now on move the law from its present place; the layer is at `place` (u).
     pub(super) fn lay_layer(&mut self, place: f64) {
         self.lead = self.superimposed() - place;
     }
 
-    /// What was superimposed on the law (u).
+    /// The distance superimposed on the law (u).
     fn superimposed(&self) -> f64 {
         self.anchor.map_or(0.0, |anchor| anchor.slave.phase)
     }
 
-    /// It is given a sync point, and not to be faster than there.
+    /// Whether it has a sync point and must not be faster than there.
     fn goes_slowly(&self) -> bool {
         let slow = |sync: Sync| sync.mode == SyncMode::SlowDown;
         self.gearing.sync.is_some_and(slow)
     }
 
-    /// On the way to a sync point that was given.
+    /// Whether it is on the way to a given sync point.
     fn is_syncing(&self) -> bool {
         self.gearing.sync.is_some() && !self.was_in_gear
     }
@@ -258,7 +260,7 @@ impl<P: Planner> Axis<P> {
         self.coupling.is_some()
     }
 
-    /// The set-point published last is that of the law, and it stays so.
+    /// Whether the set-point published last is that of the law, and the slave stays in gear.
     #[inline]
     pub fn is_in_gear(&self) -> bool {
         let is_locked = |coupling: &Coupling| coupling.rung.is_locked();
@@ -303,14 +305,15 @@ impl<P: Planner> Axis<P> {
         coupling.map_or(on_cam, |coupling| coupling.gearing.values())
     }
 
-    /// The owner follows actual values of a master, not where that is to be.
+    /// Whether the owner follows actual values of a master instead of its set position.
     pub fn follows_actual(&self) -> bool {
         let is_actual = |(_, source): Values| source == ValueSource::Actual;
         let [first, second] = self.followed_values();
         first.is_some_and(is_actual) || second.is_some_and(is_actual)
     }
 
-    /// The masters the owner follows, each with its ratio: numerator, below 0 also where its way is taken away, and denominator.
+    /// The masters the owner follows, each with its ratio. The numerator is negative also if the way of
+    /// the master is subtracted.
     pub fn gears(&self) -> [Option<(AxisId, i32, u16)>; 2] {
         let Some(coupling) = &self.coupling else {
             return [None; 2];
@@ -322,18 +325,18 @@ impl<P: Planner> Axis<P> {
         coupling.gearing.legs().map(|leg| leg.map(ratio))
     }
 
-    /// The master went out of operation, and the slave rests until a block couples it anew.
+    /// Whether the master went out of operation. The slave then stands until a block couples it anew.
     pub fn has_lost_master(&self) -> bool {
         matches!(self.rung(), Some(Rung::Lost)) || self.has_lost_master_on_cam()
     }
 
-    /// On the way to the sync point it was given, and not there yet.
+    /// Whether it is on the way to the given sync point.
     pub fn is_syncing(&self) -> bool {
         self.coupling.as_ref().is_some_and(Coupling::is_syncing)
     }
 
-    /// By how much a slave is off the law of its gear (u); 0 in gear, before it was there without a sync point, and for any
-    /// other axis.
+    /// The distance of a slave from the law of its gear (u). It is 0 in gear, before it was in gear
+    /// without a sync point, and for any other axis.
     pub fn deviation(&self) -> f64 {
         let on_cam = self.deviation_on_cam();
         self.coupling
@@ -341,7 +344,7 @@ impl<P: Planner> Axis<P> {
             .map_or(on_cam, |coupling| coupling.deviation)
     }
 
-    /// The values at the pins of MC_GearIn and MC_GearInPos that say which law holds.
+    /// Checks the values at the pins of MC_GearIn and MC_GearInPos that define the law.
     pub(super) fn check_gear(
         &self,
         followed: &Followed,
@@ -360,7 +363,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The values at the pins of MC_CombineAxes.
+    /// Checks the values at the pins of MC_CombineAxes.
     pub(super) fn check_combination(
         &self,
         masters: &[Followed; 2],
@@ -384,7 +387,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The values at the pins for one master.
+    /// Checks the values at the pins for one master.
     fn check_leg(&self, followed: &Followed, pins: &LegPins, scope: &mut Scope<'_>) -> Result<Leg, ErrorId> {
         let Followed {
             master,
@@ -427,7 +430,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// MC_GearOut: on with the velocity that is left when acceleration and jerk are gone.
+    /// MC_GearOut: continues at the velocity that is left once acceleration and jerk are 0.
     pub(super) fn release(&self) -> (Work, Limits) {
         let limits = self.slowed(&self.parameters.limits);
         let velocity = if self.is_paused() {
@@ -438,7 +441,8 @@ impl<P: Planner> Axis<P> {
         (Work::Release(velocity), limits)
     }
 
-    /// What moved behind its master until now goes on with the velocity that is left when acceleration and jerk are gone.
+    /// A motion that was behind its master until now continues at the velocity that is left once
+    /// acceleration and jerk are 0.
     pub(super) fn go_on_alone(&mut self, before: &Limits) {
         if !matches!(self.motion, Motion::Geared | Motion::Closing { .. }) {
             return;
@@ -449,16 +453,16 @@ impl<P: Planner> Axis<P> {
         self.motion = ramp.map_or(Motion::Hold, Motion::along);
     }
 
-    /// MC_GearOut is done: a motion step has gone by without the master.
+    /// Whether MC_GearOut is done: a motion step has passed without the master.
     #[inline]
     pub(super) fn is_released(&self, owner: &Entry) -> bool {
         matches!(owner.work, Work::Release(_)) && !matches!(self.motion, Motion::Run { elapsed: 0, .. })
     }
 
-    /// The motion of `entry` until the next motion step finds one.
+    /// The motion of `entry` until the next motion step finds a better one.
     ///
     /// # Errors
-    /// Why it can't go behind its master, or that the axis stands outside its software limits.
+    /// The reason why it can't follow its master, or that the axis stands outside its software limits.
     pub(super) fn gear_motion(&self, entry: &Entry, start: &Setpoint) -> Result<Motion<P::Plan>, ErrorId> {
         if let Some(error) = entry.barred {
             return Err(error);
@@ -467,7 +471,7 @@ impl<P: Planner> Axis<P> {
         Ok(Motion::Geared)
     }
 
-    /// The present coupling, if `entry` is to go on in it: the same gear to the same master, in gear.
+    /// The present coupling, if `entry` continues it: the same gear to the same master, in gear.
     pub(super) fn coupling_kept(&self, entry: &Entry) -> Option<Coupling> {
         let kept = self.coupling.filter(|coupling| {
             let is_in_gear = coupling.rung.is_locked() || coupling.is_kept;
@@ -480,7 +484,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// `entry` follows a master from the next motion step on, or has new values for it.
+    /// Says that `entry` follows a master from the next motion step on, or has new values for it.
     pub(super) fn await_master(&mut self, entry: &Entry, scope: &mut Scope<'_>) {
         if let Work::Cam(camming) = entry.work {
             return self.await_master_on_cam(camming, entry, scope);
@@ -511,14 +515,14 @@ impl<P: Planner> Axis<P> {
             coupling.is_kept = false;
             coupling.deviation = 0.0;
         }
-        // Where the master was lost another ratio is no wish to move again.
+        // After the master was lost, another ratio must not start a motion.
         if coupling.rung != Rung::Lost && (is_new || !coupling.rung.is_locked()) {
             coupling.rung = Rung::Due;
         }
         self.stir();
     }
 
-    /// The motion is not the law's for a while: the way onto it is looked for when it may go on.
+    /// The motion is not on the law for a while. The way onto it is searched when it may continue.
     pub(super) fn leave_law(&mut self) {
         if let Some(coupling) = &mut self.coupling {
             coupling.rung = Rung::Due;
@@ -537,13 +541,13 @@ impl<P: Planner> Axis<P> {
         &mut self.links
     }
 
-    /// Whom it follows, and for whose place a command of it waits.
+    /// The masters it follows, and those whose place a command of it waits for.
     pub(crate) fn masters(&self) -> impl Iterator<Item = AxisId> + use<P> {
         let [first, second] = self.followed();
         [first, second, self.awaited_master()].into_iter().flatten()
     }
 
-    /// A command waits, maybe one that follows a master.
+    /// Notes a waiting command, which may follow a master.
     pub(super) fn note_bound(&mut self, entry: &Entry) {
         self.unsettle();
         if matches!(entry.work, Work::Gear(_) | Work::Cam(_)) {
@@ -551,7 +555,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Notes anew whether the owner, or a command that waits, may follow a master. Returns whether one that waits may.
+    /// Finds again whether the owner, or a command that waits, may follow a master. Returns whether a
+    /// waiting one may.
     pub(crate) fn renew_bound(&mut self) -> bool {
         let couples = |entry: &Entry| matches!(entry.work, Work::Gear(_) | Work::Cam(_));
         let waits = !self.queue.is_empty() && self.queue.iter().any(couples);
@@ -573,14 +578,14 @@ impl<P: Planner> Axis<P> {
         masters
     }
 
-    /// Why each command that waits could not go behind its master now.
+    /// Sets for each waiting command the reason why it could not follow its master now.
     pub(crate) fn bar_waiting(&mut self, barred: &[Option<ErrorId>; QUEUE_MAX]) {
         for (entry, error) in self.queue.iter_mut().zip(barred) {
             entry.barred = *error;
         }
     }
 
-    /// Tells that the slave follows its master on a law, and from when on in gear.
+    /// Records that the slave follows its master on a law, and from when on it is in gear.
     fn record_in_gear(&self, scope: &mut Scope<'_>) {
         self.record(Event::InGear, &mut self.owner_scope(scope));
     }

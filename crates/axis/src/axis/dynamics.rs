@@ -1,15 +1,15 @@
-//! From the values at a block's pins to the limits of a motion.
+//! Converts the values at a block's pins to the limits of a motion.
 //!
-//! One rule for Acceleration, Deceleration, Jerk and Snap: 0 takes the axis default, which is the limit
-//! unless configured; with neither, jerk and snap are not limited and acceleration is an error. Values above
-//! the limit are clamped and recorded, or refused (V2).
+//! One rule applies to Acceleration, Deceleration, Jerk and Snap. 0 takes the axis default, which is the
+//! axis limit unless configured. If both are missing, jerk and snap are unlimited and acceleration is an
+//! error. Values above the limit are clamped and recorded, or refused (V2).
 
 use super::Axis;
 use crate::{AboveLimit, Defaults, Dynamics, ErrorId, Event, Scope, StopLimits};
 use standstill_planner::{Limits, Planner};
 
-/// Scans a rate may take to change what it changes from nothing to its limit. A lower rate is of no use, and a
-/// motion that could not be stopped in a number of scans that can be counted.
+/// The largest number of scans that a rate may take from 0 to its limit. A lower rate is useless, and its
+/// motion could not be stopped in a countable number of scans.
 const LONGEST: f64 = 268_435_456.0;
 
 /// A pin that carries a magnitude.
@@ -18,21 +18,21 @@ struct Magnitude {
     value: f64,
     default: Option<f64>,
     limit: f64,
-    /// The lowest value other than 0 that is of any use.
+    /// The lowest useful value other than 0.
     least: f64,
     invalid: ErrorId,
-    /// Error if 0 has nothing to stand for; `None` means unlimited.
+    /// The error if 0 has no default; `None` means unlimited.
     missing: Option<ErrorId>,
     above: ErrorId,
 }
 
 impl<P: Planner> Axis<P> {
-    /// Limits of a motion; the velocity is that of the axis, positioning moves lower it.
+    /// Limits of a motion. The velocity is that of the axis; positioning moves lower it.
     pub(super) fn resolve(&self, dynamics: &Dynamics, scope: &mut Scope<'_>) -> Result<Limits, ErrorId> {
         self.resolve_within(&self.parameters.limits, &self.config.defaults, dynamics, scope)
     }
 
-    /// The same for MC_Stop, which has the dynamics of stops where the axis has some of their own.
+    /// The same for MC_Stop, which uses the dynamics of stops if the axis has its own.
     pub(super) fn resolve_stop(&self, dynamics: &Dynamics, scope: &mut Scope<'_>) -> Result<Limits, ErrorId> {
         if self.config.stop.is_none() {
             return self.resolve(dynamics, scope);
@@ -108,7 +108,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// Longest time (s) a rate may take to change what it changes from nothing to its limit.
+    /// The longest time (s) that a rate may take from 0 to its limit.
     pub(super) fn longest(&self) -> f64 {
         LONGEST * self.planner.cycle()
     }
@@ -153,7 +153,7 @@ impl<P: Planner> Axis<P> {
             return Err(self.refuse("EndVelocity", value, f64::NAN, invalid, scope));
         }
         let limit = self.parameters.limits.velocity;
-        // Above the axis limit Velocity has been clamped to it, or the command refused.
+        // Velocity above the axis limit was clamped before, or the command was refused.
         if value.abs().min(limit) > velocity {
             return Err(self.refuse("EndVelocity", value, velocity, invalid, scope));
         }
@@ -161,7 +161,7 @@ impl<P: Planner> Axis<P> {
         self.within("EndVelocity", value, limit, above, scope)
     }
 
-    /// Limits of a ramp nobody commanded: power-off, ErrorStop.
+    /// Limits of a ramp that no command asked for: power-off, ErrorStop.
     pub(super) fn stop_limits(&self) -> Limits {
         let limits = self.config.limits;
         let stop = self.config.stop.unwrap_or(StopLimits {
@@ -177,7 +177,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// What no motion of the axis exceeds, stops included.
+    /// Limits that no motion of the axis exceeds, stops included.
     pub(super) fn hardest_limits(&self) -> Limits {
         match self.config.stop {
             Some(_) => self.config.limits.or_larger(&self.stop_limits()),
@@ -190,7 +190,7 @@ impl<P: Planner> Axis<P> {
             return Err(self.refuse(pin.pin, pin.value, 0.0, pin.invalid, scope));
         }
         if pin.value > 0.0 {
-            // An axis whose limits are that low may use them.
+            // An axis with such low limits may use them.
             if pin.value < pin.least && pin.value < pin.limit {
                 return Err(self.refuse(pin.pin, pin.value, pin.least, ErrorId::MoveTooLong, scope));
             }
@@ -205,7 +205,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// `value` if its magnitude is within `limit`, else what the axis is set to do about it.
+    /// `value` if its magnitude is within `limit`; otherwise the result of the axis's setting for values
+    /// above a limit.
     fn within(
         &self,
         pin: &'static str,
@@ -227,8 +228,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Records a refusal and passes its error on.
-    /// Records that a block which only looks at the axis refuses the value at `pin`.
+    /// Records that a block which only reads the axis refuses the value at `pin`.
     pub fn note_refusal(
         &self,
         pin: &'static str,

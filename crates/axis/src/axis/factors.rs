@@ -1,8 +1,8 @@
-//! The override: factors on the velocities, accelerations and jerks of what an axis is told to do.
+//! The override: factors on the velocities, accelerations and jerks of commands.
 //!
-//! A command keeps what the program asked for beside what the override makes of it, so that factors never add up.
-//! With 0 for the velocity the owner comes to rest and stays the owner: the state does not change, nothing
-//! completes and nothing is handed over until the factor is raised.
+//! A command keeps the values of the program beside the scaled values, so factors never multiply twice.
+//! With velocity factor 0 the owner comes to rest and stays the owner: the state does not change, nothing
+//! completes, and nothing takes over until the factor is raised.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_SetOverride; S5, S6, B17, T39d, V16.
 
@@ -14,9 +14,9 @@ use standstill_planner::{Limits, Planner};
 /// Factors of an override. The axis starts with 1 for each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Factors {
-    /// Of velocities, from 0 on.
+    /// Factor of velocities, at least 0.
     pub velocity: f64,
-    /// Of accelerations and decelerations, above 0.
+    /// Factor of accelerations and decelerations, above 0.
     pub acceleration: f64,
     /// Of jerks, above 0.
     pub jerk: f64,
@@ -30,18 +30,18 @@ impl Factors {
         jerk: 1.0,
     };
 
-    /// As bits, to tell whether anything changes.
+    /// The factors as bits, to detect a change.
     pub fn bits(&self) -> [u64; 3] {
         [self.velocity, self.acceleration, self.jerk].map(f64::to_bits)
     }
 
-    /// The velocity is held at 0.
+    /// Whether the velocity is held at 0.
     pub fn halt(&self) -> bool {
         self.velocity == 0.0
     }
 
-    /// What is left of `asked`, and never more than `axis` has. With 0 for the velocity the motion is a ramp to
-    /// rest, which needs no other velocity than what was asked for.
+    /// The limits `asked`, scaled, and at most those of `axis`. With velocity factor 0 the motion is a
+    /// ramp to rest, which needs no other velocity than the one asked for.
     pub(super) fn of(&self, asked: &Limits, axis: &Limits) -> Limits {
         Limits {
             velocity: scaled(
@@ -75,14 +75,16 @@ impl<P: Planner> Axis<P> {
         self.factors
     }
 
-    /// MC_SetOverride: `factors` hold from now on, for the motion in progress, for what waits and for what comes.
-    /// In every state, and without changing it. Ramps to rest (MC_Halt, MC_Stop, power, errors) are as commanded.
+    /// MC_SetOverride: `factors` apply from now on, to the motion in progress, to waiting commands and to
+    /// new ones. Works in every state and does not change it. Ramps to rest (MC_Halt, MC_Stop, power,
+    /// errors) are not scaled.
     ///
-    /// Cost: a comparison if nothing changes; else the owner is planned anew, and what is superimposed.
+    /// Cost: a comparison if nothing changes; otherwise the owner and a superimposed motion are planned
+    /// anew.
     ///
     /// # Errors
-    /// The [`ErrorId`] the block shows: a factor out of range, or a motion that could not be planned anew.
-    /// Nothing changes then.
+    /// The [`ErrorId`] the block shows: a factor out of range, or a motion that could not be planned
+    /// anew. Nothing changes then.
     #[inline]
     pub fn set_override(&mut self, factors: Factors, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         if factors == self.factors {
@@ -118,13 +120,13 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
-    /// What the override makes of `entry`, and what slaves leave of that.
+    /// Scales `entry` by the override, then lowers it to the limits that slaves leave.
     pub(super) fn override_entry(&self, entry: &mut Entry) {
         self.scale_entry(entry);
         self.bound_entry(entry);
     }
 
-    /// What the override makes of `entry`, slaves aside.
+    /// Scales `entry` by the override, without regard to slaves.
     pub(super) fn scale_entry(&self, entry: &mut Entry) {
         if !entry.work.manner().overridden {
             if Self::has_bound(&entry.work) {
@@ -134,7 +136,7 @@ impl<P: Planner> Axis<P> {
         }
         let (factors, axis) = (&self.factors, &self.parameters.limits);
         entry.limits = factors.of(&entry.asked.limits, axis);
-        // Halted, it is the goal that waits, not one of 0.
+        // Halted by the override: the goal waits; it does not become 0.
         let factor = if factors.halt() { 1.0 } else { factors.velocity };
         let velocity = scaled(entry.asked.velocity, factor, axis.velocity);
         entry.work = entry.work.with_velocity(velocity);

@@ -1,27 +1,28 @@
-//! Actual positions as they were latched, and which of them can be compared.
+//! Latched actual positions, and which of them can be compared.
 
 use standstill_planner::turns::split;
 
-/// The actual position of this scan and of the two before, and what keeps them from being comparable with the next one.
+/// The actual position of this scan and of the two before, and the reasons why they may not be comparable
+/// with the next one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Feedback {
     /// As last latched (u).
     position: f64,
-    /// Of the scan before (u).
+    /// The actual position of the last scan (u).
     before: f64,
-    /// Of the scan before that (u).
+    /// The actual position of the scan before the last (u).
     earlier: f64,
     seam: Option<Seam>,
 }
 
-/// Between the last latched position and the next one.
+/// A change between the last latched position and the next one.
 #[derive(Clone, Copy, Debug, Default)]
 struct Seam {
     /// Nothing was latched yet.
     first: bool,
     /// Scans without a fresh position.
     lost: u32,
-    /// Until now so called (u), from now on so (u).
+    /// The old name (u) of a position, and the new one (u).
     renamed: Option<(f64, f64)>,
 }
 
@@ -55,7 +56,7 @@ impl Feedback {
         self.before - self.earlier
     }
 
-    /// What it holds is comparable with the next position.
+    /// Whether its positions can be compared with the next one.
     pub fn is_whole(&self) -> bool {
         self.seam.is_none()
     }
@@ -68,7 +69,7 @@ impl Feedback {
         self.position = position;
     }
 
-    /// The same where what came before may need names that fit; `length` (u) is that of a turn.
+    /// The same if the earlier positions may need new names; `length` (u) is that of a turn.
     pub fn latch_and_mend(&mut self, position: f64, length: Option<f64>) {
         self.latch(position);
         if self.seam.is_some() {
@@ -85,24 +86,26 @@ impl Feedback {
         seam.lost = seam.lost.saturating_add(1);
     }
 
-    /// From the next position on, what is called `old` (u) is called `name` (u); no motion.
+    /// Renames positions: from the next one on, `old` (u) is called `name` (u). No motion.
     pub fn rename(&mut self, old: f64, name: f64) {
         self.seam.get_or_insert_default().renamed = Some((old, name));
     }
 
-    /// Every position so far is called `by` (u) more; no motion.
+    /// Renames all positions so far: each is `by` (u) more. No motion.
     pub fn shift(&mut self, by: f64) {
         self.position += by;
         self.before += by;
         self.earlier += by;
     }
 
-    /// The present position is called this (u): what a shift by its rounded difference made of it, or a turn less.
+    /// Gives the present position exactly this name (u), after a shift by a rounded difference, or a turn
+    /// less.
     pub fn call(&mut self, position: f64) {
         self.position = position;
     }
 
-    /// Names what came before as it lies nearest to what came after it, on an axis with turns of `length` (u).
+    /// Renames the earlier positions so that they are nearest to the later ones, on an axis with turns of
+    /// `length` (u).
     #[inline]
     pub fn come_round(&mut self, length: f64) {
         let half = length / 2.0;
@@ -113,7 +116,7 @@ impl Feedback {
         }
     }
 
-    /// Makes what came before the seam comparable with `actual` (u).
+    /// Makes the positions before the change comparable with `actual` (u).
     #[cold]
     #[inline(never)]
     fn mend(&mut self, actual: f64) {
@@ -123,7 +126,8 @@ impl Feedback {
             (self.before, self.earlier) = (actual, actual);
         }
         if let Some((old, name)) = seam.renamed {
-            // What stood at the old name takes the new one exactly, without rounding a shift.
+            // A position equal to the old name gets the new name exactly, without the rounding of a
+            // shift.
             let shifted = |place: f64| {
                 if place == old { name } else { place + (name - old) }
             };
@@ -137,7 +141,7 @@ impl Feedback {
     }
 }
 
-/// `place` (u) as many turns of `length` (u) away as bring it nearest to `to`.
+/// `place` (u), moved by whole turns of `length` (u) so that it is nearest to `to`.
 #[cold]
 pub(super) fn nearest(place: f64, to: f64, length: f64) -> f64 {
     if (place - to).abs() < length / 2.0 {

@@ -1,7 +1,7 @@
 //! The last line of defence: no set-point of a plan is further from the last one than the limits allow in one scan.
 //!
-//! Plans are verified when they are made, and judged by tests from outside. What still goes wrong is not published:
-//! the axis stops from the last good state (ErrorID 904).
+//! Plans are verified when they are made, and judged by tests from outside. A set-point that is wrong all
+//! the same is not published: the axis stops from the last good state (ErrorID 904).
 
 use super::commands::ROUNDING;
 use super::{Axis, Motion};
@@ -16,13 +16,14 @@ const RESOLVED: f64 = 8.0 * f64::EPSILON;
 impl<P: Planner> Axis<P> {
     /// Whether `next` may follow the set-point last published.
     ///
-    /// Cost: three comparisons for a set-point within the limits in force; one that is not is held against those it
-    /// took over from, too, those of the axis, and what is recorded as unavoidable.
+    /// Cost: three comparisons for a set-point within the limits in force. Any other is checked against
+    /// three more sets of limits: those the plan took over from, those of the axis, and the recorded
+    /// unavoidable excess.
     pub(super) fn is_step(&self, next: &Setpoint) -> bool {
         self.is_usual_step(next) || self.is_wider_step(next)
     }
 
-    /// The same within the limits in force, which all but a few set-points are.
+    /// The same within the limits in force, which is enough for nearly all set-points.
     #[inline(always)]
     pub(super) fn is_usual_step(&self, next: &Setpoint) -> bool {
         self.steps_within(next, &self.in_force, 1.0 + ROUNDING, 0.0)
@@ -41,7 +42,7 @@ impl<P: Planner> Axis<P> {
             &self.config.limits,
             &self.stop_limits(),
         ];
-        // What one of them does not limit may step.
+        // A derivative without a limit may step.
         let most = |bound: fn(&Limits) -> f64| wider.iter().map(|limits| bound(limits)).fold(0.0, f64::max);
         let widest = Limits {
             velocity: most(|limits| limits.velocity) + excess(|told| told.velocity),
@@ -55,8 +56,9 @@ impl<P: Planner> Axis<P> {
         self.steps_within(next, &widest, 1.0 + slack, self.coarsest)
     }
 
-    /// Whether position, velocity and acceleration change by no more than `limits` times `factor` allow in a scan, and what
-    /// rounding takes, also at a position of magnitude `coarsest` (u) the plan was at.
+    /// Whether position, velocity and acceleration change in a scan by no more than `limits` times
+    /// `factor`, and the rounding. The rounding includes that of a position of magnitude `coarsest` (u)
+    /// at which the plan was.
     #[inline(always)]
     pub(super) fn steps_within(&self, next: &Setpoint, limits: &Limits, factor: f64, coarsest: f64) -> bool {
         let last = &self.setpoint;

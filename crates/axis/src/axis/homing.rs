@@ -1,12 +1,14 @@
 //! Homing: the search for the reference, by the controller or by the drive.
 //!
-//! A search is a row of endless motions, each planned anew at the latch of the scan that shows what it was looking
-//! for. The reference of a switch is one of its two ends, whichever way the axis passes it; with a creep velocity
-//! it is passed a second time, slowly and always in the same direction. Then the axis comes to rest, and the place
-//! of the reference gets its name: the axis stands as far from it as it ran on. Software limits and the override do
-//! not hold; a barred direction, a time or way too long and a limit switch in the way are axis errors.
+//! A search is a series of endless motions. Each is planned anew at the latch of the scan that shows what
+//! it searched for. The reference of a switch is one of its two ends, whichever way the axis passes it.
+//! With a creep velocity it is passed a second time, slowly and always in the same direction. Then the
+//! axis comes to rest, at some distance behind the reference, and the place of the reference gets its
+//! name. Software limits and the override do not apply. Axis errors are: a barred direction, a time or
+//! way that is too long, and a limit switch in the way.
 //!
-//! A drive that homes by itself leads, and the set-point follows it, until it is back at the command.
+//! A drive that homes by itself leads, and the set-point follows it until the drive obeys the command
+//! again.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_Home; Part 5, homing procedures; V11; CiA 402, homing mode.
 
@@ -18,10 +20,10 @@ use super::{Axis, Motion};
 use crate::{AxisState, ErrorId, HomeDirection, Procedure, Scope};
 use standstill_planner::{Planner, Setpoint};
 
-/// What a homing is doing.
+/// The step of a homing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Phase {
-    /// There is none, or it has nothing to look for.
+    /// No homing, or one that searches nothing.
     #[default]
     Idle,
     /// Towards the edge of the switch with the velocity of the search.
@@ -34,13 +36,13 @@ enum Phase {
     Pulse,
     /// Towards a mechanical stop.
     Block,
-    /// The reference is known; to rest.
+    /// The reference is known; comes to rest.
     Found,
     /// The drive homes by itself.
     Drive,
-    /// The same, and has named its positions anew.
+    /// The same; the drive has named its positions anew.
     Named,
-    /// The drive has homed, and is to follow the command again.
+    /// The drive has homed, and must return to the command.
     Return,
 }
 
@@ -50,15 +52,15 @@ pub(super) struct Search {
     phase: Phase,
     /// Towards larger positions.
     up: bool,
-    /// It has turned round at a limit switch.
+    /// It has reversed at a limit switch.
     turned: bool,
-    /// The switch, as last seen.
+    /// The level of the switch in the last scan.
     was_on: bool,
     /// Scans since the start.
     scans: u64,
-    /// Scans in a row at less than the velocity of a stop.
+    /// Scans in a row with less than the velocity of a stop.
     still: u32,
-    /// Way since the start (u), and where the reference is (u).
+    /// Way since the start (u), and the place of the reference (u).
     way: f64,
     reference: f64,
 }
@@ -81,14 +83,14 @@ impl Search {
         ]
     }
 
-    /// Coordinates moved by so much (u).
+    /// Coordinates moved by this distance (u).
     pub fn shift(&mut self, by: f64) {
         self.reference += by;
     }
 }
 
 impl<P: Planner> Axis<P> {
-    /// Refuses a homing for which the drive lacks a signal. Nothing has moved yet.
+    /// Refuses a homing if the drive lacks a signal for it. Nothing has moved yet.
     pub(super) fn has_signals_to_home(&self) -> Result<(), ErrorId> {
         let (homing, has) = (&self.config.homing, &self.beside.report.equipment);
         let has_it = match homing.procedure {
@@ -105,7 +107,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// How a homing begins from here.
+    /// The first step of a homing from here.
     fn first_search(&self) -> Search {
         let homing = &self.config.homing;
         let was_on = self.home_signal(homing.direction.is_up());
@@ -114,19 +116,19 @@ impl<P: Planner> Axis<P> {
             Procedure::Drive => (Phase::Drive, true),
             Procedure::ReferencePulse => (Phase::Pulse, homing.direction.is_up()),
             Procedure::Block => (Phase::Block, homing.direction.is_up()),
-            // On the switch it only has to leave it.
+            // On the switch, the axis only has to leave it.
             Procedure::LimitSwitch if was_on => (Phase::Creep, !homing.direction.is_up()),
             Procedure::LimitSwitch => (Phase::Search, homing.direction.is_up()),
             Procedure::AbsoluteSwitch => {
                 let up = match homing.direction {
-                    // On the switch its end lies on the side the axis came from.
+                    // On the switch, the end is on the side the axis came from.
                     HomeDirection::Positive | HomeDirection::Negative if was_on => !homing.is_lower_end(),
                     HomeDirection::Positive => true,
                     HomeDirection::Negative => false,
                     HomeDirection::SwitchPositive => !was_on,
                     HomeDirection::SwitchNegative => was_on,
                 };
-                // There is nothing to be found behind a limit switch.
+                // Behind a limit switch there is nothing to search.
                 (Phase::Search, up != self.is_on_limit_switch(up))
             }
         };
@@ -139,7 +141,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The velocity (u/s) of a phase; `None` if it has none of its own.
+    /// The velocity (u/s) of a step; `None` if it has none of its own.
     fn velocity_of(&self, search: &Search) -> Option<f64> {
         let homing = &self.config.homing;
         let speed = match search.phase {
@@ -147,7 +149,7 @@ impl<P: Planner> Axis<P> {
             Phase::Creep | Phase::Pulse => homing.creep.unwrap_or(homing.velocity),
             Phase::Idle | Phase::Found | Phase::Drive | Phase::Named | Phase::Return => return None,
         };
-        // The application may have lowered the limit since, or a slave.
+        // The application, or a slave, may have lowered the limit since.
         let speed = speed.min(self.slowed(&self.parameters.limits).velocity);
         Some(if search.up { speed } else { -speed })
     }
@@ -169,10 +171,10 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Why a homing may not go where it wants to.
+    /// The reason why a homing may not go in its direction.
     fn homing_barred(&self, search: &Search) -> Option<ErrorId> {
         let permitted = self.power.permitted();
-        // Where a switch makes it turn round it needs no permission of the switch.
+        // Where a switch makes it reverse, it needs no permission from the switch.
         let turns = matches!(
             self.config.homing.procedure,
             Procedure::AbsoluteSwitch | Procedure::LimitSwitch
@@ -189,7 +191,7 @@ impl<P: Planner> Axis<P> {
         self.stir();
     }
 
-    /// MC_Home owns the axis no longer.
+    /// MC_Home no longer owns the axis.
     pub(super) fn end_homing(&mut self) {
         self.homing = Search::default();
         self.beside.order.homing = false;
@@ -197,7 +199,7 @@ impl<P: Planner> Axis<P> {
         self.stir();
     }
 
-    /// Whether a homing, or what is left of one, wants to see every scan's feedback.
+    /// Whether a homing, or the rest of one, needs the feedback of every scan.
     pub(super) fn is_homing(&self) -> bool {
         !self.homing.is_idle() || self.moves_itself() || self.is_to_return()
     }
@@ -208,7 +210,7 @@ impl<P: Planner> Axis<P> {
         self.state == AxisState::Homing && (search.phase == Phase::Search || search.up != up)
     }
 
-    /// The switch that is looked for; `up`: the last approach goes towards larger positions.
+    /// The switch to search for; `up`: the last approach goes towards larger positions.
     fn home_signal(&self, up: bool) -> bool {
         match self.config.homing.procedure {
             Procedure::AbsoluteSwitch => self.beside.signals.home_switch,
@@ -217,7 +219,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// After the latch: looks at what has changed, and goes on accordingly.
+    /// After the latch: checks what has changed, and continues with the next step.
     #[cold]
     #[inline(never)]
     pub(super) fn follow_homing(&mut self, scope: &mut Scope<'_>) {
@@ -234,7 +236,7 @@ impl<P: Planner> Axis<P> {
         }
         let is_up = if step == 0.0 { search.up } else { step > 0.0 };
         let on = self.home_signal(homing.direction.is_up());
-        // The end of the switch that was passed: upwards the lower one puts it on.
+        // The end of the switch that was passed. Upwards, the lower end switches it on.
         let passed = (on != search.was_on).then_some(on == is_up);
         search.was_on = on;
         self.homing = search;
@@ -269,7 +271,7 @@ impl<P: Planner> Axis<P> {
         self.mind_permission(scope);
     }
 
-    /// Where it now goes must be permitted.
+    /// Checks that its new direction is permitted.
     fn mind_permission(&mut self, scope: &mut Scope<'_>) {
         let search = self.homing;
         let searches = self.state == AxisState::Homing && self.velocity_of(&search).is_some();
@@ -298,7 +300,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The edge that counts has been passed.
+    /// The final edge has been passed.
     fn switch_found(&mut self, scope: &mut Scope<'_>) {
         if self.config.homing.pulse {
             self.go_on(Phase::Pulse, self.homing.up, scope);
@@ -308,7 +310,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A limit switch stands in the way of the search.
+    /// A limit switch stops the search; it reverses.
     fn turn_round(&mut self, search: Search, scope: &mut Scope<'_>) {
         if search.turned {
             return self.trip(ErrorId::HomingSwitchNotFound, 0, Reaction::Ramp, scope);
@@ -317,11 +319,11 @@ impl<P: Planner> Axis<P> {
         self.go_on(Phase::Search, !search.up, scope);
     }
 
-    /// The pulse has been latched, or the latch has yet to be armed.
+    /// The pulse has been latched, or the latch is not armed yet.
     fn look_for_pulse(&mut self, search: Search, scope: &mut Scope<'_>) {
         let told = self.beside.report.marker;
         if !self.beside.order.marker {
-            // What it latched for someone else has to go first.
+            // A position latched for another request must be cleared first.
             self.beside.order.marker = !told.armed;
         } else if let Some(latched) = told.latched.filter(|_| told.armed) {
             self.beside.order.marker = false;
@@ -330,7 +332,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the axis stands at a mechanical stop; then the set-point comes back to it.
+    /// Whether the axis stands at a mechanical stop; the set-point then returns to it.
     fn look_for_stop(&mut self, mut search: Search, step: f64, scope: &mut Scope<'_>) {
         let Some(block) = self.config.homing.block else {
             return;
@@ -364,7 +366,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The search goes on within the limits that its owner has now.
+    /// Continues the search within the limits that its owner has now.
     pub(super) fn search_on(&mut self, scope: &mut Scope<'_>) {
         if self.velocity_of(&self.homing).is_some() {
             self.go_on(self.homing.phase, self.homing.up, scope);
@@ -390,7 +392,8 @@ impl<P: Planner> Axis<P> {
     #[cold]
     pub(super) fn settle_homing(&mut self, position: f64, scope: &mut Scope<'_>) {
         if self.homing.phase == Phase::Found && matches!(self.motion, Motion::Run { .. }) {
-            // A drive is told the new name of the set-point it has, so the last one of the ramp goes to it first.
+            // A drive takes the new name for the set-point it has, so it must get the last set-point of
+            // the ramp first.
             self.motion = Motion::Hold;
             return;
         }

@@ -1,25 +1,27 @@
-//! Take-overs that keep the axis inside its limits.
+//! Keeping the axis inside its limits when a command takes over.
 //!
-//! A command may ask for less jerk or snap than the motion it takes over from. From a state that only that motion's
-//! own limits can bring back, its velocity would leave those of the axis. What can be avoided with the limits that
-//! held until now, or with those of the axis, is not unavoidable: the command then gets them, as far as necessary.
+//! A command may ask for less jerk or snap than the motion it takes over from. From some states only the
+//! earlier motion's own limits can brake in time; with the command's limits the velocity would exceed
+//! that of the axis. An excess that the earlier limits or the axis limits can avoid is not unavoidable,
+//! so the command gets those limits, as far as needed.
 
 use super::commands::{Entry, ROUNDING};
 use super::{Axis, Motion};
 use crate::{ErrorId, Event, Scope};
 use standstill_planner::{Excess, Limits, Plan, PlanError, Planner, Setpoint};
 
-/// A higher limit must take at least this much off what is exceeded.
+/// The excess must become smaller by at least this factor to justify a higher limit.
 const WORTH: f64 = 0.99;
 
 impl<P: Planner> Axis<P> {
-    /// What `plan` exceeds of the axis limits. A faster motion that a slower command takes over from is no excess.
+    /// The excess of `plan` over the axis limits. It is no excess if a slower command takes over from a
+    /// faster motion.
     pub(super) fn beyond_axis(&self, plan: &P::Plan) -> Option<Excess> {
         plan.excess()?;
         plan.excess_over(&self.hardest_limits())
     }
 
-    /// The same, and of what slaves leave of the axis limits.
+    /// The same, and over the limits that slaves leave.
     pub(super) fn beyond_bound(&self, plan: &P::Plan) -> Option<Excess> {
         plan.excess()?;
         plan.excess_over(&self.slowed(&self.hardest_limits()))
@@ -37,11 +39,11 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// `motion`, which is planned for `entry`, or one with higher limits that exceeds those of the axis by less; `entry`
-    /// then has them. Cost: at most two plans, for a motion that exceeds.
+    /// `motion`, which is planned for `entry`, or a motion with higher limits that exceeds those of the
+    /// axis by less; `entry` then gets these limits. Cost: at most two plans, for a motion that exceeds.
     ///
     /// # Errors
-    /// With the higher limits it would move in a direction that is barred: what exceeds is no way round that.
+    /// With the higher limits it would move in a barred direction, so the excess stays.
     pub(super) fn kept_inside(
         &self,
         entry: &mut Entry,
@@ -92,7 +94,8 @@ impl<P: Planner> Axis<P> {
         Ok(kept)
     }
 
-    /// Where what slaves leave of the limits would take the axis out of its own, it has its own: the slaves lag.
+    /// If the limits that slaves leave would take the axis out of its own, it uses its own: the slaves
+    /// lag.
     fn planned_free(
         &self,
         entry: &mut Entry,
@@ -101,7 +104,7 @@ impl<P: Planner> Axis<P> {
         before: &Limits,
     ) -> Motion<P::Plan> {
         let axis = &self.config.limits;
-        // A stop that turns back exceeds, too, but leaves no limit of the axis.
+        // A stop that turns back exceeds as well, but no limit of the axis.
         let leaves = |motion: &Motion<P::Plan>| match motion {
             Motion::Run { plan, .. }
                 if plan.excess_over(axis).is_some_and(|excess| excess.velocity > 0.0) =>
@@ -128,14 +131,15 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The same for a ramp to rest nobody commanded, on an axis that has limits of `axis`.
+    /// The same for a ramp to rest that no command asked for, on an axis with limits `axis`.
     pub(super) fn stopped_inside(&self, plan: P::Plan, limits: &mut Limits, axis: &Limits) -> P::Plan {
         self.least_beyond(plan, limits, axis, |higher| {
             self.planner.ramp_to(&self.setpoint, 0.0, higher, &self.in_force)
         })
     }
 
-    /// A move of the axis to `target`, and the limits it has: these, or higher ones where they do not keep the axis inside its own.
+    /// A move of the axis to `target`, and its limits: these, or higher ones if they cannot keep the axis
+    /// inside its own.
     ///
     /// # Errors
     /// Those of [`Planner::move_to`].
@@ -154,7 +158,7 @@ impl<P: Planner> Axis<P> {
         Ok((plan, limits))
     }
 
-    /// `plan`, or what is planned `again` with higher limits where that keeps those of `axis` better.
+    /// `plan`, or a plan made `again` with higher limits if it keeps those of `axis` better.
     fn least_beyond(
         &self,
         plan: P::Plan,
@@ -183,7 +187,7 @@ impl<P: Planner> Axis<P> {
         kept
     }
 
-    /// Jerk and snap as they were before, then those of the `axis` with its accelerations, too.
+    /// Jerk and snap of the motion before, then those of the `axis` together with its accelerations.
     pub(super) fn higher(&self, limits: &Limits, before: &Limits, axis: &Limits) -> [Limits; 2] {
         [
             Limits {

@@ -1,9 +1,9 @@
-//! What MC_Jog asks for: an endless motion while a button is held, or one step.
+//! The motions of MC_Jog: an endless motion while a button is held, or one step.
 //!
-//! MC_Jog is not in the standard. It has no motion of its own: an endless jog is that of MC_MoveVelocity, a step
-//! that of MC_MoveRelative, a release that of MC_Halt. With `jog_at_limit` `stop` an endless jog towards a
-//! software limit is that of MC_MoveContinuousAbsolute to it with an end velocity of 0: it stays there, in control, until the
-//! release. A step that leads further ends there.
+//! MC_Jog is not in the standard. It uses existing motions: an endless jog is that of MC_MoveVelocity, a
+//! step that of MC_MoveRelative, a release that of MC_Halt. With `jog_at_limit` `stop`, an endless jog
+//! towards a software limit is that of MC_MoveContinuousAbsolute to the limit with end velocity 0. It
+//! stays there, in control, until the release. A step that would go beyond the limit ends there.
 
 use super::Axis;
 use super::commands::{Place, Work};
@@ -41,7 +41,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The software limit (u) a jog is to stop at, if it leads there and not away from it.
+    /// The software limit (u) where a jog must stop, if the jog goes towards it.
     fn jog_ends_at(&self, forward: bool, distance: f64) -> Option<f64> {
         if self.config.jog_at_limit == JogAtLimit::Error {
             return None;

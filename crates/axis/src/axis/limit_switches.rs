@@ -1,9 +1,9 @@
 //! Hardware limit switches: an axis that moves onto one stops, and one that stands on one may only move back.
 //!
-//! Moving towards a limit switch that is active is an axis error: ErrorStop, with the stop dynamics. The axis then
-//! stands behind the edge of the switch, which has to stay active up to the end of the travel. A motion that would
-//! lead further out is refused when its turn comes, as one that MC_Power bars. Homing uses the switches without
-//! error where it looks for them or turns round at them.
+//! A motion towards an active limit switch is an axis error: ErrorStop, with the stop dynamics. The axis
+//! then stands behind the edge of the switch, which has to stay active up to the end of the travel. A
+//! motion that would go further out is refused when it becomes active, like one that MC_Power bars.
+//! Homing uses the switches without error where it searches for them or reverses at them.
 
 use super::power::Reaction;
 use super::{Axis, Permission};
@@ -11,7 +11,8 @@ use crate::{DriveSignals, ErrorId, Scope};
 use standstill_planner::Planner;
 
 impl<P: Planner> Axis<P> {
-    /// Takes over this scan's signals. A drive that counts the other way has its positive end at the lower one.
+    /// Takes this scan's signals. If the drive counts the other way, its positive switch is at the lower
+    /// end.
     pub(super) fn latch_signals(&mut self, told: DriveSignals) {
         self.beside.signals = told;
         if self.config.scaling.is_some_and(|scaling| scaling.invert()) {
@@ -40,7 +41,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The directions that neither MC_Power bars nor a limit switch.
+    /// The directions that neither MC_Power nor a limit switch bars.
     pub(super) fn permission(&self) -> Permission {
         let free = |up: bool| !(self.config.hardware_limits && self.is_on_limit_switch(up));
         let permitted = self.power.permitted();
@@ -50,7 +51,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Why a motion that leads so far up or down is barred, if it is.
+    /// The reason why a motion that goes up or down is barred, if it is.
     pub(super) fn bars(&self, up: bool, down: bool) -> Option<ErrorId> {
         let by_power = self.power.permitted().bars(up, down);
         by_power.or_else(|| {

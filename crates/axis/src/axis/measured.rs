@@ -1,16 +1,18 @@
 //! Actual positions as a master: filtered, and a motion with a velocity, an acceleration, a jerk and a snap.
 //!
-//! One increment more or less in a scan is thousands of times the snap of a machine. So slaves see the feedback through four
-//! moving averages in a row, each over the time `actual_filter`, of the position as it stays from latch to latch. What four
-//! averages make of steps is a motion in pieces of constant snap, a scan long each, so its derivatives are exact and not
-//! estimated. With L scans to an average, a scan of T and noise of at most q either way its snap is at most 16 q / (L T)^4, its
-//! jerk 8 q / (L T)^3, its acceleration 4 q / (L T)^2, its velocity 2 q / (L T) off those of the undisturbed motion.
+//! A change of one increment in a scan is thousands of times the snap of a machine. So slaves see the
+//! feedback through four moving averages in a row, each over the time `actual_filter`. The input is the
+//! position held from latch to latch. Four averages of a step make a motion in pieces of constant snap,
+//! each one scan long, so its derivatives are exact and not estimated. With L scans per average, a scan
+//! of T, and noise of at most q either way, the errors against the undisturbed motion are: snap at most
+//! 16 q / (L T)^4, jerk 8 q / (L T)^3, acceleration 4 q / (L T)^2, velocity 2 q / (L T).
 //!
-//! Everything is summed up in integers: the averages at the ends of scans, times L^4, are running sums of running sums of
-//! increments, and what an average takes within a scan is a sum with the weights 1, 11, 11, 1 over 24. So nothing drifts, and
-//! what stands is shown to the bit as it was told.
+//! All sums are integers. The averages at the ends of scans, times L^4, are running sums of running sums
+//! of increments. The part within a scan is a sum with the weights 1, 11, 11, 1 over 24. So nothing
+//! drifts, and at rest the reported position is exact to the bit.
 //!
-//! Drives that speak units have no increments. With the filter off the weights above remain, of floating-point numbers.
+//! Drives that use units have no increments. With the filter off, the weights above remain, on
+//! floating-point numbers.
 
 use super::Axis;
 use super::coupling::Seen;
@@ -24,13 +26,13 @@ const AVERAGES: usize = 4;
 /// Steps kept.
 const RING: usize = AVERAGES * ACTUAL_FILTER_MAX as usize;
 
-/// Steps of the output that its derivatives in this scan and in the one before are made of.
+/// Steps of the output from which its derivatives in this scan and in the last one are computed.
 const OUTPUTS: usize = 6;
 
-/// The feedback stands still when it has been within this span (increments)..
+/// The feedback stands still if it has been within this span (increments) ..
 const BAND: u64 = 2;
 
-/// .. for so many scans at least.
+/// .. for at least this many scans.
 const REST: u32 = 64;
 
 /// The actual positions of an axis as its slaves see them.
@@ -42,31 +44,32 @@ pub(super) struct Measured {
 
 /// A place and its derivatives, per scan.
 struct State {
-    /// How far (increments, or u) the place is ahead of `from`.
+    /// Distance (increments, or u) of the place ahead of `from`.
     ahead: f64,
     /// Velocity, acceleration, jerk and snap.
     rates: [f64; 4],
 }
 
-/// A place of the averages: whole increments, and what is ahead of them.
+/// A place of the averages: whole increments, and the rest ahead of them.
 type AtIncrement = (i64, State);
 
-/// Of a drive that counts increments.
+/// The filter for a drive that counts increments.
 #[derive(Clone, Debug)]
 struct Counted {
-    /// Scans to an average; 1 with the filter off.
+    /// Scans per average; 1 with the filter off.
     length: u32,
     /// The steps of the last four times `length` scans (increments), in a ring.
     steps: [i32; RING],
-    /// Where the oldest of them is.
+    /// Index of the oldest of them.
     oldest: usize,
-    /// Sums over one, two, three and four averages of the steps: the last is the step of the output.
+    /// Sums over one, two, three and four averages of the steps; the last is the step of the output.
     sums: [i64; AVERAGES],
     /// The last steps of the output, the newest first (increments / `length`^4).
     out: [i64; OUTPUTS],
     /// The output (increments / `length`^4).
     place: i128,
-    /// As told last, and what of it went into the averages; none before the first scan.
+    /// The last reported position, and the part of it that went into the averages; none before the first
+    /// scan.
     last: Option<(i64, i64)>,
     /// The same in the scan before.
     before: Option<(i64, i64)>,
@@ -75,21 +78,21 @@ struct Counted {
     band: Band,
 }
 
-/// Whether the feedback stands still but for an increment either way.
+/// A dead band: whether the feedback stands still except for one increment either way.
 #[derive(Clone, Copy, Debug, Default)]
 struct Band {
     lowest: i64,
     highest: i64,
-    /// Scans that it has been between these, since they last grew.
+    /// Scans within these bounds, since they last grew.
     scans: u32,
-    /// As told last, and for how many scans.
+    /// The last reported position, and for how many scans.
     last: i64,
     same: u32,
     /// The place where it stands.
     held: Option<i64>,
 }
 
-/// Of a drive that speaks units.
+/// The filter for a drive that uses units.
 #[derive(Clone, Debug)]
 struct Told {
     /// Turns and position (u) as latched, the newest first.
@@ -98,7 +101,8 @@ struct Told {
 }
 
 impl Band {
-    /// What of `told` is a motion: it, or the place where it stands once it has done so for `rest` scans.
+    /// The part of `told` that is motion: `told` itself, or the place where it stands once it has stood
+    /// for `rest` scans.
     fn pass(&mut self, told: i64, rest: u32) -> i64 {
         if let Some(held) = self.held
             && held.abs_diff(told) <= BAND / 2
@@ -161,7 +165,7 @@ impl Counted {
         length * length * length * length
     }
 
-    /// It stands at `told`, and always did.
+    /// Starts at `told`, as if it had always been there.
     #[cold]
     fn start(&mut self, told: i64) {
         *self = Self {
@@ -172,14 +176,14 @@ impl Counted {
         };
     }
 
-    /// The next scan's increments.
+    /// Takes the increments of the next scan.
     fn take(&mut self, told: i64) {
         let Some((_, fed)) = self.last else {
             return self.start(told);
         };
         let rest = REST.max(4 * self.length);
         let next = self.band.pass(told, rest);
-        // No axis goes 2^31 increments in a scan: such a jump is no motion.
+        // No axis moves 2^31 increments in a scan: such a jump is no motion.
         let step = next.checked_sub(fed).and_then(|step| i32::try_from(step).ok());
         let Some(step) = step else {
             return self.start(told);
@@ -189,7 +193,7 @@ impl Counted {
         self.push(step);
     }
 
-    /// A scan without a position: it stays where it was.
+    /// A scan without a position: the place does not change.
     fn wait(&mut self) {
         if self.last.is_some() {
             self.before = self.last;
@@ -212,8 +216,8 @@ impl Counted {
             let index = self.in_ring(self.oldest + (AVERAGES - averages) * length);
             self.steps.get(index).copied().map_or(0, i64::from)
         };
-        // An average is a sum of what comes in less what came in `length` scans ago: here the latter, four times over. Sums of
-        // steps below 2^31 in 4 * 64 scans stay below 2^55.
+        // An average is the sum of the input less the input of `length` scans ago; here the latter, four
+        // times. Sums of steps below 2^31 in 4 * 64 scans stay below 2^55.
         let mut sum = i64::from(step) - 4 * at(1) + 6 * at(2) - 4 * at(3) + at(4);
         if let Some(oldest) = self.steps.get_mut(self.oldest) {
             *oldest = step;
@@ -233,19 +237,19 @@ impl Counted {
         index.checked_rem(AVERAGES * self.length as usize).unwrap_or(0)
     }
 
-    /// The axis has not moved for as long as anything is remembered of its motion.
+    /// Whether the axis has not moved for as long as the filter remembers.
     fn is_still(&self) -> bool {
         self.still > 4 * self.length + OUTPUTS as u32
     }
 
-    /// What was told in this scan is told in other names than before: the step was none.
+    /// The positions of this scan have new names: the last step counts as 0.
     #[cold]
     fn rename(&mut self) {
         let (Some((told, fed)), Some((old, old_fed))) = (self.last, self.before) else {
             return;
         };
         let by = told.wrapping_sub(old);
-        // What the dead band held back is made up.
+        // The step held back by the dead band is made up.
         let change = old.wrapping_sub(old_fed).wrapping_sub(fed.wrapping_sub(old_fed));
         let newest = self.in_ring(self.oldest + AVERAGES * self.length as usize - 1);
         if let Some(step) = self.steps.get_mut(newest) {
@@ -273,7 +277,8 @@ impl Counted {
             self.place
         };
         let scale = self.scale();
-        // Averages and weights delay by (4 * length - 1) / 2 scans; ahead of that by the velocity, all of it doubled.
+        // Averages and weights delay by (4 * length - 1) / 2 scans. The lead is the velocity times this;
+        // here all of it is doubled.
         let (scale, place, step) = if lead {
             let delay = 4 * i128::from(self.length) - 1;
             let step = |back| 2 * out(back) + delay * (out(back) - out(back + 1));
@@ -335,7 +340,8 @@ impl Told {
         self.places[0] = self.places[1];
     }
 
-    /// What was called `old` (u) is called `name` (u) from now on, or a turn more or less, and what else there is `by` (u) more.
+    /// Renames positions: `old` (u) is called `name` (u) from now on, or a turn more or less. All others
+    /// become `by` (u) more.
     fn rename(&mut self, old: f64, name: f64, by: f64, turn: Option<f64>) {
         let round = turn.filter(|length| (old + by - name).abs() > length / 2.0);
         let back = round.map_or(0.0, |length| length.copysign(old + by - name));
@@ -362,7 +368,7 @@ impl Told {
         self.places.iter().all(|place| *place == first)
     }
 
-    /// The latched place of this scan, or of the one `before`, and where the weighted one is from there.
+    /// The latched place of this scan, or of the one `before`, and the weighted one relative to it.
     fn state(&self, before: bool, lead: bool, length: f64) -> ((i64, f64), State) {
         let first = usize::from(before);
         let raw = |back: usize| self.step(first + back, length);
@@ -399,13 +405,13 @@ impl Measured {
         }
     }
 
-    /// There is something to follow.
+    /// Whether there is something to follow.
     #[inline]
     pub fn is_there(&self) -> bool {
         self.counted.is_some() || self.told.is_some()
     }
 
-    /// It has not moved for as long as anything is remembered of it.
+    /// Whether it has not moved for as long as the filter remembers.
     fn is_still(&self) -> bool {
         match (&self.counted, &self.told) {
             (Some(counted), _) => counted.is_still(),
@@ -414,8 +420,8 @@ impl Measured {
         }
     }
 
-    /// The position latched last is called `name` (u) from now on, and those before it `by` (u) more, but for a `turn`.
-    /// Increments never change their names.
+    /// Renames the last latched position to `name` (u), and earlier ones by `by` (u), except for a
+    /// `turn`. Increments never change their names.
     pub fn call(&mut self, name: f64, by: f64, turn: Option<f64>) {
         if let Some(told) = &mut self.told {
             let (_, last) = told.places[0];
@@ -423,14 +429,14 @@ impl Measured {
         }
     }
 
-    /// What was called `old` (u) is called `name` (u) from now on.
+    /// Renames `old` (u) to `name` (u) from now on.
     pub fn shift(&mut self, old: f64, name: f64) {
         if let Some(told) = &mut self.told {
             told.rename(old, name, name - old, None);
         }
     }
 
-    /// The drive told its increments in new names in this scan.
+    /// The drive reported its increments under new names in this scan.
     pub fn rename(&mut self) {
         if let Some(counted) = &mut self.counted {
             counted.rename();
@@ -439,14 +445,14 @@ impl Measured {
 }
 
 impl<P: Planner> Axis<P> {
-    /// Its actual values can be followed: it counts increments, or its filter is off.
+    /// Whether its actual values can be followed: it counts increments, or its filter is off.
     pub(crate) fn is_measured(&self) -> bool {
         self.measured.is_there()
     }
 
-    /// This scan's position, after it was latched; none if there is no fresh one.
+    /// Takes this scan's position, after it was latched; none if there is no fresh one.
     ///
-    /// Cost: some sums of integers in each scan, whoever follows.
+    /// Cost: some sums of integers in each scan, even if no axis follows.
     #[inline(never)]
     pub(super) fn measure_actual(&mut self, told: Option<DrivePosition>) {
         let turn = self.config.modulo;
@@ -455,7 +461,7 @@ impl<P: Planner> Axis<P> {
         if let Some(counted) = counted {
             match told {
                 Some(DrivePosition::Increments(increments)) => counted.take(increments),
-                // A drive of the host that tells units all the same.
+                // A drive of the host that reports units although its axis has a scaling.
                 Some(DrivePosition::Units(units)) => {
                     let scaling = self.config.scaling;
                     counted.take(scaling.map_or(0, |scaling| scaling.to_increments(units)));
@@ -471,7 +477,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// What slaves of its actual values see of it in this scan, or saw in the one `before`, in coordinates of now.
+    /// The actual values as slaves see them in this scan, or saw them in the one `before`, in present
+    /// coordinates.
     pub(crate) fn seen_actual(&self, scan: u64, before: bool) -> Seen {
         let lead = self.config.following.actual_lead;
         let (length, cycle) = (self.config.modulo, self.planner.cycle());
@@ -516,7 +523,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Its actual values stand still.
+    /// Whether its actual values stand still.
     pub(crate) fn is_measured_still(&self) -> bool {
         self.measured.is_still()
     }

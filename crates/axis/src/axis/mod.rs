@@ -1,6 +1,6 @@
-//! One axis: what it knows and what others may ask.
+//! One axis: its data, and what other code may ask.
 //!
-//! `Axis` decides; values and arithmetic of their own stand in parts with private fields:
+//! `Axis` decides. Values and arithmetic are in parts of their own with private fields:
 //!
 //! | part | what it holds |
 //! | --- | --- |
@@ -25,7 +25,7 @@
 //! | [`coupling`] | behind a master |
 //! | [`profile`], [`torque`], [`jog`], [`homing`] | curves through points, torques, MC_Jog, the search for the reference |
 //! | [`power`], [`permission`], [`limit_switches`], [`software_limits`], [`supervision`] | feedback, power, faults and resets; directions, switches, limits, following error |
-//! | [`coordinates`], [`reading`], [`outputs`], [`probe`] | moved coordinates, what reading blocks ask, inputs and outputs, positions at edges |
+//! | [`coordinates`], [`reading`], [`outputs`], [`probe`] | moved coordinates, values for reading blocks, inputs and outputs, positions at edges |
 
 mod accept;
 mod blend;
@@ -88,7 +88,7 @@ pub use reading::{MotionState, Pace, Way};
 use stage::Power;
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
 
-/// Where the set-point comes from.
+/// The source of the set-point.
 #[derive(Clone, Copy, Debug)]
 enum Motion<Plan> {
     /// The actual position: the axis is not in operation.
@@ -103,7 +103,7 @@ enum Motion<Plan> {
     Torque { plan: Plan, elapsed: u64, torque: f64 },
     /// Where its coupling says.
     Geared,
-    /// The same, and what a plan says beside it.
+    /// The same, plus a plan beside it.
     Closing { plan: Plan, elapsed: u64, scans: u64 },
 }
 
@@ -153,7 +153,7 @@ impl<P: Plan> Motion<P> {
     }
 }
 
-/// What goes to and comes from a drive beside its motion.
+/// The values exchanged with a drive beside its motion.
 #[derive(Clone, Copy, Debug, Default)]
 struct BesideMotion {
     /// Switches, as told last.
@@ -165,7 +165,8 @@ struct BesideMotion {
     cam_tracks: [CamTrack; DIGITAL as usize],
 }
 
-/// How little there is to look after in a scan, see [`Axis::calmness`]. `No` may be stale, the others never are.
+/// How little must be checked in a scan, see [`Axis::calmness`]. `No` may be out of date, the others
+/// never are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Calm {
     /// Something is pending, or may be.
@@ -183,34 +184,34 @@ impl Calm {
     }
 }
 
-/// What an axis will do next, see [`Axis::outlook`]; for searches over all reachable states.
+/// The future behaviour of an axis, see [`Axis::outlook`]; for searches over all reachable states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Outlook {
     /// State of the axis.
     pub state: AxisState,
     /// `None` if the set-point follows the feedback, 0 if it holds, else one more than the scans to the goal.
     pub scans_left: Option<u32>,
-    /// The owner: its number, what it does, and whether MC_Stop's Execute holds it.
+    /// The owner: its number, its work, and whether MC_Stop's Execute holds it.
     pub owner: Option<(CommandId, WorkKind, bool)>,
     /// MC_Stop has come to rest and is held.
     pub stop_held: bool,
-    /// Commands that wait, in order, with how they follow the one before.
+    /// Commands that wait, in order, with their buffer modes.
     pub waiting: [Option<(CommandId, WorkKind, BufferMode)>; QUEUE_MAX],
     /// MC_Power.Enable.
     pub power_wanted: bool,
     /// The directions MC_Power permits.
     pub permitted: Permission,
-    /// The owner waits to be permitted to go on.
+    /// The owner waits for permission to continue.
     pub paused: bool,
     /// Operation is enabled.
     pub power_on: bool,
     /// On the way to Disabled.
     pub going_off: bool,
-    /// Power was lost, or not confirmed in time, and does not come back by itself.
+    /// Power was lost, or not confirmed in time, and does not return by itself.
     pub tripped: bool,
     /// It was not confirmed in time.
     pub unconfirmed: bool,
-    /// Scans that power has been asked for, if that has a time-out.
+    /// Scans since power was asked for, if that has a time-out.
     pub power_waited: u64,
     /// The axis error.
     pub error: ErrorId,
@@ -232,28 +233,29 @@ pub struct Outlook {
     pub parameters: [u64; 16],
     /// Scans in a row the axis has been inside the in-position window, at the end of a move.
     pub inside_for: u32,
-    /// The owner's motion is not the one to its goal: the override halts it, MC_Power bars it, or it has yet to be planned anew.
+    /// The owner's motion does not lead to its goal: the override halts it, MC_Power bars it, or it has
+    /// to be planned anew.
     pub held_up: bool,
 }
 
-/// What a superimposed motion will do next, part of [`Outlook`].
+/// The future behaviour of a superimposed motion, part of [`Outlook`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Beside {
-    /// The command: its number, what it does, and whether the motion is its own; else it waits for room.
+    /// The command: its number, its work, and whether it moves now; otherwise it waits for room.
     pub command: Option<(CommandId, WorkKind, bool)>,
-    /// 0 if what is added holds, else one more than the scans to its goal.
+    /// 0 if the added motion holds, otherwise one more than the scans to its goal.
     pub scans_left: u32,
-    /// Scans of the owner's plan until a command that waits or was lowered is tried again; the largest number if
-    /// it waits for the next plan.
+    /// Scans of the owner's plan until a command that waits or was lowered is tried again; the largest
+    /// number if it waits for the next plan.
     pub tried_in: u32,
     /// Position and velocity of the owner's own set-point, as bits.
     pub base: (u64, u64),
-    /// The position added and what is left to add, as bits.
+    /// The added position and the distance left to add, as bits.
     pub added: (u64, u64),
 }
 
 impl Outlook {
-    /// Without command numbers, which only grow: those of different histories become comparable.
+    /// Removes command numbers, which only grow, so that different histories can be compared.
     pub fn without_numbers(mut self) -> Self {
         const NUMBERLESS: CommandId = CommandId(0);
         if let Some((id, ..)) = &mut self.owner {
@@ -297,7 +299,7 @@ pub struct Axis<P: Planner = Standard> {
     layer: Option<superimposed::Layer<P::Plan>>,
     /// The last superimposed command that ended, and the distance it added (u).
     covered: Option<(CommandId, f64)>,
-    /// Limits of the present motion, for whoever takes over from it.
+    /// Limits of the present motion, for the command that takes over from it.
     in_force: Limits,
     /// The largest magnitude (u) that coordinates moved under the plan in progress gave its positions; see [`guard`].
     coarsest: f64,
@@ -331,19 +333,20 @@ pub struct Axis<P: Planner = Standard> {
     homed: bool,
     /// The search of MC_Home.
     homing: homing::Search,
-    /// The owner's motion may leave the software limits, so every set-point is looked at.
+    /// The owner's motion may leave the software limits, so every set-point is checked.
     watched: bool,
     /// A queued MC_SetPosition takes effect at the next latch.
     shift_due: bool,
     /// The override.
     factors: Factors,
-    /// What the application can write by number.
+    /// The parameters that the application can write.
     parameters: parameters::Parameters,
     /// The end of a move in position.
     arrival: supervision::Arrival,
-    /// The owner has values that its motion does not have yet, for lack of room beside something superimposed.
+    /// The owner has values that its motion does not use yet, because a superimposed motion leaves no
+    /// room.
     replan_due: bool,
-    /// How little there is to look after in a scan.
+    /// How little must be checked in a scan.
     calm: Calm,
     /// Its actual positions as slaves see them.
     measured: measured::Measured,
@@ -412,7 +415,7 @@ impl<P: Planner> Axis<P> {
         self.id
     }
 
-    /// How it was set up.
+    /// Its configuration.
     pub fn config(&self) -> &AxisConfig {
         &self.config
     }
@@ -431,8 +434,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Actual position (u), as last latched: while the communication is lost, or what the drive tells is no number, the last
-    /// good one.
+    /// Actual position (u), as last latched. While the communication is lost, or the drive reports an
+    /// invalid number, it is the last good one.
     pub fn actual_position(&self) -> f64 {
         self.feedback.position()
     }
@@ -448,13 +451,13 @@ impl<P: Planner> Axis<P> {
         self.power.is_on()
     }
 
-    /// Why power that is wanted does not come: [`ErrorId::PowerNotConfirmed`] after the time-out of the axis, until MC_Power wants
-    /// it no longer or MC_Reset has it tried again.
+    /// The reason why requested power is not on: [`ErrorId::PowerNotConfirmed`] after the time-out of the
+    /// axis. It stays until MC_Power no longer requests power, or MC_Reset starts a new attempt.
     pub fn power_error(&self) -> Option<ErrorId> {
         self.power.is_unconfirmed().then_some(ErrorId::PowerNotConfirmed)
     }
 
-    /// The set-point is the actual position, not one of ours: the axis is not in operation.
+    /// Whether the set-point is the actual position and not a planned one: the axis is not in operation.
     pub fn is_following(&self) -> bool {
         matches!(self.motion, Motion::Follow)
     }
@@ -496,7 +499,7 @@ impl<P: Planner> Axis<P> {
         self.awaited.as_ref().map(|awaited| awaited.entry.id)
     }
 
-    /// The command accepted last: its number, for whoever follows what becomes of it.
+    /// The number of the command accepted last.
     pub fn newest_command(&self) -> CommandId {
         self.fates.newest()
     }
@@ -506,7 +509,7 @@ impl<P: Planner> Axis<P> {
         self.queue.len()
     }
 
-    /// What became of command `id`. Bounded by the queue and the fates kept.
+    /// The state of command `id`. Bounded by the queue and the fates kept.
     #[inline]
     pub fn fate(&self, id: CommandId) -> Fate {
         if let Some(owner) = &self.owner
@@ -539,7 +542,7 @@ impl<P: Planner> Axis<P> {
         self.fate_of_other(id)
     }
 
-    /// What became of a command that is not the owner.
+    /// The state of a command that is not the owner.
     #[inline(never)]
     fn fate_of_other(&self, id: CommandId) -> Fate {
         if self.queue.contains(id)
@@ -555,8 +558,8 @@ impl<P: Planner> Axis<P> {
         self.fates.find(id).unwrap_or(Fate::Failed(ErrorId::FateLost))
     }
 
-    /// What the axis will do next: everything but positions, results of ended commands and the configuration.
-    /// Two axes of equal outlook and set-point behave alike from now on.
+    /// The future behaviour of the axis: everything but positions, results of ended commands and the
+    /// configuration. Two axes of equal outlook and set-point behave alike from now on.
     pub fn outlook(&self) -> Outlook {
         let mut waiting = [None; QUEUE_MAX];
         for (slot, entry) in waiting.iter_mut().zip(self.queue.iter()) {
@@ -593,7 +596,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// What the drive told last beside its motion; the machine writes it before the blocks are called.
+    /// The last report of the drive beside its motion; the machine writes it before the blocks are
+    /// called.
     pub fn report(&self) -> &DriveReport {
         &self.beside.report
     }
@@ -603,7 +607,7 @@ impl<P: Planner> Axis<P> {
         &mut self.beside.report
     }
 
-    /// What the drive is asked beside its motion.
+    /// The orders for the drive beside its motion.
     pub fn order(&self) -> &DriveOrder {
         &self.beside.order
     }
@@ -624,7 +628,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    // Only plain numbers come from calls: an enum from one comes through memory, which takes longer than all
+    // Calls return only plain numbers: an enum from a call passes through memory, which takes longer than
     // the rest of the scan's drive command.
     #[inline]
     fn position_at_drive(&self) -> DrivePosition {
@@ -651,7 +655,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the owner's motion in progress is not the one to its goal: what it reaches is not reached.
+    /// Whether the owner's present motion does not lead to its goal. Its end is then not the goal.
     fn is_held_up(&self) -> bool {
         self.replan_due
             || self
@@ -697,7 +701,7 @@ impl<P: Planner> Axis<P> {
     fn end_owner(&mut self, fate: Fate) {
         let is_over = self.profile_is_over();
         if let Some(owner) = self.owner.take() {
-            // A stop that stands has completed, whatever ends its hold, and a profile at its end.
+            // A stop at rest has completed, whatever ends its hold, and so has a profile at its end.
             let over = match owner.work {
                 // Whatever comes next, the coupling has ended.
                 Work::Release(_) => self.is_released(&owner) || fate == Fate::Aborted,

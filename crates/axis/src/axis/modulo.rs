@@ -1,8 +1,9 @@
-//! Modulo axes: positions that come round, turns counted in integers, and the way round to a target.
+//! Modulo axes: positions within one turn, turns counted in integers, and the way round to a target.
 //!
-//! Positions a program sees are in [0, length). The core moves in a frame of its own: a plan ends in the first
-//! turn of its frame, wherever it starts, so that every target is met to the bit; an endless motion is brought
-//! back when it is two turns away. The whole turns between the frame and the drive's increments are an integer.
+//! Programs see positions in [0, length). The core moves in a frame of its own: a plan ends in the first
+//! turn of its frame, wherever it starts, so that every target is met to the bit. An endless motion is
+//! brought back when it is two turns away. The whole turns between the frame and the drive's increments
+//! are an integer.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_MoveAbsolute and MC_DIRECTION; B8; the rule for Direction is that of
 //! docs/modulo.md.
@@ -13,8 +14,8 @@ use crate::{AxisConfig, Direction, DrivePosition, ErrorId, ModuloTargets, Scalin
 use standstill_planner::turns::{split, two_product};
 use standstill_planner::{Plan, Planner, Setpoint};
 
-/// How far, relative to the way a stop takes, a target may lie before its end and still be met: rounding, and
-/// no visible way back.
+/// How far before the end of a stop a target may lie and still be met, relative to the way of the stop:
+/// this is rounding, and no visible way back.
 const ROUNDING: f64 = 1e-9;
 
 /// An endless motion this many turns away is brought back.
@@ -32,12 +33,13 @@ pub(super) struct Modulo {
     pub length: f64,
     /// One turn in increments, for drives that count them.
     turn: Option<Turn>,
-    /// Whole turns at the frame's 0. Drives that speak units know no turns, so there it means nothing.
+    /// Whole turns at the frame's 0. Drives that use units have no turns, so it is not used there.
     turns: i64,
     /// Whole turns at the actual position.
     actual_turns: i64,
-    /// A position of the frame (u) at which the axis stood when the frame was moved, and what it was called before: a
-    /// place some turns on has fewer bits than one in the first turn, and standing is no reason to be called anything else.
+    /// A position of the frame (u) at which the axis stood when the frame was moved, and its name before.
+    /// A place some turns away has fewer bits than one in the first turn, and an axis at rest must keep
+    /// its name.
     stood: Option<(f64, f64)>,
 }
 
@@ -58,13 +60,14 @@ impl Modulo {
         self.turns
     }
 
-    /// The axis is in this turn, at a position of the first one.
+    /// Puts the axis into this turn, at a position of the first one.
     pub fn put(&mut self, turns: i64) {
         self.turns = turns;
         self.stood = None;
     }
 
-    /// In this turn the axis may go from one position to the other, and both are called what they are.
+    /// Whether the axis may go from one position to the other within this turn, and both keep their
+    /// names.
     #[inline]
     pub fn stays_in(&self, turns: i64, positions: [f64; 2]) -> bool {
         let turn = 0.0..self.length;
@@ -82,13 +85,13 @@ impl Modulo {
         }
     }
 
-    /// A position of the frame (u) in increments, however many turns there were.
+    /// A position of the frame (u) in increments, for any number of turns.
     #[inline(never)]
     pub fn increments(&self, scaling: &Scaling, position: f64) -> i64 {
         let (further, position) = split(position, self.length);
         match &self.turn {
             Some(turn) => scaling.to_increments_turned(turn, self.turns.saturating_add(further), position),
-            // Not reached: what has a scaling has a turn.
+            // Not reached: an axis with a scaling has a turn.
             None => scaling.to_increments(position),
         }
     }
@@ -127,14 +130,14 @@ impl Modulo {
 }
 
 impl<P: Planner> Axis<P> {
-    /// The coordinates move: every place is called something else.
+    /// The coordinates move: every place gets a new name.
     pub(super) fn rename_places(&mut self) {
         if let Some(modulo) = &mut self.modulo {
             modulo.stood = None;
         }
     }
 
-    /// The set-point takes over where the feedback is, turns included.
+    /// The set-point takes over the actual place, including turns.
     pub(super) fn count_actual_turns(&mut self) {
         if let Some(modulo) = &mut self.modulo {
             modulo.turns = modulo.actual_turns;
@@ -142,7 +145,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The target of an absolute move to `position` (u): in the first turn, if the axis brings targets there.
+    /// The target of an absolute move to `position` (u); in the first turn, if the axis wraps targets.
     pub(super) fn target(&self, position: f64) -> f64 {
         match (&self.modulo, self.config.modulo_targets) {
             (Some(Modulo { length, .. }), ModuloTargets::Wrap) => split(position, *length).1,
@@ -150,8 +153,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether `position` (u) is one a program may name: in the first turn, or any on a linear axis. If not,
-    /// the length of a turn and the error.
+    /// Whether a program may use `position` (u): in the first turn, or any on a linear axis. If not, the
+    /// length of a turn and the error.
     pub(super) fn in_first_turn(&self, position: f64) -> Result<(), (f64, ErrorId)> {
         match &self.modulo {
             Some(Modulo { length, .. }) if !(position >= 0.0 && position < *length) => {
@@ -161,7 +164,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the set-point of a modulo axis is so many turns away from 0 that an endless motion is brought back.
+    /// Whether the set-point of a modulo axis is so far from 0 that an endless motion must be brought
+    /// back.
     #[inline]
     pub(super) fn is_far_round(&self) -> bool {
         let far = |modulo: &Modulo| is_far(self.setpoint.position, modulo.length);
@@ -186,7 +190,7 @@ impl<P: Planner> Axis<P> {
             *scans = u64::from(plan.scans());
             let start = plan.at(0).position;
             modulo.turns = modulo.turns.saturating_add(turns);
-            // Its end is left behind, in another frame.
+            // Its end was left behind, in another frame.
             if let Some(owner) = &mut self.owner {
                 owner.end = None;
                 owner.from = back_by(owner.from, turns, modulo.length);
@@ -223,8 +227,9 @@ impl<P: Planner> Axis<P> {
             .then_some((self.setpoint.position, called));
     }
 
-    /// Where `entry` ends, now that it is its turn, and how far its frame is from the present one. Distances
-    /// count from `from` (u), and so does the way to a target. Returns where it starts in its frame (u).
+    /// Finds the end of `entry`, which becomes active now, and the offset of its frame from the present
+    /// one. Distances count from `from` (u), and so does the way to a target. Returns its start in its
+    /// frame (u).
     ///
     /// Cost: on a modulo axis at most one ramp.
     #[inline]
@@ -288,7 +293,7 @@ impl<P: Planner> Axis<P> {
             }
             (Some(Place::At(target)), None) => {
                 let (turns, target) = split(target, length);
-                // In the frame it is to move in, for whoever asks again.
+                // In the frame it will move in, for later calls.
                 entry.work = entry.work.at(target);
                 (turns, Some(target))
             }
@@ -301,8 +306,8 @@ impl<P: Planner> Axis<P> {
         back_by(start.position, entry.turns, length)
     }
 
-    /// Where a command of a chain ends, counted from `from` (u) in the frame of that, after a motion that went
-    /// `forward` or not; `None` if it leads nowhere.
+    /// The end of a command in a chain, counted from `from` (u) in the frame of the command before, after
+    /// a motion that went `forward` or not. `None` if it has no end.
     pub(super) fn end_of_leg(&self, entry: &Entry, from: f64, forward: bool) -> Option<f64> {
         let (Some(modulo), Some(Place::At(target)), Some(direction)) =
             (&self.modulo, entry.place(), entry.direction)
@@ -313,7 +318,7 @@ impl<P: Planner> Axis<P> {
         Some(target + turns as f64 * modulo.length)
     }
 
-    /// `start` in the frame `entry` was aimed in, if that is another one.
+    /// `start` in the frame of `entry`, if that is another frame.
     #[inline]
     pub(super) fn in_frame_of(&self, entry: &Entry, start: &Setpoint) -> Option<Setpoint> {
         match &self.modulo {
@@ -335,7 +340,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// `turns`, and as many more as a motion from `start` that must not turn back needs to slow down (B8).
+    /// `turns`, plus those that a motion from `start` needs to slow down if it must not turn back (B8).
     pub(super) fn never_back(
         &self,
         entry: &Entry,
@@ -357,7 +362,7 @@ impl<P: Planner> Axis<P> {
         } else {
             (target, entry.passage)
         };
-        // What passes its target in the same direction need not stop before it.
+        // A command that passes its target in the same direction need not stop before it.
         let velocity = match entry.work {
             Work::Through { end_velocity, .. } if (end_velocity > 0.0) == forward => end_velocity,
             Work::Position(_) | Work::Distance(_) if passage.wanted > 0.0 => {
@@ -367,7 +372,7 @@ impl<P: Planner> Axis<P> {
             _ => 0.0,
         };
         let before = self.limits_before(&entry.limits);
-        // What cannot be planned to stop cannot be planned to go there; planning it tells why.
+        // If the stop cannot be planned, the move cannot be planned either; planning it gives the reason.
         let Ok(ramp) = self.planner.ramp_to(start, velocity, &entry.limits, &before) else {
             return turns;
         };
@@ -394,8 +399,8 @@ fn back_by(position: f64, turns: i64, length: f64) -> f64 {
     (position - whole) - error
 }
 
-/// Turns and target of a way `distance` (u) from `from`: whole turns apart, so that they do not cost the rest
-/// its last bits.
+/// Turns and target of a way `distance` (u) from `from`. Whole turns are separated, so that the rest
+/// keeps its last bits.
 fn beyond(from: f64, distance: f64, length: f64) -> (i64, f64) {
     let (from_turns, here) = split(from, length);
     let (turns, rest) = split(distance.abs(), length);
@@ -408,7 +413,8 @@ fn beyond(from: f64, distance: f64, length: f64) -> (i64, f64) {
     (from_turns.saturating_add(turns).saturating_add(further), target)
 }
 
-/// How many turns on `target`, of the first turn, is met from `from` (u), `forward` or not, or the shortest way.
+/// The number of turns to `target`, in the first turn, from `from` (u), `forward` or not, or by the
+/// shortest way.
 fn turns_to(target: f64, from: f64, length: f64, forward: Option<bool>) -> i64 {
     let (turns, here) = split(from, length);
     let ahead = if target >= here {

@@ -7,44 +7,44 @@ use super::commands::{Work, Write};
 use crate::{CommandId, DIGITAL, ErrorId, ExecutionMode, Fate, Raw, Scope};
 use standstill_planner::Planner;
 
-/// What an output that follows positions remembers (MC_DigitalCamSwitch). It is kept with the output, which has but one
-/// master: instances stay small.
+/// The memory of an output that follows positions (MC_DigitalCamSwitch). It is kept with the output,
+/// because only one instance writes it; so instances stay small.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CamTrack {
     /// On by position.
     pub on: bool,
-    /// Place of the cam that put it on.
+    /// Index of the cam that switched it on.
     pub by: usize,
-    /// Where that cam would put it off, in the present direction (u).
+    /// The place where that cam would switch it off, in the present direction (u).
     pub leave: f64,
-    /// Where it switched last by position (u).
+    /// The place where it last switched by position (u).
     pub point: Option<f64>,
-    /// On by time until then (ns).
+    /// On by time until this instant (ns).
     pub until: Option<i64>,
-    /// The position that put it on by time, as long as that is within the hysteresis (u).
+    /// The position that switched it on by time, while that is within the hysteresis (u).
     pub held_at: Option<f64>,
 }
 
 /// The bit of input or output `number`.
 fn bit_of(number: i16) -> Result<u32, ErrorId> {
-    // As many as bits: from DIGITAL on there is none.
+    // There are DIGITAL bits, so larger numbers do not exist.
     let number = u32::try_from(number).ok();
     let bit = number.and_then(|number| 1_u32.checked_shl(number));
     bit.ok_or(ErrorId::DigitalNumberInvalid)
 }
 
 impl<P: Planner> Axis<P> {
-    /// Digital input `number` as the drive told it in this scan.
+    /// Digital input `number` as the drive reported it in this scan.
     ///
     /// # Errors
-    /// [`ErrorId::DigitalNumberInvalid`], or those of [`Axis::fresh_position`] if what is known is old.
+    /// [`ErrorId::DigitalNumberInvalid`], or those of [`Axis::fresh_position`] if the last report is old.
     pub fn digital_input(&self, number: i16) -> Result<bool, ErrorId> {
         let bit = bit_of(number)?;
         self.told()?;
         Ok(self.report().inputs & bit != 0)
     }
 
-    /// What the drive shows at digital output `number`, read back in this scan.
+    /// The level of digital output `number`, read back from the drive in this scan.
     ///
     /// # Errors
     /// As [`Axis::digital_input`].
@@ -58,8 +58,8 @@ impl<P: Planner> Axis<P> {
     /// `mcQueued` it waits like a buffered command while the axis has an owner.
     ///
     /// # Errors
-    /// The [`ErrorId`] the block shows: a number out of range, an undefined mode, a lost communication, a full
-    /// buffer. Nothing changes then.
+    /// The [`ErrorId`] the block shows: a number out of range, an undefined mode, a lost communication, a
+    /// full buffer. Nothing changes then.
     pub fn write_output(
         &mut self,
         number: i16,
@@ -83,13 +83,13 @@ impl<P: Planner> Axis<P> {
         Ok(id)
     }
 
-    /// Outputs of `mask` get the levels of `on` at the end of this scan.
+    /// Sets the outputs of `mask` to the levels of `on` at the end of this scan.
     pub fn write_outputs(&mut self, mask: u32, on: u32) {
         let outputs = &mut self.beside.order.outputs;
         *outputs = (*outputs & !mask) | (on & mask);
     }
 
-    /// What the digital outputs remember that follow positions, in order of their numbers.
+    /// The memory of digital outputs that follow positions, in order of their numbers.
     pub fn cam_tracks_mut(&mut self) -> &mut [CamTrack; DIGITAL as usize] {
         &mut self.beside.cam_tracks
     }
@@ -98,7 +98,7 @@ impl<P: Planner> Axis<P> {
         self.write_outputs(bit, if value { bit } else { 0 });
     }
 
-    /// What the drive tells is of this scan.
+    /// Whether the drive's report is from this scan.
     fn told(&self) -> Result<(), ErrorId> {
         self.fresh_position().map(|_| ())
     }

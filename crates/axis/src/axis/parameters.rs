@@ -1,9 +1,9 @@
-//! Parameters by number: MC_ReadParameter, MC_WriteParameter and their BOOL kin.
+//! Parameters by number: MC_ReadParameter, MC_WriteParameter and their BOOL variants.
 //!
-//! The system has what the configuration says, for good; the application may allow less, and move the software
-//! limits. What is written holds for commands accepted later. Software limits hold for the motion in progress as
-//! well: if it would leave them it is watched, and ends in ErrorStop while the stop dynamics can keep it inside,
-//! else at once.
+//! The system values are those of the configuration and never change. The application may set lower
+//! limits, and move the software limits. New values apply to commands accepted later. Software limits
+//! also apply to the motion in progress: a motion that would leave them is watched. It ends in ErrorStop
+//! while the stop dynamics can keep it inside, otherwise at once.
 //!
 //! Source: PLCopen Motion Control Part 1, sections of the four blocks and the list of parameters.
 
@@ -23,14 +23,14 @@ struct Unwritten {
 }
 
 impl From<ErrorId> for Unwritten {
-    /// The number is no good for the value.
+    /// The number is not valid for the value.
     fn from(error: ErrorId) -> Self {
         Self::number(error)
     }
 }
 
 impl Unwritten {
-    /// The number is no good.
+    /// The number is not valid.
     const fn number(error: ErrorId) -> Self {
         Self {
             pin: "ParameterNumber",
@@ -39,7 +39,7 @@ impl Unwritten {
         }
     }
 
-    /// The value is no good.
+    /// The value is not valid.
     const fn value(limit: f64, error: ErrorId) -> Self {
         Self {
             pin: "Value",
@@ -49,10 +49,10 @@ impl Unwritten {
     }
 }
 
-/// What an application can write.
+/// The parameters that an application can write.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parameters {
-    /// What a command of the application may ask for: at most what the axis has.
+    /// Limits for the commands of the application; at most those of the axis.
     pub limits: Limits,
     /// Lowest and highest position (u) a move may end at, infinite where that side is off; `None` without both.
     pub software_limits: Option<(f64, f64)>,
@@ -176,11 +176,12 @@ fn limit(value: f64, least: f64, system: f64) -> Result<f64, Unwritten> {
 }
 
 impl<P: Planner> Axis<P> {
-    /// MC_ReadParameter: the REAL parameter `number`. A limit there is none of reads as infinity.
+    /// MC_ReadParameter: the REAL parameter `number`. A missing limit reads as infinity.
     ///
     /// # Errors
-    /// [`ErrorId::ParameterNumberInvalid`] if there is no such parameter, [`ErrorId::ParameterKindInvalid`] if it is a
-    /// BOOL, those of [`Axis::fresh_position`] if what it asks for is not fresh.
+    /// [`ErrorId::ParameterNumberInvalid`] if there is no such parameter,
+    /// [`ErrorId::ParameterKindInvalid`] if it is a BOOL, those of [`Axis::fresh_position`] if its value
+    /// is not fresh.
     pub fn real_parameter(&self, number: i16) -> Result<f64, ErrorId> {
         match self.parameter(Parameter::of(number)?)? {
             ParameterValue::Real(value) => Ok(value),
@@ -233,13 +234,13 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// MC_WriteParameter and MC_WriteBoolParameter: parameter `number` gets `value`, in every state, and never
-    /// changing the state. With `mcQueued` it waits like a buffered command while the axis has an owner; its value
-    /// is looked at in the call, and again when its turn comes.
+    /// MC_WriteParameter and MC_WriteBoolParameter: parameter `number` gets `value`, in every state,
+    /// without changing the state. With `mcQueued` it waits like a buffered command while the axis has an
+    /// owner. Its value is checked in the call, and again when it becomes active.
     ///
     /// # Errors
-    /// The [`ErrorId`] the block shows: an unknown number, one of the other kind or that can only be read, a value
-    /// out of range, an undefined mode, a full buffer. Nothing changes then.
+    /// The [`ErrorId`] the block shows: a number that is unknown, of the other kind or read-only; a value
+    /// out of range; an undefined mode; a full buffer. Nothing changes then.
     pub fn write_parameter(
         &mut self,
         number: i16,
@@ -263,7 +264,7 @@ impl<P: Planner> Axis<P> {
         Ok(id)
     }
 
-    /// The turn of a parameter that waited.
+    /// A parameter that waited is written now.
     pub(super) fn write_queued_parameter(
         &mut self,
         parameter: Parameter,
@@ -443,7 +444,7 @@ impl<P: Planner> Axis<P> {
         self.parameters = parameters;
         self.stir();
         if limits_moved {
-            // Whatever was checked was checked against the limits before: what moves, and what waits behind it.
+            // The motion and the commands that wait were checked against the old limits.
             self.watched = self.owner.is_some() && self.parameters.software_limits.is_some();
             self.arm_anew(scope);
         }

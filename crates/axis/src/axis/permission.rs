@@ -1,12 +1,14 @@
-//! Directions MC_Power bars: what would move in one is refused, what does pauses.
+//! Directions that MC_Power bars: a new motion that needs one is refused, a running motion that needs one
+//! pauses.
 //!
-//! A motion is barred if it goes further in a barred direction than braking at once within its limits does: from
-//! rest, if it goes there at all. A command that is barred when its turn comes is an error. A motion that is barred
-//! while it runs brakes with the stop dynamics; its command stays the owner, and goes on to its end or velocity when
-//! what it then needs is permitted. What brings the axis to rest is never barred, so it pauses nothing either.
+//! A motion is barred if it goes further in a barred direction than an immediate stop within its limits;
+//! from rest, if it goes there at all. A command that is barred when it becomes active is an error. A
+//! motion that is barred while it runs brakes with the stop dynamics. Its command stays the owner, and
+//! continues to its end or velocity once the direction it then needs is permitted. A motion that brings
+//! the axis to rest is never barred, so it is never paused either.
 //!
-//! A superimposed motion has a direction of its own. When either motion is barred the sum brakes; what is left of the
-//! superimposed distance waits as it does for room.
+//! A superimposed motion has a direction of its own. When either motion is barred the sum brakes, and the
+//! rest of the superimposed distance waits as it does for room.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_Power; V9.
 
@@ -15,13 +17,13 @@ use super::{Axis, Motion};
 use crate::{AxisEvent, AxisState, ErrorId, Event, Fate, Scope};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
-/// How much further than a stop is none: rounding, relative to the way.
+/// The rounding of the comparison with a stop, relative to the way.
 const ROUNDING: f64 = 1e-9;
 
 /// Rounding of a position, relative to it.
 const RESOLUTION: f64 = 64.0 * f64::EPSILON;
 
-/// The directions an axis may move in: EnablePositive and EnableNegative of MC_Power.
+/// The directions in which an axis may move: EnablePositive and EnableNegative of MC_Power.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Permission {
     /// Towards larger positions.
@@ -31,7 +33,7 @@ pub struct Permission {
 }
 
 impl Permission {
-    /// Both directions: how an axis starts.
+    /// Both directions: the initial value.
     pub const BOTH: Self = Self {
         positive: true,
         negative: true,
@@ -50,7 +52,7 @@ impl Permission {
 }
 
 impl<P: Planner> Axis<P> {
-    /// MC_Power permits other directions than before.
+    /// MC_Power changes the permitted directions.
     #[cold]
     #[inline(never)]
     pub(super) fn permit(&mut self, permitted: Permission, scope: &mut Scope<'_>) {
@@ -62,20 +64,20 @@ impl<P: Planner> Axis<P> {
         if let Some(layer) = &mut self.layer {
             layer.try_soon();
         }
-        // A slave that still goes the barred way would be stopped once more.
+        // A slave that still moves in the barred direction would be stopped once more.
         if !self.follows() || self.way_barred(self.setpoint.velocity).is_none() {
             self.resume(scope);
         }
     }
 
-    /// Whether the owner has been stopped by MC_Power and waits to go on.
+    /// Whether MC_Power has stopped the owner, which waits to continue.
     #[inline]
     pub(super) fn is_paused(&self) -> bool {
         self.owner.as_ref().is_some_and(|owner| owner.paused)
     }
 
-    /// Refuses `plan` of `entry`, after a motion within `before`, if it needs a barred direction. One that was
-    /// paused may go no further than its stop.
+    /// Refuses `plan` of `entry`, after a motion within `before`, if it needs a barred direction. A
+    /// paused command may go no further than its stop.
     #[inline]
     pub(super) fn permitted(&self, entry: &Entry, plan: &P::Plan, before: &Limits) -> Result<(), ErrorId> {
         let brakes = entry.halted && !entry.paused;
@@ -90,7 +92,7 @@ impl<P: Planner> Axis<P> {
         self.barred((plan, 0), &limits, before).map_or(Ok(()), Err)
     }
 
-    /// Why the rest of a plan is barred. Cost: one ramp.
+    /// The reason why the rest of a plan is barred. Cost: one ramp.
     #[inline(never)]
     pub(super) fn barred(&self, rest: (&P::Plan, u64), limits: &Limits, before: &Limits) -> Option<ErrorId> {
         if self.permission() == Permission::BOTH {
@@ -99,7 +101,7 @@ impl<P: Planner> Axis<P> {
         let (plan, elapsed) = rest;
         let (start, goal) = (plan.at(elapsed), plan.at(u64::from(plan.scans())).velocity);
         let (up, down) = self.planner.ways(rest);
-        // Braking is no motion of its own, wherever it leads.
+        // A stop is no motion of its own, wherever it leads.
         let (braking_up, braking_down) = match self.planner.ramp_to(&start, 0.0, limits, before) {
             Ok(ramp) if !start.is_at_rest() => self.planner.ways((&ramp, 0)),
             _ => (0.0, 0.0),
@@ -111,7 +113,7 @@ impl<P: Planner> Axis<P> {
         )
     }
 
-    /// Why a motion in progress is barred.
+    /// The reason why a motion in progress is barred.
     fn barred_now(&self) -> Option<ErrorId> {
         let limits = self.slowed(&self.stop_limits());
         let owner = match (&self.motion, &self.owner) {
@@ -131,7 +133,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// Why a command is barred that the owner is about to pass its end for.
+    /// The reason why the command is barred for which the owner is about to pass its end.
     fn barred_behind_the_end(&self) -> Option<ErrorId> {
         let owner = self
             .owner
@@ -141,8 +143,8 @@ impl<P: Planner> Axis<P> {
         self.bars(true, true).filter(|_| passage.wanted <= 0.0)
     }
 
-    /// Everything brakes: from now on there is one motion, with the velocity of the sum. What is superimposed on an
-    /// axis that stands brakes by itself, so that its way counts.
+    /// Everything brakes: from now on there is one motion, with the velocity of the sum. A superimposed
+    /// motion on a standing axis brakes by itself, so that its way counts.
     pub(super) fn pause(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
         let scope = &mut self.owner_scope(scope);
         self.record(Event::Paused { error }, scope);
@@ -179,7 +181,8 @@ impl<P: Planner> Axis<P> {
         self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
     }
 
-    /// The owner goes on from where it is, if all it needs is permitted. One that can't any more fails at rest.
+    /// The owner continues from its present state, if all directions it needs are permitted. If it can't
+    /// any more, it fails at rest.
     #[inline(never)]
     pub(super) fn resume(&mut self, scope: &mut Scope<'_>) {
         let Some(mut owner) = self.owner.filter(|owner| owner.paused) else {
@@ -198,7 +201,7 @@ impl<P: Planner> Axis<P> {
                 self.refuse_plan(&owner, error, &mut self.owner_scope(scope));
                 self.end_owner(Fate::Failed(error));
                 self.motion = Motion::Hold;
-                // No arrow leads from ContinuousMotion to Standstill but by way of a halt.
+                // No arrow leads from ContinuousMotion to Standstill except through a halt.
                 let is_endless = self.state == AxisState::ContinuousMotion;
                 if !is_endless {
                     self.enter(AxisEvent::MotionDone);
@@ -208,12 +211,13 @@ impl<P: Planner> Axis<P> {
                     self.halt_after(&owner, scope);
                 }
             }
-            // It brakes on, and is asked again at rest.
+            // It continues to brake, and is checked again at rest.
             Err(_) => {}
         }
     }
 
-    /// The paused owner stands. What it needs now may be permitted: the stop may have passed its end.
+    /// The paused owner stands. The direction it needs now may be permitted, because the stop may have
+    /// passed its end.
     #[cold]
     pub(super) fn settle_paused(&mut self, scope: &mut Scope<'_>) {
         if self.is_paused() && matches!(self.motion, Motion::Run { .. }) {
@@ -222,7 +226,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The coordinates moved by `by` (u) under an owner that is paused or halted: an absolute end keeps its number.
+    /// The coordinates moved by `by` (u) under a paused or halted owner: an absolute end keeps its
+    /// number.
     #[cold]
     pub(super) fn shift_paused(&mut self, by: f64) {
         if let Motion::Run { plan, .. } = &mut self.motion {
@@ -243,7 +248,7 @@ impl<P: Planner> Axis<P> {
         self.permission() != Permission::BOTH
     }
 
-    /// A direction in which nothing may be added to a layer at rest.
+    /// The error if nothing may be added in this direction to a layer at rest.
     pub(super) fn way_barred(&self, way: f64) -> Option<ErrorId> {
         self.bars(way > 0.0, way < 0.0)
     }

@@ -11,8 +11,8 @@ use crate::{
 };
 use standstill_planner::{Limits, Planner};
 
-/// The longest step (u) of the actual position that a calm axis takes without looking whether its velocity is a number; with any
-/// cycle from a nanosecond on it is. NaN and infinity are no such step.
+/// The longest step (u) of the actual position that a calm axis takes without a check of its velocity.
+/// With any cycle from a nanosecond up the velocity is then finite. NaN and infinity are not such a step.
 const USUAL_STEP: f64 = 1e290;
 
 /// How an axis comes to rest after an error.
@@ -26,10 +26,10 @@ pub(super) enum Reaction {
 
 impl<P: Planner> Axis<P> {
     /// Latches the drive's feedback of this scan and lets the state follow it. Called before any block.
-    // In line with its caller, as `advance`: what a call alone costs is a tenth of a calm scan.
+    // Inlined into its caller, like `advance`: a call alone costs a tenth of a calm scan.
     #[inline(always)]
     pub fn follow_feedback(&mut self, feedback: &DriveFeedback, scope: &mut Scope<'_>) {
-        // In most scans nothing but the position changes.
+        // In most scans only the position changes.
         let on_switch = feedback.signals.limit_switch_positive | feedback.signals.limit_switch_negative;
         if self.calm.is_any()
             && feedback.enabled
@@ -49,8 +49,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Takes over the actual position of a calm axis, which has nothing to mend. Returns FALSE, and takes nothing over, if it
-    /// needs a closer look.
+    /// Takes the actual position of a calm axis, whose earlier positions need no new names. Returns
+    /// FALSE, and takes nothing, if a full check is needed.
     #[inline(always)]
     fn latch_usual(&mut self, told: DrivePosition) -> bool {
         let position = match (told, &self.modulo) {
@@ -65,8 +65,8 @@ impl<P: Planner> Axis<P> {
         is_usual
     }
 
-    /// Latches the actual position, whatever came before. Returns FALSE, and latches nothing, if something the drive told is no
-    /// number (R98).
+    /// Latches the actual position in every case. Returns FALSE, and latches nothing, if a reported value
+    /// is not a number (R98).
     fn latch_told(&mut self, told: DrivePosition) -> bool {
         let is_number = told.is_finite() && self.beside.report.is_finite();
         is_number && {
@@ -75,15 +75,15 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the axis is in operation with nothing pending and nothing supervised: it reacts to nothing but
-    /// its feedback, is asked for what it was asked for, and its positions need no care.
+    /// Whether the axis is in operation with nothing pending and nothing supervised. It then reacts only
+    /// to its feedback, its requests to the drive stay the same, and its positions need no care.
     ///
-    /// Looked at once, when that may have begun; whatever ends it says so ([`Axis::stir`]). A scan saves ten
-    /// comparisons by it.
+    /// Computed once when the calm may begin; every event that ends it calls [`Axis::stir`]. This saves
+    /// ten comparisons per scan.
     fn calmness(&self) -> Calm {
         let is_in_operation = !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
         let is_pending = self.failure.reset().is_some() || self.shift_due || self.frame.is_renaming();
-        // The order of one that has handed over is taken back in the scan after.
+        // An axis that has handed over withdraws its order in the next scan.
         let is_torque = matches!(self.motion, Motion::Torque { .. }) || self.beside.order.torque.is_some();
         let is_watched = self.parameters.lag.on || self.is_homing() || is_torque;
         if !(self.power.is_calm()
@@ -106,7 +106,7 @@ impl<P: Planner> Axis<P> {
         self.unsettle();
     }
 
-    /// The actual position (u), of a number.
+    /// The actual position (u), if it is a number.
     fn position_of(&mut self, told: DrivePosition) -> f64 {
         match (told, &mut self.modulo) {
             (DrivePosition::Units(units), None) => units,
@@ -115,7 +115,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// [`Axis::latch_usual`] of a modulo axis, whose positions are never far apart.
+    /// [`Axis::latch_usual`] for a modulo axis, whose positions are never far apart.
     #[inline(never)]
     fn latch_round(&mut self, told: DrivePosition) -> bool {
         if !told.is_finite() {
@@ -153,8 +153,8 @@ impl<P: Planner> Axis<P> {
         }
         self.power.latch(feedback, comms);
         if let Err(error) = self.fresh_position() {
-            // A stage that was asked to go off while nothing tells whether it has counts as off: before it is enabled again
-            // the drive has to tell where it stands.
+            // A stage that was asked to switch off counts as off while its state is unknown. Before it is
+            // enabled again the drive has to report its position.
             if self.drive_request() != DriveRequest::Enable {
                 self.power.count_as_off();
             }
@@ -208,7 +208,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Power that is not confirmed in time is asked for no longer.
+    /// Power that is not confirmed in time is no longer requested.
     fn await_power(&mut self, scope: &mut Scope<'_>) {
         let Some(timeout) = self.config.power_timeout else {
             return;
@@ -226,12 +226,14 @@ impl<P: Planner> Axis<P> {
         self.motion = Motion::Hold;
     }
 
-    /// MC_Power: power is wanted or not, and which directions are permitted. With `false` all commands are
-    /// aborted in this call and the axis goes to Disabled the configured way (V9a). A motion that needs a
-    /// direction no longer permitted brakes in this call and goes on when it is permitted again (V9).
+    /// MC_Power: requests power or not, and sets the permitted directions. With `false` all commands are
+    /// aborted in this call, and the axis goes to Disabled in its configured way (V9a). A motion that
+    /// needs a direction no longer permitted brakes in this call, and continues when it is permitted
+    /// again (V9).
     ///
-    /// Should several instances speak in one scan, the last call decides (V9b): whoever decided in the scan
-    /// before is obeyed at once, others at the end of the scan if nobody spoke after them.
+    /// If several instances are called in one scan, the last call decides (V9b). The instance that
+    /// decided in the last scan takes effect at once, others at the end of the scan if no other was
+    /// called after them.
     #[inline]
     pub fn set_power(&mut self, wanted: bool, permitted: Permission, scope: &mut Scope<'_>) {
         let wish = Wish {
@@ -303,11 +305,12 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Plans a ramp to rest within `limits`, or more of those of the `axis` where it could not be kept inside them.
+    /// Plans a ramp to rest within `limits`, or within more of those of the `axis` if it could not stay
+    /// inside them otherwise.
     fn ramp_down(&mut self, mut limits: Limits, axis: &Limits, scope: &mut Scope<'_>) {
-        // Nothing stops sooner than this.
+        // No stop is faster than this.
         self.watched = false;
-        // Only a plan leaves a set-point that is not at rest.
+        // Only a plan has a set-point that is not at rest.
         if self.setpoint.is_at_rest() {
             self.motion = Motion::Hold;
             return;
@@ -325,7 +328,7 @@ impl<P: Planner> Axis<P> {
         self.in_force = limits;
     }
 
-    /// The axis fails for a reason of its own, which persists until [`Axis::clear_cause`].
+    /// Raises an error of the axis itself, which persists until [`Axis::clear_cause`].
     pub fn raise(&mut self, error: ErrorId, code: u16, scope: &mut Scope<'_>) {
         self.failure.set_cause(true);
         self.trip(error, code, Reaction::Ramp, scope);
@@ -336,8 +339,8 @@ impl<P: Planner> Axis<P> {
         self.failure.set_cause(false);
     }
 
-    /// Enters ErrorStop: the owner fails with `error`, what waits fails because of the state (R77). The first
-    /// error stays the one shown.
+    /// Enters ErrorStop: the owner fails with `error`, waiting commands fail because of the state (R77).
+    /// The first error stays the one shown.
     #[cold]
     pub(super) fn trip(&mut self, error: ErrorId, code: u16, reaction: Reaction, scope: &mut Scope<'_>) {
         if self.state == AxisState::ErrorStop {
@@ -349,7 +352,7 @@ impl<P: Planner> Axis<P> {
         self.failure.show(error, code);
         self.power.end_going_off();
         match reaction {
-            // A fault does not look at slaves.
+            // A fault ignores slaves.
             Reaction::Ramp if self.power.is_on() && !self.moves_itself() => {
                 self.ramp_down(self.stop_limits(), &self.hardest_limits(), scope);
             }
@@ -358,11 +361,11 @@ impl<P: Planner> Axis<P> {
         self.enter(AxisEvent::Fault);
     }
 
-    /// MC_Reset: leave ErrorStop once the axis stands (V10a). Outside ErrorStop it completes in the next scan
-    /// without effect (V10). A reset during another one shares its result.
+    /// MC_Reset: leaves ErrorStop once the axis stands (V10a). Outside ErrorStop it completes in the next
+    /// scan without effect (V10). A reset during another one shares its result.
     ///
     /// # Errors
-    /// [`ErrorId::CauseStillPresent`] if it is known to be.
+    /// [`ErrorId::CauseStillPresent`] if the cause is known to be still there.
     pub fn reset(&mut self, scope: &mut Scope<'_>) -> Result<CommandId, ErrorId> {
         if self.state == AxisState::ErrorStop && self.cause_known() {
             return Err(self.refuse("", f64::NAN, f64::NAN, ErrorId::CauseStillPresent, scope));
@@ -384,7 +387,7 @@ impl<P: Planner> Axis<P> {
             || self.power.fault().is_some_and(|fault| fault.cause_present)
     }
 
-    /// Completes a reset when all it waits for has happened (notes 3 and 4, S12).
+    /// Completes a reset when all its conditions are met (notes 3 and 4, S12).
     pub(super) fn finish_reset(&mut self) {
         if let Some(id) = self.failure.reset() {
             self.try_reset(id);
@@ -431,7 +434,7 @@ impl<P: Planner> Axis<P> {
         self.power.comms() != Comms::Ok
     }
 
-    /// What is asked of the power stage in this scan.
+    /// The request to the power stage in this scan.
     #[inline]
     pub(super) fn drive_request(&self) -> DriveRequest {
         if self.calm.is_any() {
@@ -447,7 +450,7 @@ impl<P: Planner> Axis<P> {
         } else if self.power.is_going_off() || self.power.is_tripped() || !self.power.is_wanted() {
             DriveRequest::Off
         } else if self.is_silent() && !self.power.is_on() {
-            // Enabled now, it would step from wherever it is to where it was.
+            // If it were enabled now, it would step from its real place to its last known one.
             DriveRequest::Off
         } else {
             DriveRequest::Enable

@@ -1,8 +1,9 @@
 //! Touch probes: the position at an edge of a probe's input.
 //!
-//! The drive latches the position at the first edge after it was armed, between scans. Whether that edge counts is
-//! decided here, at the latch of the next scan: with a window, one outside it does not, and the probe is armed
-//! anew. A drive is armed anew by one scan without an edge, so edges in that scan are not seen.
+//! The drive latches the position at the first edge after it was armed, between scans. The next latch
+//! decides whether that edge counts. If there is a window and the edge is outside it, the edge does not
+//! count and the probe is armed anew. To arm a drive anew takes one scan without an edge request, so
+//! edges in that scan are not seen.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_TouchProbe and MC_AbortTrigger; V23, T39 g.
 
@@ -10,14 +11,14 @@ use super::Axis;
 use crate::{CommandId, DrivePosition, Edge, ErrorId, Fate, PROBES, Raw, Scope, Trigger};
 use standstill_planner::Planner;
 
-/// MC_TouchProbe: values as they stand at the pins, unchecked.
+/// MC_TouchProbe: values at the pins, unchecked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TouchProbe {
     /// The probe and its edge.
     pub trigger: Raw<Trigger>,
-    /// First and last position (u) at which an edge counts, both included; none: everywhere.
+    /// First and last position (u) at which an edge counts, both included; none for everywhere.
     pub window: Option<(f64, f64)>,
-    /// The probing the same instance commanded before, which this one replaces should it still wait (V23).
+    /// The earlier probing of the same instance; this one replaces it if it still waits (V23).
     pub replaces: Option<CommandId>,
 }
 
@@ -27,7 +28,7 @@ struct Waiting {
     id: CommandId,
     edge: Edge,
     window: Option<(f64, f64)>,
-    /// The drive was asked to latch for it.
+    /// Whether the drive was asked to latch for it.
     armed: bool,
 }
 
@@ -35,7 +36,7 @@ struct Waiting {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Probes {
     waiting: [Option<Waiting>; PROBES],
-    /// The last position each recorded (u), and for which command.
+    /// The last position each probe recorded (u), and for which command.
     recorded: [Option<(CommandId, f64)>; PROBES],
 }
 
@@ -45,7 +46,7 @@ impl Probes {
     }
 }
 
-/// Whether `position` (u) lies in a window that was checked.
+/// Whether `position` (u) lies in a checked window.
 fn is_inside((first, last): (f64, f64), position: f64) -> bool {
     if first <= last {
         first <= position && position <= last
@@ -58,7 +59,7 @@ impl<P: Planner> Axis<P> {
     /// MC_TouchProbe: records the position at the next edge that counts, in every state.
     ///
     /// # Errors
-    /// The [`ErrorId`] the block shows: an undefined trigger, a window that is none, or a probe that another
+    /// The [`ErrorId`] the block shows: an undefined trigger, an invalid window, or a probe that another
     /// command waits for. Nothing changes then.
     pub fn touch_probe(&mut self, request: &TouchProbe, scope: &mut Scope<'_>) -> Result<CommandId, ErrorId> {
         let (probe, edge) = self.trigger(request.trigger, scope)?;
@@ -75,7 +76,7 @@ impl<P: Planner> Axis<P> {
             self.forget_probe(id);
         }
         let id = self.new_id();
-        // A drive that waits for this edge already goes on waiting: nothing that comes now is missed.
+        // A drive that already waits for this edge continues to wait, so no edge is missed.
         let armed = before.is_some_and(|before| before.armed && before.edge == edge);
         if let Some(slot) = self.beside.probes.waiting.get_mut(probe) {
             *slot = Some(Waiting {
@@ -93,7 +94,7 @@ impl<P: Planner> Axis<P> {
         Ok(id)
     }
 
-    /// MC_AbortTrigger: whoever waits for an edge of this probe, the other edge included, waits no longer.
+    /// MC_AbortTrigger: every command that waits for an edge of this probe, either edge, ends.
     ///
     /// # Errors
     /// [`ErrorId::TriggerInvalid`].
@@ -111,13 +112,14 @@ impl<P: Planner> Axis<P> {
         Ok(id)
     }
 
-    /// What command `id` recorded (u), in the coordinates that were in force then; each probe remembers the last one.
+    /// The position that command `id` recorded (u), in the coordinates of that time; each probe remembers
+    /// the last one.
     pub fn recorded_position(&self, id: CommandId) -> Option<f64> {
         let mut recorded = self.beside.probes.recorded.iter().flatten();
         recorded.find(|(of, _)| *of == id).map(|(_, position)| *position)
     }
 
-    /// Command `id` waits no longer, and nobody is told.
+    /// Removes the waiting command `id` without a result.
     pub fn forget_probe(&mut self, id: CommandId) {
         for probe in 0..PROBES {
             let waiting = self.beside.probes.waiting.get(probe).copied().flatten();
@@ -127,12 +129,12 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Takes what the drive told in this scan, before the feedback: what it latched carries the names that were in
-    /// force until now.
+    /// Takes the drive's report of this scan, before the feedback: a latched position still has the old
+    /// names.
     #[inline]
     pub fn follow_report(&mut self) {
         if !self.beside.report.is_finite() {
-            // The latch that comes takes a closer look.
+            // The next latch is a full one.
             self.stir();
         }
         if self.beside.probes.waiting.iter().any(Option::is_some) {
@@ -154,7 +156,8 @@ impl<P: Planner> Axis<P> {
             } else if let Some(latched) = told.latched.filter(|_| told.armed) {
                 let position = self.place_of(latched);
                 self.end_probing(probe);
-                // One that is no number is none; the axis fails for it, and the probe waits for the next.
+                // A value that is not a number does not count. The axis fails because of it, and the
+                // probe waits for the next.
                 if latched.is_finite() && waiting.window.is_none_or(|window| is_inside(window, position)) {
                     if let Some(slot) = self.beside.probes.recorded.get_mut(probe) {
                         *slot = Some((waiting.id, position));
@@ -170,7 +173,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Asks the drive to latch, as soon as it has let go of what it latched before.
+    /// Asks the drive to latch, as soon as it has cleared its earlier latched position.
     fn arm_probe(&mut self, probe: usize) {
         let told = self.beside.report.probes.get(probe);
         let free = told.is_some_and(|told| !told.armed);
@@ -206,7 +209,7 @@ impl<P: Planner> Axis<P> {
             self.in_first_turn(position)
                 .map_err(|(length, error)| self.refuse(pin, position, length, error, scope))?;
         }
-        // Only on a modulo axis does a window go on behind the end of the turn.
+        // Only on a modulo axis may a window cross the end of the turn.
         if first > last && self.modulo.is_none() {
             let error = ErrorId::WindowInvalid;
             return Err(self.refuse("LastPosition", last, first, error, scope));

@@ -1,13 +1,14 @@
 //! Profiles: motions along curves through points of a table.
 //!
-//! The curve is planned in full when the command becomes active: it starts in the state the axis is in then and is
-//! refused, with the point and the limit, if it would leave a limit of the axis. From then on it is a plan like others.
-//! Its times are fixed, so the override does not act on it, nothing is superimposed on it, and one that is stopped does
-//! not go on.
+//! The whole curve is planned when the command becomes active. It starts in the present state of the
+//! axis, and is refused, with the point and the limit, if it would leave a limit of the axis. From then
+//! on it is a plan like others. Its times are fixed, so the override does not act on it, nothing is
+//! superimposed on it, and a stopped profile does not continue.
 //!
-//! A profile that waits has no points here: they stand in a table of the runtime, which only its block can read. When its
-//! turn comes it owns the axis, which goes on as its predecessor left it, and its block gives the points in its next call.
-//! Where the block is called in every scan, before the motion step, that costs no scan.
+//! A waiting profile has no points here: they are in a table of the runtime, which only its block can
+//! read. When it becomes active it owns the axis, which continues as its predecessor left it, and its
+//! block gives the points in its next call. If the block is called in every scan, before the motion step,
+//! this takes no extra scan.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_PositionProfile, MC_VelocityProfile, MC_AccelerationProfile; V24.
 
@@ -25,26 +26,26 @@ const HALF_A_NANOSECOND: f64 = 0.5e-9;
 /// A record of a profile's table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ProfileRow {
-    /// Time since the record before; of the first since the start (ns).
+    /// Time since the record before; for the first, since the start (ns).
     pub delta_ns: i64,
-    /// Value there: u, u/s or u/s^2.
+    /// Value at that time: u, u/s or u/s^2.
     pub value: f64,
     /// The curve is level there.
     pub level: bool,
 }
 
-/// MC_PositionProfile and its like: values as they stand at the pins and in the table, unchecked.
+/// MC_PositionProfile and similar: values at the pins and in the table, unchecked.
 #[derive(Clone, Copy, Debug)]
 pub struct Profile<'a> {
     /// What the values are.
     pub kind: ProfileKind,
-    /// The table, of which a profile takes at most [`PROFILE_POINTS`].
+    /// The table; a profile uses at most [`PROFILE_POINTS`] of its rows.
     pub rows: &'a [ProfileRow],
     /// Factor of all times; above 0.
     pub time_scale: f64,
     /// Factor of all values.
     pub scale: f64,
-    /// What is added to all values.
+    /// Added to all values.
     pub offset: f64,
 }
 
@@ -63,7 +64,7 @@ impl Points {
 }
 
 impl Profile<'_> {
-    /// The points after `since` (s of the table's times); refused with the pin, its value and limit.
+    /// The points after `since` (s of the table's times). Refused with the pin, its value and limit.
     fn points(&self, since: f64) -> Result<Points, (&'static str, f64, f64, ErrorId)> {
         let invalid = ErrorId::ProfileScaleInvalid;
         if !(self.time_scale > 0.0 && self.time_scale.is_finite()) {
@@ -85,14 +86,14 @@ impl Profile<'_> {
             let (rows, most) = (self.rows.len() as f64, PROFILE_POINTS as f64);
             return Err((self.table_pin(), rows, most, table));
         }
-        // Summed in nanoseconds, so that no rounding adds up (V24).
+        // Summed in nanoseconds, so that no rounding accumulates (V24).
         let mut sum: i64 = 0;
         for row in self.rows {
             sum = sum
                 .checked_add(row.delta_ns)
                 .ok_or(("DeltaTime", row.delta_ns as f64, f64::NAN, table))?;
             let time = sum as f64 / 1e9;
-            // A point half a unit of the table ahead is where the profile is now.
+            // A point less than half a unit of the table ahead counts as reached.
             if since > 0.0 && time - since <= HALF_A_NANOSECOND {
                 points.passed += 1;
                 continue;
@@ -136,7 +137,7 @@ impl Profile<'_> {
         }
     }
 
-    /// What a block shows of the planner's refusal, and what it is about.
+    /// The error that a block shows for a refusal of the planner, and the subject of it.
     fn refusal(&self, fault: &ProfileFault) -> (&'static str, ErrorId) {
         let (table, beyond) = (ErrorId::ProfileTableInvalid, ErrorId::ProfileBeyondLimits);
         match fault.cause {
@@ -158,8 +159,8 @@ impl Profile<'_> {
 impl<P: Planner> Axis<P> {
     /// Takes a profile, or refuses it without any effect on the axis or the queue (R38).
     ///
-    /// One that starts at once is planned at once. One that waits is only looked at; its block must ask
-    /// [`Axis::profile_is_due`] in each call and then give it to [`Axis::start_profile`].
+    /// A profile that starts at once is planned at once. One that waits is only checked; its block must
+    /// call [`Axis::profile_is_due`] in each call, and then [`Axis::start_profile`].
     ///
     /// Cost: that of [`Planner::profile`].
     ///
@@ -171,7 +172,7 @@ impl<P: Planner> Axis<P> {
         buffer_mode: Raw<BufferMode>,
         scope: &mut Scope<'_>,
     ) -> Result<CommandId, ErrorId> {
-        // Among other commands it has the place of any move.
+        // Among other commands it is handled like any move.
         let any = Command::Halt {
             dynamics: Dynamics::default(),
         };
@@ -209,7 +210,7 @@ impl<P: Planner> Axis<P> {
         Ok(entry.id)
     }
 
-    /// Whether the profile `id` owns the axis and has yet to get its points.
+    /// Whether the profile `id` owns the axis and has not got its points yet.
     pub fn profile_is_due(&self, id: CommandId) -> bool {
         let due = |owner: &Entry| matches!(owner.work, Work::Profile { due: true, .. });
         self.owner
@@ -217,8 +218,8 @@ impl<P: Planner> Axis<P> {
             .is_some_and(|owner| owner.id == id && due(owner))
     }
 
-    /// The profile `id`, which is due, starts with these points. If it cannot, it ends with the error and the next command
-    /// has its turn; without one an axis in motion enters ErrorStop.
+    /// The profile `id`, which is due, starts with these points. If it cannot, it ends with the error,
+    /// and the next command becomes active. If there is none, an axis in motion enters ErrorStop.
     ///
     /// Cost: that of [`Planner::profile`].
     pub fn start_profile(&mut self, id: CommandId, profile: &Profile<'_>, scope: &mut Scope<'_>) {
@@ -233,7 +234,7 @@ impl<P: Planner> Axis<P> {
         };
         match self.plan_profile(&mut owner, profile, scope) {
             Ok(motion) => {
-                // The curve starts where the sum is.
+                // The curve starts at the sum.
                 self.end_superimposed(Fate::Aborted);
                 self.enter(owner.work.manner().start);
                 self.before = self.limits_before(&owner.limits);
@@ -243,11 +244,13 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// New values for the profile `id` in progress (ContinuousUpdate): from the present state to the points still ahead,
-    /// in the time that is left to them times the new factor. Otherwise as [`Axis::profile`].
+    /// New values for the profile `id` in progress (ContinuousUpdate): from the present state to the
+    /// remaining points, in the remaining time multiplied by the new factor. Otherwise like
+    /// [`Axis::profile`].
     ///
     /// # Errors
-    /// What a new profile with these values would show. It is recorded, and the profile goes on as it was.
+    /// The error that a new profile with these values would show. It is recorded, and the profile
+    /// continues unchanged.
     pub fn update_profile(
         &mut self,
         id: CommandId,
@@ -285,14 +288,15 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
-    /// The next command is a profile: it owns the axis from now on, which goes on as its predecessor left it. It waits for
-    /// something that is being superimposed; what waits for room beside it would not find any.
+    /// The next command is a profile: it owns the axis from now on, which continues as its predecessor
+    /// left it. It waits for a superimposed motion to end. A superimposed command that waits for room
+    /// would not find any beside it.
     pub(super) fn begin_due(&mut self, mut next: Entry) {
         if self.layer.as_ref().is_some_and(|layer| layer.moves()) {
             return;
         }
         let before = self.limits_before(&next.limits);
-        // What was added stays added as long as the axis goes on as it is.
+        // The added distance stays added while the axis continues unchanged.
         self.end_superimposed_command(Fate::Aborted);
         self.queue.pop();
         self.end_owner(self.fate_at_hand_over());
@@ -305,7 +309,7 @@ impl<P: Planner> Axis<P> {
         next.limits = self.slowed(&self.parameters.limits);
         self.in_force = before;
         self.watched = self.needs_watching(&next);
-        // From rest it may still come to nothing, and no arrow leads from ContinuousMotion to Standstill.
+        // At rest it may still fail, and no arrow leads from ContinuousMotion to Standstill.
         self.enter(if starts_at_rest {
             AxisEvent::StartDiscrete
         } else {
@@ -314,7 +318,8 @@ impl<P: Planner> Axis<P> {
         self.own(next);
     }
 
-    /// Whether the owner is a profile without an end that has come to its end: it has completed, and keeps its velocity.
+    /// Whether the owner is an endless profile that has reached its end. It has completed, and keeps its
+    /// velocity.
     pub(super) fn profile_is_over(&self) -> bool {
         let runs_on = |owner: &Entry| owner.work.manner().ending == Ending::RunsOn && !owner.paused;
         self.owner.as_ref().is_some_and(runs_on) && self.goal_reached()
@@ -333,7 +338,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Refuses what no start could make good.
+    /// Refuses values that are wrong for any start.
     fn looked_at(&self, profile: &Profile<'_>, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         let refuse = |(pin, value, limit, error)| self.refuse(pin, value, limit, error, scope);
         let points = profile.points(0.0).map_err(refuse)?;
@@ -373,7 +378,7 @@ impl<P: Planner> Axis<P> {
         Err(self.refuse_profile(profile, &fault, 0, scope))
     }
 
-    /// The curve from the present state. Nothing changes but `entry`.
+    /// The curve from the present state. Only `entry` changes.
     fn plan_profile(
         &self,
         entry: &mut Entry,
@@ -388,7 +393,7 @@ impl<P: Planner> Axis<P> {
             .points(since)
             .map_err(|(pin, value, limit, error)| self.refuse(pin, value, limit, error, scope))?;
         if since > 0.0 {
-            // It goes on in the frame it is in.
+            // It continues in its present frame.
             entry.turns = 0;
         } else {
             self.aim(entry, self.setpoint.position);

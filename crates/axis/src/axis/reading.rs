@@ -1,4 +1,4 @@
-//! What reading blocks ask of an axis: actual values, what its motion is doing, what its drive reports.
+//! Values for the reading blocks: actual values, the state of the motion, the reports of the drive.
 //!
 //! Source: PLCopen Motion Control Part 1, sections on MC_ReadMotionState, MC_ReadAxisInfo and
 //! MC_ReadActualVelocity; V12b. Nothing here changes the axis.
@@ -8,16 +8,16 @@ use super::{Axis, Motion};
 use crate::{Comms, DriveSignals, ErrorId, Raw, ValueSource};
 use standstill_planner::{Plan, Planner, Setpoint};
 
-/// Part of the lower of the acceleration limits below which a change of the actual velocity counts as none.
+/// A change of the actual velocity below this part of the lower acceleration limit counts as none.
 const CONSTANT_WINDOW: f64 = 0.01;
 
 /// Rounding of one difference of positions, in units of the last place of the position.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// What happens to the magnitude of a velocity.
+/// The change of a speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pace {
-    /// It stays, at 0 too.
+    /// It is constant, also at 0.
     #[default]
     Constant,
     /// It grows.
@@ -50,18 +50,18 @@ impl Way {
     }
 }
 
-/// What a motion is doing, see [`Axis::motion_state`].
+/// The state of a motion, see [`Axis::motion_state`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MotionState {
-    /// What happens to the magnitude of the velocity.
+    /// The change of its speed.
     pub pace: Pace,
     /// Where the position goes.
     pub way: Way,
 }
 
 impl<P: Planner> Axis<P> {
-    /// Takes over this scan's actual position (u) where what came before may need names that fit. Returns whether the velocity
-    /// it means is a number; if not, nothing is taken over.
+    /// Takes this scan's actual position (u) if earlier ones may need new names. Returns whether the
+    /// velocity is a number; if not, nothing is taken.
     pub(super) fn latch_and_mend(&mut self, position: f64) -> bool {
         let before = self.feedback;
         let length = self.modulo.as_ref().map(|modulo| modulo.length);
@@ -79,7 +79,7 @@ impl<P: Planner> Axis<P> {
         self.feedback.latch_nothing();
     }
 
-    /// From the next feedback on, what is called `old` (u) is called `name` (u); no motion.
+    /// Renames positions: from the next feedback on, `old` (u) is called `name` (u). No motion.
     pub(super) fn rename_actual(&mut self, old: f64, name: f64) {
         self.stir();
         self.feedback.rename(old, name);
@@ -89,8 +89,8 @@ impl<P: Planner> Axis<P> {
     /// The actual position (u) if it is fresh.
     ///
     /// # Errors
-    /// If it was not latched in this scan: [`ErrorId::CommunicationLost`], or [`ErrorId::FeedbackInvalid`] if what the
-    /// drive told is no number.
+    /// If it was not latched in this scan: [`ErrorId::CommunicationLost`], or
+    /// [`ErrorId::FeedbackInvalid`] if the drive reported an invalid number.
     pub fn fresh_position(&self) -> Result<f64, ErrorId> {
         match self.power.comms() {
             Comms::Ok => Ok(self.feedback.position()),
@@ -99,9 +99,9 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The actual velocity (u/s): the difference of the actual positions of this scan and the one before,
-    /// divided by the cycle; after a loss of communication the mean since the last fresh position. A new name
-    /// of the position is no motion. Resolution: that of the position, divided by the cycle.
+    /// The actual velocity (u/s): the difference of the actual positions of this scan and the last one,
+    /// divided by the cycle. After a loss of communication it is the mean since the last fresh position.
+    /// A new name of the position is no motion. Resolution: that of the position, divided by the cycle.
     ///
     /// # Errors
     /// As [`Axis::fresh_position`].
@@ -120,15 +120,16 @@ impl<P: Planner> Axis<P> {
         self.feedback.step_before() / self.planner.cycle()
     }
 
-    /// What the motion is doing, by the values `source` names.
+    /// The state of the motion, by the values that `source` names.
     ///
-    /// - Commanded values are those the active command asks for. They change in jumps only, so the pace is
-    ///   constant; the way is that from the set position to the target, or that of the velocity asked for.
-    /// - Set values: pace and way by the plan's acceleration and velocity at the set-point last published,
-    ///   not by differences (V12b).
-    /// - Actual values: by differences of latched positions. The velocity counts as constant while it changes
-    ///   by no more than a hundredth of the lower acceleration limit, and what the resolution of the
-    ///   position hides.
+    /// - Commanded values are those the active command asks for. They change only in jumps, so the pace
+    ///   is constant. The direction is that from the set position to the target, or that of the commanded
+    ///   velocity.
+    /// - Set values: pace and direction by the plan's acceleration and velocity at the last set-point,
+    ///   and not by differences (V12b).
+    /// - Actual values: by differences of latched positions. The velocity counts as constant while it
+    ///   changes by no more than a hundredth of the lower acceleration limit plus the resolution of the
+    ///   position.
     ///
     /// # Errors
     /// [`ErrorId::SourceInvalid`] if the number names no source, those of [`Axis::fresh_position`] if actual values are
@@ -170,7 +171,8 @@ impl<P: Planner> Axis<P> {
         let step = self.feedback.step();
         let step_before = self.feedback.step_before();
         let resolution = match self.config.scaling {
-            // Each of the positions is off by half an increment at most, their second difference by two.
+            // Each position has an error of at most half an increment, their second difference of at most
+            // two.
             Some(scaling) => 2.0 * f64::from(scaling.units()) / f64::from(scaling.increments()),
             None => 0.0,
         };
@@ -195,12 +197,13 @@ impl<P: Planner> Axis<P> {
         self.power.comms() == Comms::Ok
     }
 
-    /// Nothing known keeps the power stage from being on: communication and supply are there, no fault pends.
+    /// Whether no known cause keeps the power stage off: communication and supply are there, no fault is
+    /// pending.
     pub fn is_ready_for_power(&self) -> bool {
         self.is_communicating() && self.power.has_voltage() && self.power.fault().is_none()
     }
 
-    /// What the drive reports beside its position.
+    /// The signals of the drive beside its position.
     pub fn drive_signals(&self) -> DriveSignals {
         self.beside.signals
     }

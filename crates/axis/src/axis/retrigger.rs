@@ -1,8 +1,9 @@
-//! An instance that is triggered anew while it holds a command.
+//! An instance that is triggered anew while it has a command.
 //!
-//! What waits gives up its place before the new command is looked at, whatever becomes of that. What moves goes on to its
-//! end; should the new command be refused, no block follows it any more. That is recorded, and from then on what would
-//! hold the motion up ends it as MC_Halt does: it never sets off again by itself.
+//! A waiting command gives up its place before the new command is checked, even if that is then refused.
+//! A moving command goes on to its end. If the new command is refused, no block follows the moving one
+//! any more. This is recorded, and from then on anything that would hold the motion up ends it as MC_Halt
+//! does: it never starts again by itself.
 //!
 //! Source: PLCopen Motion Control Part 1, section on Execute/Done; R32, R38, R97, B19.
 
@@ -13,9 +14,9 @@ use crate::{AxisEvent, CommandId, Event, Fate, Scope};
 use standstill_planner::Planner;
 
 impl<P: Planner> Axis<P> {
-    /// The instance that holds command `id` is about to give another one: if `id` waits, it is taken out of the buffer, or
-    /// of the wait for room, without ever being active. Returns whether that is so. [`Axis::replaced`] must follow in the
-    /// same call.
+    /// The instance of command `id` is about to give another one. If `id` waits, it is removed from the
+    /// buffer, or from the wait for room, without ever being active. Returns whether it was.
+    /// [`Axis::replaced`] must follow in the same call.
     pub fn withdraw(&mut self, id: CommandId) -> bool {
         if self.queue.remove(id) {
             self.decide(id, Fate::Aborted);
@@ -28,10 +29,10 @@ impl<P: Planner> Axis<P> {
         self.withdraw_superimposed(id) || self.withdraw_shift(id)
     }
 
-    /// The instance that held command `id`, which [`Axis::withdraw`] said `waited` or not, follows the command `new` now:
-    /// none if that was refused, or went to another axis.
+    /// The instance of command `id`, which [`Axis::withdraw`] said `waited` or not, now follows the
+    /// command `new`: none if that was refused, or went to another axis.
     ///
-    /// Cost: at most two plans, and what it takes to look through the buffer.
+    /// Cost: at most two plans, and a search of the buffer.
     pub fn replaced(&mut self, id: CommandId, waited: bool, new: Option<CommandId>, scope: &mut Scope<'_>) {
         if waited {
             self.arm_anew(scope);
@@ -50,7 +51,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Command `id`, which waited, has failed: what its instance has in motion goes on (B19, R79).
+    /// Command `id`, which waited, has failed: the motion of its instance goes on (B19, R79).
     pub(super) fn lose_heir(&mut self, id: CommandId, scope: &mut Scope<'_>) {
         if let Some(owner) = self.owner.filter(|owner| owner.heir == Some(id)) {
             self.orphan(owner.id, scope);
@@ -87,8 +88,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The profile whose turn has come has no block any more that would give it its points: the next command has its turn,
-    /// and without one the axis comes to rest, a motion that no block follows.
+    /// The profile that becomes active no longer has a block to give its points. The next command becomes
+    /// active. If there is none, the axis comes to rest, by a motion that no block follows.
     #[cold]
     fn pass_over_due_profile(&mut self, id: CommandId, scope: &mut Scope<'_>) {
         if self.setpoint.is_at_rest() {
@@ -103,8 +104,8 @@ impl<P: Planner> Axis<P> {
         self.halt_alone(halt, scope);
     }
 
-    /// The owner has passed its end in motion, and whatever was to take over has failed: it is done, and the axis comes to
-    /// rest.
+    /// The owner has passed its end in motion, and the command that was to take over has failed. The
+    /// owner is done, and the axis comes to rest.
     #[cold]
     pub(super) fn halt_behind_end(&mut self, scope: &mut Scope<'_>) {
         let scope = &mut self.owner_scope(scope);
@@ -114,11 +115,12 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// `ended` has ended, and nothing takes over: the axis comes to rest, if it is not, with an end of its own.
+    /// `ended` has ended and nothing takes over. An axis in motion comes to rest, unless the motion has
+    /// an end of its own.
     pub(super) fn halt_after(&mut self, ended: &Entry, scope: &mut Scope<'_>) {
         let id = self.new_id();
         let halt = Entry {
-            // Of what stands there is nothing to record.
+            // For an axis at rest there is nothing to record.
             orphaned: self.setpoint.is_at_rest(),
             ..Entry::new(id, ended.instance, Work::Halt, ended.limits, ended.mode)
         };
@@ -132,7 +134,7 @@ impl<P: Planner> Axis<P> {
         let planned = match self.plan_next(&mut halt) {
             Ok(Some(motion)) => Ok(motion),
             Ok(None) => {
-                // No room for a stop beside what is superimposed: that ends, too.
+                // There is no room for a stop beside the superimposed motion, so that ends, too.
                 self.end_superimposed(Fate::Aborted);
                 self.plan_for(&mut halt)
             }

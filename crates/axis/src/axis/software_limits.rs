@@ -1,10 +1,10 @@
-//! Software limits: what would end outside is refused, what runs stops inside.
+//! Software limits: a motion that would end outside is refused, a running motion stops inside.
 //!
-//! A command to a place outside is refused, and so is an endless motion that leads further out from where the
-//! axis stands at or beyond a limit. A motion that may come out all the same is watched: endless ones, ramps to
-//! rest that end outside, moves that brake too late and turn back outside. In the last scan in which the stop
-//! dynamics can keep it inside it ends in ErrorStop. An axis that is outside, because it was pushed there or its
-//! coordinates moved, may move to any place inside.
+//! A command to a place outside is refused. So is an endless motion that goes further out from an axis at
+//! or beyond a limit. A motion that may come out all the same is watched: endless ones, ramps to rest
+//! that end outside, moves that brake too late and turn back outside. It ends in ErrorStop in the last
+//! scan in which the stop dynamics can keep it inside. An axis outside the limits, after a push or a move
+//! of coordinates, may move to any place inside.
 
 use super::commands::{Entry, Manner, Watch};
 use super::{Axis, Motion};
@@ -20,7 +20,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Refuses an endless motion from `here` (u) with `velocity` (u/s) that leads further out.
+    /// Refuses an endless motion from `here` (u) with `velocity` (u/s) that goes further out.
     pub(super) fn not_outward(&self, here: f64, velocity: f64) -> Result<(), ErrorId> {
         match self.parameters.software_limits {
             Some((min, max)) if (velocity > 0.0 && here >= max) || (velocity < 0.0 && here <= min) => {
@@ -57,7 +57,7 @@ impl<P: Planner> Axis<P> {
             // A curve was checked when it was planned, but its places may have other names since.
             Watch::Curve => outside(self.end_of_plan()) || self.turns_outside(),
             Watch::Ramp => outside(self.end_of_plan()),
-            // From rest the way leads straight to the target, from motion perhaps past it.
+            // From rest the way goes straight to the target; from motion it may go past it.
             Watch::Way => {
                 outside(self.end_of_plan())
                     || (!self.setpoint.is_at_rest()
@@ -67,8 +67,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// [`Axis::would_leave`] for the set-point the plan is at. It is computed again, because handing over a reference
-    /// would keep the one about to be published out of registers, in every scan of every axis.
+    /// [`Axis::would_leave`] for the present set-point of the plan. It is computed again, because a
+    /// reference would keep the set-point to publish out of registers, in every scan of every axis.
     #[inline(never)]
     pub(super) fn plan_would_leave(&self) -> bool {
         match &self.motion {
@@ -81,24 +81,25 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether this is the last scan in which the stop dynamics can keep a motion inside that would leave; `next`
-    /// is the set-point it is about to publish. Cost: at most two ramps.
+    /// Whether this is the last scan in which the stop dynamics can keep inside a motion that would leave
+    /// the limits. `next` is the set-point about to be published. Cost: at most two ramps.
     #[inline(never)]
     pub(super) fn would_leave(&self, next: &Setpoint) -> bool {
         let Some((min, max)) = self.parameters.software_limits else {
             return false;
         };
-        // Further out than it is: from outside it may come in, and in the middle of a reversal a stop turns back.
+        // Only further out than now counts: from outside it may come in, and in the middle of a reversal
+        // a stop turns back.
         let leaves = |rest: f64| (rest > max && rest > next.position) || (rest < min && rest < next.position);
-        // Between two scans it may come out and turn: a stop from there leads in again.
+        // Between two scans it may come out and turn; a stop from there leads in again.
         let outside = |position: f64| position < min || position > max;
         let comes_out = outside(next.position) && !outside(self.setpoint.position);
         let work = match (&self.motion, &self.owner) {
             (Motion::Run { .. } | Motion::Geared | Motion::Closing { .. }, Some(owner)) => {
                 Some(owner.work.manner())
             }
-            // Over an owner that stands, or none, a superimposed motion goes on alone: it was checked when it was
-            // planned, but then its end may have had another name, or none.
+            // Over a standing owner, or none, a superimposed motion moves alone. It was checked when it
+            // was planned, but its end may have another name now, or had no name then.
             (Motion::Hold, _) => None,
             (Motion::Run { .. } | Motion::Geared | Motion::Closing { .. }, None)
             | (Motion::Follow | Motion::Torque { .. }, _) => return false,
@@ -108,7 +109,7 @@ impl<P: Planner> Axis<P> {
             Some(Manner { watch, endless, .. }) => match watch {
                 Watch::Always => true,
                 Watch::Ramp | Watch::Torque => leaves(self.end_of_plan() + self.superimposed_left()),
-                // Where one that goes on leads to with something superimposed was not checked.
+                // The end of an endless motion with something superimposed was not checked.
                 Watch::Way if endless && self.layer.is_some() => {
                     leaves(self.end_of_plan() + self.superimposed_left())
                 }
@@ -129,8 +130,9 @@ impl<P: Planner> Axis<P> {
         comes_out || (leaving && leaves(self.rest(next, &self.stop_limits())))
     }
 
-    /// Whether, under a torque, a stop that began a scan later would end outside and further out than the axis is. What a scan
-    /// brings is taken from the last two: the same way, and if it grew outward once more as much. Cost: at most one ramp.
+    /// Whether, under a torque, a stop that began a scan later would end outside and further out than the
+    /// axis is. The next scan is estimated from the last two: the same way, and once more its growth if
+    /// it grew outwards. Cost: at most one ramp.
     #[cold]
     #[inline(never)]
     pub(super) fn torque_would_leave(&self) -> bool {
@@ -161,8 +163,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the rest of the running plan turns outside the software limits, or as a curve comes out of them. Cost: a look
-    /// at each of its pieces.
+    /// Whether the rest of the running plan turns outside the software limits, or leaves them as a curve.
+    /// Cost: a check of each of its pieces.
     #[inline(never)]
     fn turns_outside(&self) -> bool {
         let (Motion::Run { plan, elapsed, .. }, Some(range)) =
@@ -170,7 +172,7 @@ impl<P: Planner> Axis<P> {
         else {
             return false;
         };
-        // Over nothing it is the sum of both.
+        // Over no motion it is the sum of both.
         let still = Setpoint::at_rest(0.0);
         let limits = &self.config.limits;
         let hold = self.planner.ramp_to(&still, 0.0, limits, limits);

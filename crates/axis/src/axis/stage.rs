@@ -1,9 +1,9 @@
-//! The power stage under an axis: what MC_Power wants of it and what the drive tells of it.
+//! The power stage of an axis: the requests of MC_Power and the reports of the drive.
 
 use super::Permission;
 use crate::{Comms, DriveFeedback, Fault, InstanceId};
 
-/// What is known of the power stage.
+/// The known state of the power stage.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Power {
     /// MC_Power.Enable.
@@ -11,23 +11,24 @@ pub(super) struct Power {
     /// Operation is enabled, as the drive told last.
     on: bool,
     stage: Stage,
-    /// Latches in a row that power was asked for and not confirmed; counted only if that has a time-out.
+    /// Latches in a row in which power was requested and not confirmed; counted only if there is a
+    /// time-out.
     waited: u64,
-    /// What the last MC_Power of this scan asked for, unless it is the decider.
+    /// The last request of an MC_Power in this scan, unless that instance decides.
     overruled: Option<Wish>,
     /// The directions MC_Power permits.
     permitted: Permission,
-    /// The instance that spoke last in the scan before.
+    /// The last instance called in the scan before.
     decider: Option<InstanceId>,
-    /// Power for the stage is available, as last told.
+    /// Whether power for the stage is available, as last reported.
     voltage: bool,
-    /// The fault last told; only in ErrorStop.
+    /// The fault last reported; only in ErrorStop.
     fault: Option<Fault>,
     /// State of the communication; other than Ok only in ErrorStop.
     comms: Comms,
 }
 
-/// What an instance of MC_Power asked for.
+/// The request of an instance of MC_Power.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wish {
     pub wanted: bool,
@@ -35,21 +36,21 @@ pub(super) struct Wish {
     pub instance: InstanceId,
 }
 
-/// What keeps the stage from being as MC_Power wants it.
+/// The reasons why the stage is not in the state that MC_Power requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
     /// Nothing.
     Ready,
     /// Switched off on request; the axis ramps down or waits for the stage.
     GoingOff,
-    /// Power was lost or the drive failed: power does not come back before a reset or a new rising Enable.
+    /// Power was lost or the drive failed: power does not return before a reset or a new rising Enable.
     Tripped,
     /// The same after power was not confirmed in time.
     Unconfirmed,
 }
 
 impl Power {
-    /// As it starts: off, or on and wanted.
+    /// The initial state: off, or on and requested.
     pub fn new(powered: bool) -> Self {
         Self {
             wanted: powered,
@@ -77,7 +78,7 @@ impl Power {
         self.stage == Stage::GoingOff
     }
 
-    /// It does not come back by itself.
+    /// It does not return by itself.
     pub fn is_tripped(&self) -> bool {
         matches!(self.stage, Stage::Tripped | Stage::Unconfirmed)
     }
@@ -87,7 +88,7 @@ impl Power {
         self.stage == Stage::Unconfirmed
     }
 
-    /// Latches in a row that it was asked for and not confirmed, if that has a time-out.
+    /// Latches in a row in which it was requested and not confirmed, if there is a time-out.
     pub fn waited(&self) -> u64 {
         self.waited
     }
@@ -108,27 +109,28 @@ impl Power {
         self.comms
     }
 
-    /// On as wanted, and nothing is the matter.
+    /// On as requested, with nothing pending.
     pub fn is_calm(&self) -> bool {
         let is_as_wanted = self.on && self.wanted && self.stage == Stage::Ready && self.overruled.is_none();
         let is_well = self.fault.is_none() && self.comms == Comms::Ok;
         is_as_wanted && is_well
     }
 
-    /// Takes over what a drive without a fault told.
+    /// Takes the report of a drive without a fault.
     #[inline]
     pub fn latch_voltage(&mut self, voltage: bool) {
         self.voltage = voltage;
     }
 
-    /// Takes over what the drive told beside its power; `comms` as it is after a look at the position.
+    /// Takes the drive's report beside its power; `comms` includes the check of the position.
     pub fn latch(&mut self, feedback: &DriveFeedback, comms: Comms) {
         self.voltage = feedback.voltage;
         self.fault = feedback.fault;
         self.comms = comms;
     }
 
-    /// The drive told whether operation is enabled. Returns whether it went off although it is wanted and was not asked to.
+    /// The drive reported whether operation is enabled. Returns whether it went off although it was
+    /// requested and not asked to go off.
     pub fn latch_enabled(&mut self, enabled: bool) -> bool {
         let was_on = self.on;
         self.on = enabled;
@@ -147,8 +149,8 @@ impl Power {
         }
     }
 
-    /// A latch has gone by. If it was the last of `timeout` in which power could be confirmed, it trips, and the instance that
-    /// wants power is returned.
+    /// A latch has passed. If it was the last of `timeout` in which power could be confirmed, it trips,
+    /// and returns the instance that requests power.
     pub fn wait(&mut self, timeout: u64) -> Option<InstanceId> {
         let waits = self.wanted && !self.on && self.stage == Stage::Ready;
         self.waited = if waits { self.waited.saturating_add(1) } else { 0 };
@@ -159,7 +161,7 @@ impl Power {
         Some(self.decider.unwrap_or_default())
     }
 
-    /// Whatever took the power away, it may be asked for again.
+    /// Power may be requested again, whatever has removed it.
     pub fn let_return(&mut self) {
         if self.is_tripped() {
             self.stage = Stage::Ready;
@@ -178,28 +180,29 @@ impl Power {
         }
     }
 
-    /// An instance of MC_Power speaks. Returns whether it is obeyed at once: the decider of the scan before is, others at the
-    /// end of the scan if nobody spoke after them (V9b).
+    /// Takes the request of an MC_Power instance. Returns whether it has effect at once. The decider of
+    /// the last scan has; others take effect at the end of the scan if no other was called after them
+    /// (V9b).
     pub fn hear(&mut self, wish: Wish) -> bool {
         let obeyed = *self.decider.get_or_insert(wish.instance) == wish.instance;
         self.overruled = if obeyed { None } else { Some(wish) };
         obeyed
     }
 
-    /// Something is left to be decided at the end of the scan.
+    /// Whether a request is left to decide at the end of the scan.
     #[inline]
     pub fn is_overruled(&self) -> bool {
         self.overruled.is_some()
     }
 
-    /// Who spoke last in this scan without being obeyed; it decides from now on.
+    /// The last request in this scan that had no effect yet; its instance decides from now on.
     pub fn take_overruled(&mut self) -> Option<Wish> {
         let wish = self.overruled.take();
         self.decider = wish.map(|wish| wish.instance).or(self.decider);
         wish
     }
 
-    /// Nobody is heard in this scan any more.
+    /// Drops the requests of this scan.
     pub fn forget_overruled(&mut self) {
         self.overruled = None;
     }

@@ -1,8 +1,9 @@
 //! A second motion on top of the owner's: what MC_MoveSuperimposed adds and MC_HaltSuperimposed ends.
 //!
-//! The owner's set-point and what is added are planned apart and published as their sum, so the owner keeps
-//! its time and path. What is added must leave the sum inside the limits of the axis: it is taken as asked,
-//! slower, or it waits until the owner's motion leaves room (docs/superimposed.md, docs/decisions/0006).
+//! The owner's set-point and the added motion are planned apart and published as their sum, so the owner
+//! keeps its time and path. The added motion must leave the sum inside the limits of the axis. It is
+//! taken as asked, or slower, or it waits until the owner's motion leaves room (docs/superimposed.md,
+//! docs/decisions/0006).
 //!
 //! Source: PLCopen Motion Control Part 1, sections MC_MoveSuperimposed and MC_HaltSuperimposed; R51, R64 to
 //! R66, S9, V14, V14a.
@@ -17,14 +18,14 @@ use super::{Axis, Motion};
 use crate::{AxisEvent, AxisState, CommandId, ErrorId, Event, Fate, InstanceId, Scope, Superimpose};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
-/// What a superimposed command does.
+/// The kinds of superimposed commands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Adds {
-    /// MC_MoveSuperimposed, in the coordinate of what is added.
+    /// MC_MoveSuperimposed, in the coordinate of the added motion.
     Distance {
         /// As commanded (u).
         distance: f64,
-        /// Where it took over (u).
+        /// The place where it took over (u).
         origin: f64,
         /// Where it ends (u).
         target: f64,
@@ -39,18 +40,18 @@ pub(super) struct Added {
     pub id: CommandId,
     instance: InstanceId,
     adds: Adds,
-    /// As the override has them.
+    /// As the override scales them.
     limits: Limits,
     /// As commanded.
     asked: Limits,
-    /// The override holds it: it comes to rest and goes on when the factor of the velocity is raised.
+    /// The override holds it: it comes to rest, and continues when the factor of the velocity is raised.
     halting: bool,
     progress: Progress,
     /// No block follows it: its instance was triggered anew and refused.
     orphaned: bool,
 }
 
-/// How far a superimposed command has come.
+/// The progress of a superimposed command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Progress {
     /// It waits for room, and the one before it comes to its end.
@@ -67,12 +68,12 @@ impl Added {
         self.progress != Progress::Waits
     }
 
-    /// More room would change something: it would begin, or go faster.
+    /// Whether more room would change something: it would begin, or go faster.
     fn lacks_room(&self) -> bool {
         self.progress != Progress::Runs
     }
 
-    /// It has to wait before it goes on; without a block it does not, and is a halt from now on.
+    /// It has to wait before it continues. Without a block it does not wait, and is a halt from now on.
     fn wait(&mut self) {
         if self.orphaned {
             self.adds = Adds::Halt;
@@ -85,23 +86,23 @@ impl Added {
     }
 }
 
-/// The second motion and what it lies on.
+/// The second motion and the motion under it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layer<Plan> {
     /// Set-point of the owner alone.
     pub base: Setpoint,
-    /// What is added; its position counts from where the layer began.
+    /// The added motion; its position counts from the start of the layer.
     pub added: Setpoint,
-    /// What of `added.position` the positions of `base` contain already (u).
+    /// The part of `added.position` that the positions of `base` already contain (u).
     taken: f64,
-    /// How `added` moves; never [`Motion::Follow`].
+    /// The motion of `added`; never [`Motion::Follow`].
     pub(super) motion: Motion<Plan>,
     /// Limits of that motion.
     in_force: Limits,
     /// Limits of the one it took over from.
     before: Limits,
     command: Option<Added>,
-    /// Scan of the owner's plan from which on a command that waits or was lowered may find more room.
+    /// Scan of the owner's plan from which a command that waits or was lowered may find more room.
     retry: u64,
 }
 
@@ -123,12 +124,12 @@ impl<P: Plan> Layer<P> {
         matches!(self.motion, Motion::Run { .. })
     }
 
-    /// The limits of what is being added.
+    /// The limits of the added motion.
     pub fn limits_in_motion(&self) -> Option<&Limits> {
         self.moves().then_some(&self.in_force)
     }
 
-    /// Whether something is yet to be added. A halt that finds nothing in motion adds nothing.
+    /// Whether there is still something to add. A halt that finds nothing in motion adds nothing.
     fn is_busy(&self) -> bool {
         self.moves() || matches!(&self.command, Some(command) if command.adds != Adds::Halt)
     }
@@ -149,11 +150,12 @@ impl<P: Plan> Layer<P> {
         end - self.added.position
     }
 
-    /// The owner's plan starts anew at `start` (u), `passed` scans later than it did; returns the sum's position.
+    /// The owner's plan starts anew at `start` (u), `passed` scans later than before. Returns the sum's
+    /// position.
     pub fn bring_back(&mut self, start: f64, passed: u64) -> f64 {
         self.base.position = start;
         if self.retry != u64::MAX {
-            // 0 stands for a command that was not tried yet.
+            // 0 means a command that was not tried yet.
             self.retry = self.retry.saturating_sub(passed).max(1);
         }
         self.sum().position
@@ -165,7 +167,8 @@ impl<P: Plan> Layer<P> {
         self.sum().position
     }
 
-    /// The owner takes over the whole velocity, as `sum`; what is left to add starts again from rest.
+    /// The owner takes over the whole velocity, as `sum`; the rest of the distance starts again from
+    /// rest.
     pub fn pass_velocity(&mut self, sum: Setpoint) {
         self.base = sum;
         self.motion = Motion::Hold;
@@ -185,12 +188,12 @@ impl<P: Plan> Layer<P> {
         }
     }
 
-    /// The owner's motion is another one: a command that waits or was lowered is tried again.
+    /// The owner's motion has changed: a command that waits or was lowered is tried again.
     pub fn try_soon(&mut self) {
         self.retry = 0;
     }
 
-    /// Where the axis will be once everything is added to the owner at `position` (u).
+    /// The place of the axis once everything is added to the owner at `position` (u).
     pub fn end_above(&self, position: f64) -> f64 {
         position + (self.added.position - self.taken) + self.left()
     }
@@ -205,14 +208,14 @@ impl<P: Plan> Layer<P> {
 }
 
 impl<P: Planner> Axis<P> {
-    /// Takes MC_MoveSuperimposed, or refuses it without any effect (R38). It aborts only a superimposed
-    /// command before it (R66) and takes over from its motion.
+    /// Takes MC_MoveSuperimposed, or refuses it without any effect (R38). It aborts only an earlier
+    /// superimposed command (R66), and takes over from its motion.
     ///
     /// Cost: where the owner moves that of `Axis::soonest`: at most 50 plans; else at most 7. Each is laid over the owner's.
     ///
     /// # Errors
-    /// The [`ErrorId`] the block shows; the refusal is recorded with pin, value and limit. Lack of room
-    /// under the axis limits is none: the command waits.
+    /// The [`ErrorId`] the block shows; the refusal is recorded with pin, value and limit. A lack of room
+    /// under the axis limits is no error: the command waits.
     pub fn superimpose(
         &mut self,
         request: &Superimpose,
@@ -245,8 +248,9 @@ impl<P: Planner> Axis<P> {
         Ok(command.id)
     }
 
-    /// What is superimposed moves the owner's end, and with it the place a blended distance behind it leads to: should that
-    /// be outside the software limits now, the owner comes to rest at its end, where the next one is refused.
+    /// A superimposed distance moves the owner's end, and so the end of a blended distance behind it. If
+    /// that is outside the software limits now, the owner comes to rest at its end, and the next command
+    /// is refused there.
     fn rest_before_outside(&mut self, scope: &mut Scope<'_>) {
         let blends = |owner: &Entry| owner.passage != REST;
         let (Some(owner), Some(layer)) = (self.owner.filter(blends), &self.layer) else {
@@ -261,9 +265,9 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Takes MC_HaltSuperimposed: the superimposed command is aborted and its motion comes to rest; the owner
-    /// goes on. With nothing superimposed it completes without effect, in every state (V14a). The velocity and
-    /// acceleration of `dynamics` are not read.
+    /// Takes MC_HaltSuperimposed: aborts the superimposed command and brings its motion to rest; the
+    /// owner continues. With nothing superimposed it completes without effect, in every state (V14a). The
+    /// velocity and acceleration of `dynamics` are not read.
     ///
     /// # Errors
     /// The [`ErrorId`] of a pin; nothing changes then.
@@ -325,7 +329,7 @@ impl<P: Planner> Axis<P> {
             .map(|(_, covered)| covered)
     }
 
-    /// What became of superimposed command `id`, if it is the present one.
+    /// The state of superimposed command `id`, if it is the present one.
     pub(super) fn superimposed_fate(&self, id: CommandId) -> Option<Fate> {
         let command = self.layer.as_ref()?.command.as_ref()?;
         (command.id == id).then_some(if command.runs() {
@@ -364,7 +368,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Where the owner will stand (u); NaN if it does not come to rest by itself.
+    /// The place where the owner will stand (u); NaN if it does not come to rest by itself.
     fn base_end(&self, layer: &Layer<P::Plan>) -> f64 {
         match (&self.motion, self.owner.as_ref().map(|owner| owner.work)) {
             (Motion::Run { .. }, Some(Work::Velocity { .. } | Work::Through { .. })) => f64::NAN,
@@ -381,7 +385,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Ends the superimposed command, if there is one; what it set in motion is left to the caller.
+    /// Ends the superimposed command, if there is one; the caller handles its motion.
     pub(super) fn end_superimposed_command(&mut self, fate: Fate) {
         let Some(layer) = &mut self.layer else { return };
         let moves = layer.moves();
@@ -404,8 +408,8 @@ impl<P: Planner> Axis<P> {
         self.decide(command.id, fate);
     }
 
-    /// Superimposed command `id` waits for room, or is held up, and its instance gives another one: what moves comes to rest.
-    /// Returns whether that is so.
+    /// Superimposed command `id` waits for room, or is held up, and its instance gives another one: its
+    /// motion comes to rest. Returns whether this was so.
     pub(super) fn withdraw_superimposed(&mut self, id: CommandId) -> bool {
         let Some(layer) = &mut self.layer else {
             return false;
@@ -432,7 +436,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// Everything ends (R65): from now on there is one motion, that of the sum.
+    /// Ends everything superimposed (R65): from now on there is one motion, that of the sum.
     pub(super) fn end_superimposed(&mut self, fate: Fate) {
         if self.layer.is_some() {
             self.drop_superimposed(fate);
@@ -456,7 +460,8 @@ impl<P: Planner> Axis<P> {
         let Some(layer) = &mut self.layer else { return };
         layer.base = match &mut self.motion {
             Motion::Follow => Setpoint::at_rest(self.feedback.position()),
-            // What is superimposed on a law is added in the step behind the master; under a torque nothing is.
+            // A motion superimposed on a law is added in the step behind the master; under a torque
+            // nothing is added.
             Motion::Hold | Motion::Torque { .. } | Motion::Geared | Motion::Closing { .. } => {
                 Setpoint::at_rest(layer.base.position)
             }
@@ -473,7 +478,7 @@ impl<P: Planner> Axis<P> {
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scope);
         } else if !self.is_following() && !self.is_step(&next) {
-            // What follows the feedback is no plan's.
+            // A set-point that follows the feedback belongs to no plan.
             self.fail(ErrorId::SetpointStep, scope);
         } else if self.parameters.software_limits.is_some() && self.would_leave(&next) {
             self.fail(ErrorId::SoftwareLimitReached, scope);
@@ -492,7 +497,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Under a torque nothing is added: a command that halts what is superimposed has nothing to do, and the drive keeps its torque.
+    /// Under a torque nothing is added: a command that halts a superimposed motion has nothing to do, and
+    /// the drive keeps its torque.
     #[cold]
     fn advance_torque_below(&mut self, scope: &mut Scope<'_>) {
         self.step_torque();
@@ -503,7 +509,7 @@ impl<P: Planner> Axis<P> {
         self.settle_superimposed(scope);
     }
 
-    /// Completion of what is superimposed, and a new attempt of a command that waits or was lowered.
+    /// Completes the superimposed motion, and tries a command again that waits or was lowered.
     fn settle_superimposed(&mut self, scope: &mut Scope<'_>) {
         let delay = self.shaping_delay();
         let Some(layer) = &mut self.layer else { return };
@@ -519,7 +525,7 @@ impl<P: Planner> Axis<P> {
                 Some(command) if !command.halting && (command.runs() || command.adds == Adds::Halt) => {
                     self.end_superimposed_command(Fate::Done);
                 }
-                // It stands now, from where more may fit.
+                // It is at rest now, so more may fit.
                 Some(_) if stopped => layer.retry = 0,
                 Some(_) | None => {}
             }
@@ -537,14 +543,14 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A command given with nothing under it but a superimposed motion starts beside that at once.
+    /// A command given while only a superimposed motion moves starts beside that at once.
     pub(super) fn start_beside(&mut self, scope: &mut Scope<'_>) {
         if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
             self.hand_over(self.setpoint.position, scope);
         }
     }
 
-    /// What is superimposed comes to rest with the stop dynamics; what is left of its distance waits.
+    /// The superimposed motion comes to rest with the stop dynamics; the rest of its distance waits.
     #[cold]
     pub(super) fn brake_superimposed(&mut self) {
         let limits = self.slowed(&self.stop_limits());
@@ -557,8 +563,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// For [`crate::Outlook`]: the command, the scans its motion has left as for the owner, whether it waits
-    /// for room, and the bits of where both motions are.
+    /// For [`crate::Outlook`]: the command, the scans left as for the owner, whether it waits for room,
+    /// and the positions of both motions as bits.
     pub(super) fn superimposed_outlook(&self) -> Option<super::Beside> {
         self.layer.as_ref().map(|layer| super::Beside {
             command: layer.command.as_ref().map(|command| {

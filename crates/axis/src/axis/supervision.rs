@@ -1,7 +1,9 @@
-//! How far the axis is from where it should be: the following error, and the window at the end of a move.
+//! The distance of the axis from its set position: the following error, and the window at the end of a
+//! move.
 //!
-//! The following error is the set position published in the scan before less the actual position latched in this
-//! one: 0 for a drive that follows exactly, with a delay of some scans the way of those scans.
+//! The following error is the set position published in the last scan, less the actual position latched
+//! in this one. It is 0 for a drive that follows exactly. With a delay of some scans it is the way of
+//! those scans.
 //!
 //! Source: PLCopen Motion Control Part 1, parameters 6 and 7; V12d.
 
@@ -42,7 +44,8 @@ impl Arrival {
         self.inside_for
     }
 
-    /// Whether it has been inside for the time, another scan with this following error (u) gone by. NaN is outside.
+    /// Whether it has been inside for the required time, including this scan with this following error
+    /// (u). NaN is outside.
     fn is_in_position(&mut self, error: f64, window: InPosition) -> bool {
         if !(error.abs() <= window.window) {
             self.inside_for = 0;
@@ -64,7 +67,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The following error is larger than it may be, or no number.
+    /// Whether the following error is too large, or not a number.
     pub(super) fn lags(&self) -> bool {
         let lag = &self.parameters.lag;
         let is_led = self.power.is_on() && !matches!(self.motion, Motion::Follow | Motion::Torque { .. });
@@ -80,7 +83,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether a move at its goal is done: the actual position has been inside the window for the time.
+    /// Whether a move at its goal is done: the actual position has been inside the window for the
+    /// required time.
     pub(super) fn has_arrived(&mut self) -> bool {
         let Some(window) = self.config.in_position else {
             return true;

@@ -1,8 +1,9 @@
-//! A torque instead of a position.
+//! Torque control instead of position control.
 //!
-//! While MC_TorqueControl owns the axis the drive holds a torque, and the set-point is the actual state: position and
-//! velocity as latched. So another motion takes over from where the axis is and as fast as it is. The velocity limit that
-//! goes with the torque is a ramp with the accelerations of the command, from the velocity at its start to the limit.
+//! While MC_TorqueControl owns the axis the drive holds a torque, and the set-point is the actual state:
+//! position and velocity as latched. So another motion takes over from the present place and velocity of
+//! the axis. The velocity limit of the torque is a ramp with the accelerations of the command, from the
+//! velocity at its start to the limit.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_TorqueControl and MC_ReadActualTorque; V25.
 
@@ -15,7 +16,8 @@ impl<P: Planner> Axis<P> {
     /// The actual torque, in the unit of the drive; positive towards larger positions.
     ///
     /// # Errors
-    /// [`ErrorId::TorqueUnknown`] if the drive does not tell it, those of [`Axis::fresh_position`] if what is known is old.
+    /// [`ErrorId::TorqueUnknown`] if the drive does not report it, those of [`Axis::fresh_position`] if
+    /// the last report is old.
     pub fn actual_torque(&self) -> Result<f64, ErrorId> {
         self.fresh_position()?;
         let report = self.beside.report.torque.ok_or(ErrorId::TorqueUnknown)?;
@@ -53,7 +55,7 @@ impl<P: Planner> Axis<P> {
                 return refuse("Direction", number, f64::NAN, ErrorId::DirectionInvalid);
             }
         };
-        // As the accelerations do, it takes what the axis has.
+        // Like the accelerations, 0 takes the value of the axis.
         let velocity = if dynamics.velocity == 0.0 {
             self.parameters.limits.velocity
         } else {
@@ -78,7 +80,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Under a torque, from the one that acts now, as far as the drive can hold it; `plan` is the ramp of the velocity limit.
+    /// The motion under a torque, starting from the present torque as far as the drive can hold it.
+    /// `plan` is the ramp of the velocity limit.
     pub(super) fn under_torque(&self, plan: P::Plan) -> Motion<P::Plan> {
         let torque = match (&self.motion, &self.beside.report.torque) {
             (Motion::Torque { torque, .. }, _) => *torque,
@@ -92,7 +95,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The largest torque the drive says it can hold, now; 0 if it holds none.
+    /// The largest torque that the drive reports it can hold now; 0 if it holds none.
     fn most_torque(&self) -> f64 {
         let told = self.beside.report.torque.map(|torque| torque.most);
         told.filter(|most| *most > 0.0).unwrap_or(0.0)
@@ -135,7 +138,7 @@ impl<P: Planner> Axis<P> {
         } else {
             *torque + step.copysign(left)
         };
-        // What the drive can hold may have become less.
+        // The largest torque of the drive may have become smaller.
         *torque = within(next, most_torque);
         let most = owner.limits.velocity;
         let velocity = if goal > 0.0 {
@@ -152,7 +155,7 @@ impl<P: Planner> Axis<P> {
         self.publish(self.setpoint);
     }
 
-    /// What the drive was asked to hold is over when the motion is another one.
+    /// Withdraws the torque order when the motion is another one.
     #[inline]
     pub(super) fn follow_torque_order(&mut self) {
         if self.beside.order.torque.is_some() && !matches!(self.motion, Motion::Torque { .. }) {
@@ -160,7 +163,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The torque ordered last is the one commanded, and nothing limits it (R40).
+    /// Whether the torque ordered last is the commanded one, and nothing limits it (R40).
     pub(super) fn torque_is_held(&self, torque: f64) -> bool {
         let goal = self.owner.as_ref().map(torque_of);
         let limited = self.beside.report.torque.is_some_and(|report| report.limited);
@@ -168,7 +171,7 @@ impl<P: Planner> Axis<P> {
     }
 }
 
-/// `torque` as far as a drive holds it that can hold `most` (from 0); none if it is no number.
+/// `torque`, limited to the largest torque `most` (from 0) of a drive; none if it is not a number.
 fn within(torque: f64, most: f64) -> f64 {
     if !torque.is_finite() {
         0.0

@@ -1,9 +1,9 @@
 //! ContinuousUpdate: new values at the pins of a command that is not finished.
 //!
-//! Whether a block may update, and whether anything changed, is the block's business. Here the new values are
-//! checked as those of a new command are, and the owner is planned anew from the last set-point. It stays the
-//! same command: the state, the buffer and what is superimposed are not touched, and a distance counts from where
-//! it counted from at the start. Values that are no good change nothing and are recorded.
+//! The block decides whether it may update, and whether a value changed. Here the new values are checked
+//! like those of a new command, and the owner is planned anew from the last set-point. It stays the same
+//! command: the state, the buffer and the superimposed motion do not change, and a distance counts from
+//! its original start. Invalid values change nothing and are recorded.
 //!
 //! Source: PLCopen Motion Control Part 1, section on ContinuousUpdate; R9 to R13, B16, T39a to T39c.
 
@@ -14,8 +14,8 @@ use core::mem;
 use standstill_planner::{Limits, Planner};
 
 impl<P: Planner> Axis<P> {
-    /// Gives command `id` the values of `command`, which is of the same kind. A command that waits has them when its
-    /// turn comes; one that has ended, or none that moves, does not mind.
+    /// Gives command `id` the values of `command`, which is of the same kind. A waiting command uses them
+    /// when it becomes active. No effect on a command that has ended or does not move.
     ///
     /// Cost: that of a new command.
     ///
@@ -41,7 +41,7 @@ impl<P: Planner> Axis<P> {
         let moved = work.manner().place != owner.work.manner().place || direction != owner.direction;
         let same_work = work == owner.work.with_velocity(owner.asked.velocity);
         if same_work && !moved && limits == owner.asked.limits {
-            // Back at the values it has, from others that were refused.
+            // Returns to the values it has, after others were refused.
             return Ok(());
         }
         self.note_passing(&mut owner);
@@ -87,7 +87,7 @@ impl<P: Planner> Axis<P> {
         command: &Command,
         scope: &mut Scope<'_>,
     ) -> Result<Option<(Work, Limits)>, ErrorId> {
-        // It does not count from the last target again, but from where it did.
+        // It does not count again from the last target, but from its original start.
         let (work, limits) = match (*command, entry.work) {
             (Command::MoveAdditive { distance, dynamics }, Work::Position(_)) => {
                 let added = Command::MoveRelative { distance, dynamics };
@@ -117,18 +117,18 @@ impl<P: Planner> Axis<P> {
         self.override_entry(entry);
     }
 
-    /// Where the owner leads, as seen from where it is now.
+    /// The end of the owner, seen from its present place.
     fn aim_anew(&self, owner: &mut Entry) {
         let base = self.base();
         let from = match owner.place() {
-            // The way round a modulo axis is that from here.
+            // The way round a modulo axis starts here.
             Some(Place::At(_)) | None => base.position,
             Some(Place::By(_)) => owner.from,
         };
         self.aim_from(owner, &base, from);
     }
 
-    /// What waits has changed: the owner may have to pass its end at another speed (B16).
+    /// A waiting command has changed: the owner may have to pass its end at another speed (B16).
     pub(super) fn arm_anew(&mut self, scope: &mut Scope<'_>) {
         let leads = |owner: &Entry| owner.end.is_some();
         if !self.pass_at_rest(scope) && self.owner.as_ref().is_some_and(leads) {
@@ -136,7 +136,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// If what was to take over in motion no longer can, the owner comes to rest at its end. Returns whether that is so.
+    /// If the command that was to take over in motion no longer can, the owner comes to rest at its end.
+    /// Returns whether that is so.
     pub(super) fn pass_at_rest(&mut self, scope: &mut Scope<'_>) -> bool {
         let blends = |owner: &Entry| owner.end.is_some() && owner.passage != REST;
         let Some(owner) = self.owner.filter(blends) else {
@@ -146,7 +147,7 @@ impl<P: Planner> Axis<P> {
             return false;
         }
         if matches!(self.motion, Motion::Run { .. }) && self.replan(owner, scope).is_err() {
-            // Where it would take too long to rest from here, it goes on as it was planned.
+            // If it would take too long to rest from here, it continues as planned.
             self.end_run();
         }
         true

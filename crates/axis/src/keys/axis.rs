@@ -90,7 +90,7 @@ macro_rules! limit {
     };
 }
 
-/// The largest number of scans that a file can say to the unit.
+/// The largest number of scans that a file can give exactly.
 const SCANS: u64 = 1 << 53;
 
 /// The keys of an axis.
@@ -444,7 +444,7 @@ const LIMITS: &[Key<AxisConfig>] = &[
         holds: Holds::Number {
             bounds: Bounds::POSITIVE,
             get: |config| Some(config.limits.acceleration),
-            // The deceleration is the same where none is given.
+            // The default of the deceleration is the acceleration.
             set: |config, value| {
                 config.limits.acceleration = value;
                 if config.limits.deceleration == f64::INFINITY {
@@ -481,7 +481,7 @@ const LIMITS: &[Key<AxisConfig>] = &[
     ),
 ];
 
-/// A key for a limit of the application; the others are those of the axis, which are read before.
+/// A key for a limit of the application. Its default is the limit of the axis, which is read before.
 macro_rules! application {
     ($path:literal, $field:ident, $absent:literal, $doc:literal) => {
         Key {
@@ -504,7 +504,7 @@ macro_rules! application {
     };
 }
 
-/// The limits of the application, which begin as those of the axis.
+/// The limits of the application; they start as those of the axis.
 fn application(config: &mut AxisConfig) -> &mut Limits {
     config.application_limits.get_or_insert(config.limits)
 }
@@ -524,7 +524,7 @@ const APPLICATION_LIMITS: &[Key<AxisConfig>] = &[
         holds: Holds::Number {
             bounds: Bounds::POSITIVE,
             get: |config| config.application_limits.map(|it| it.acceleration),
-            // The deceleration is the same where none is given, as far as the axis has it.
+            // The default of the deceleration is the acceleration, as far as the axis permits.
             set: |config, value| {
                 let deceleration = config.limits.deceleration;
                 let limits = application(config);
@@ -555,7 +555,7 @@ const APPLICATION_LIMITS: &[Key<AxisConfig>] = &[
     ),
 ];
 
-/// A key for a part of what stops have for themselves.
+/// A key for one of the stop limits.
 macro_rules! stop {
     ($path:literal, $field:ident, $doc:literal) => {
         Key {
@@ -595,7 +595,7 @@ const DEFAULTS: &[Key<AxisConfig>] = &[
     optional!("defaults.snap", defaults.snap, "the limit", "for Snap (u/s^4)"),
 ];
 
-/// Changes a scaling, from one increment to the unit on; a change that makes none of it is left out.
+/// Changes a scaling, starting from one increment per unit; an invalid change is left out.
 fn scale(config: &mut AxisConfig, change: impl FnOnce(&mut (u32, u32, bool, f64))) {
     let mut parts = config.scaling.map_or((1, 1, false, 0.0), |old| {
         (old.increments(), old.units(), old.invert(), old.offset())

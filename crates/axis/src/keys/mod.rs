@@ -1,9 +1,9 @@
-//! The keys of a configuration, each said once: what it is called, what it may hold, what it means, and where that stands in
+//! The keys of a configuration, each described once: its name, its range, its meaning, and its field in
 //! the structure.
 //!
-//! What follows from these tables: the reader of scripts, the JSON Schema, the tables in the docs, the check of ranges, the
-//! C library's set-up, the writer of scripts, and what of a random program is made plainer. A key that is added here is in
-//! all of them.
+//! These tables are the source of: the reader of scripts, the JSON Schema, the tables in the docs, the
+//! check of ranges, the C library's set-up, the writer of scripts, and the reduction of random programs.
+//! A key that is added here is in all of them.
 
 mod axis;
 
@@ -54,7 +54,7 @@ impl Bounds {
     }
 }
 
-/// What a key may hold, and where that stands in `T`.
+/// The values a key may have, and their field in `T`.
 #[derive(Clone, Copy, Debug)]
 pub enum Holds<T: 'static> {
     /// TRUE or FALSE.
@@ -66,7 +66,7 @@ pub enum Holds<T: 'static> {
     },
     /// One of some words.
     Word {
-        /// The words; the place of one is its value.
+        /// The words; the index of a word is its value.
         words: &'static [&'static str],
         /// Its value, if it has one.
         get: fn(&T) -> Option<usize>,
@@ -106,7 +106,7 @@ pub enum Holds<T: 'static> {
     List(&'static [Object<T>]),
 }
 
-/// What null at a key stands for.
+/// The meaning of null at a key.
 #[derive(Clone, Copy, Debug)]
 pub struct Null<T: 'static> {
     /// Whether it stands there.
@@ -118,13 +118,13 @@ pub struct Null<T: 'static> {
 /// A key.
 #[derive(Clone, Copy, Debug)]
 pub struct Key<T: 'static> {
-    /// The names of the objects it stands in and its own, such as `homing.velocity`.
+    /// The names of the objects around it and its own, such as `homing.velocity`.
     pub path: &'static str,
-    /// What it means, with unit and range.
+    /// Its meaning, with unit and range.
     pub doc: &'static str,
-    /// What is so without it; none if it must be given.
+    /// The default without it; none if it must be given.
     pub absent: Option<&'static str>,
-    /// What null stands for, where it may be given.
+    /// The meaning of null, if it may be given.
     pub null: Option<Null<T>>,
     /// What it may hold.
     pub holds: Holds<T>,
@@ -136,12 +136,12 @@ impl<T> Key<T> {
         self.path.rsplit('.').next().unwrap_or(self.path)
     }
 
-    /// It must be given where its object is.
+    /// Whether it must be given if its object is.
     pub const fn is_needed(&self) -> bool {
         self.absent.is_none()
     }
 
-    /// Whether both have the same there.
+    /// Whether both have the same value.
     pub fn is_same(&self, one: &T, other: &T) -> bool {
         match &self.holds {
             Holds::Bool { get, .. } => get(one) == get(other),
@@ -153,7 +153,7 @@ impl<T> Key<T> {
         }
     }
 
-    /// What `other` has there, it has, too. What has no value there leaves it as it is.
+    /// Copies the value of `other`. A missing value leaves this one unchanged.
     pub fn take(&self, from: &T, to: &mut T) {
         match &self.holds {
             Holds::Bool { get, set } => set(to, get(from)),
@@ -216,7 +216,7 @@ impl<T> Object<T> {
         })
     }
 
-    /// Calls `look` with every key that is no object.
+    /// Calls `look` with every key that is not an object.
     pub fn each(&self, look: &mut impl FnMut(&'static Key<T>)) {
         for key in self.keys {
             match &key.holds {

@@ -1,14 +1,16 @@
-//! How a slave comes onto the law of its gear: looked for whenever the master gets another plan, or a way has ended.
+//! How a slave comes onto the law of its gear. The way is searched whenever the master gets another plan,
+//! or a way has ended.
 //!
 //! | rung | the slave moves | in gear |
 //! | --- | --- | --- |
-//! | in gear | on the law | at once, where it is on the law and that keeps its limits as far as is known |
-//! | beside the law | on the law and a plan to its difference 0; both together keep the limits | at the end of the plan |
+//! | in gear | on the law | at once, if it is on the law and the law keeps its limits as far as is known |
+//! | beside the law | on the law plus a plan that takes its difference to 0; the sum keeps the limits | at the end of the plan |
 //! | onto a stretch | to the velocity of the law in its next stretch of constant velocity | at the end of the plan, or where the stretch begins |
 //! | pace | as fast as it may, the way the law leads | not yet |
 //!
-//! Of the first three the one that is in gear soonest is taken. The last two always exist, so a slave is never without a plan.
-//! Before it was in gear only the velocity counts, and the way lost is not made up; after that it catches up onto the same law.
+//! Of the first three, the one that is in gear soonest is taken. The last two always exist, so a slave is
+//! never without a plan. Before the slave was in gear, only the velocity counts and the lost way is not
+//! made up. After that it catches up onto the same law.
 
 use super::super::commands::ROUNDING;
 use super::super::commands::{Entry, Work};
@@ -23,22 +25,22 @@ use standstill_planner::{
     Anchor, DirectedLimits, Excess, Lead, Leads, Limits, MoveProfile, Place, Plan, Planner, Setpoint,
 };
 
-/// A velocity left beside that of a line must be at least this part of the limit.
+/// A velocity that is left beside that of a line must be at least this part of the limit.
 const LEAST: f64 = 1e-6;
 
 /// The law's next stretch of constant velocity.
 #[derive(Clone, Copy)]
 struct Stretch {
-    /// Scans until it begins and ends; the largest number if it has no end.
+    /// Scans until it begins and until it ends; the end is the largest number if there is none.
     begin: u64,
     end: u64,
     /// Velocity of the law on it (u/s).
     velocity: f64,
-    /// Where a line of that velocity through it is now (u), in the turn the slave is in.
+    /// The present place of a line of that velocity through it (u), in the slave's turn.
     now: f64,
 }
 
-/// The speeds (u/s) a slave may have beside a line: the way the line goes, and against it.
+/// The speeds (u/s) a slave may have relative to a line: in the direction of the line, and against it.
 #[derive(Clone, Copy)]
 struct Room {
     along: f64,
@@ -49,9 +51,9 @@ struct Room {
 pub(super) struct Way<Plan> {
     motion: Motion<Plan>,
     rung: Rung,
-    /// Scans until in gear; the largest number if not along this way.
+    /// Scans until in gear; the largest number if this way does not lead there.
     lock: u64,
-    /// Scans until it is looked for again.
+    /// Scans until the way is searched again.
     left: u64,
     name: Approach,
     velocity: f64,
@@ -60,14 +62,15 @@ pub(super) struct Way<Plan> {
 }
 
 impl<Plan> Way<Plan> {
-    /// Scans until in gear, if that is along this way.
+    /// Scans until in gear, if this way leads there.
     pub(super) fn scans_to_lock(&self) -> Option<u64> {
         (self.lock != u64::MAX).then_some(self.lock)
     }
 }
 
 impl<P: Planner> Axis<P> {
-    /// Finds the way onto the law, from the state at the end of the scan before; in gear at once only if it `may_lock`.
+    /// Finds the way onto the law, from the state at the end of the last scan. It is in gear at once only
+    /// if it `may_lock`.
     pub(super) fn approach(&mut self, view: &View<'_, P::Plan>, may_lock: bool, scope: &mut Scope<'_>) {
         let (Some(coupling), Some(owner)) = (&self.coupling, self.owner) else {
             return;
@@ -78,7 +81,7 @@ impl<P: Planner> Axis<P> {
         let (_, law) = coupling.law(&anchor, &coupling.was);
         let difference = self.difference(coupling, &anchor);
         if difference.is_at_rest() && difference.position == 0.0 {
-            // What was not on the law may not have been held against a plan of the master that is over now.
+            // A step off the law may not have been checked against a plan of the master that is over now.
             let was_on_law = coupling.anchor.is_some();
             let is_seen = match view.future.kind() {
                 Kind::Still => law.is_at_rest(),
@@ -107,7 +110,7 @@ impl<P: Planner> Axis<P> {
                 if let (Some((name, velocity)), Some(_)) = (told, view.future.measured())
                     && *name == way.name
                 {
-                    // It is another one each time.
+                    // The plan differs each time.
                     *velocity = way.velocity;
                 }
                 self.take_way(way, before, scope);
@@ -116,7 +119,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// How the slave is off the law through `anchor` at the end of the scan before.
+    /// The difference of the slave from the law through `anchor` at the end of the last scan.
     pub(super) fn difference(&self, coupling: &Coupling, anchor: &Anchor) -> Setpoint {
         let (place, law) = coupling.law(anchor, &coupling.was);
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
@@ -129,10 +132,11 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The way onto the law through `anchor` that is in gear soonest, from the end of the scan before.
+    /// The way onto the law through `anchor` that is in gear soonest, starting at the end of the last
+    /// scan.
     ///
     /// # Errors
-    /// Why there is none: the way is barred, or before the slave is in sync for the first time the master is too fast.
+    /// The reason why there is none: the way is barred, or before the first sync the master is too fast.
     pub(super) fn way_onto(
         &self,
         owner: &Entry,
@@ -169,8 +173,9 @@ impl<P: Planner> Axis<P> {
         let mut onto = stretch.and_then(|stretch| self.onto(owner, view, &stretch, &limits, &before));
         let mut soonest = onto.as_ref().map_or(u64::MAX, |way| way.lock);
         if let (Some(way), Some(scans)) = (&mut onto, view.future.measured()) {
-            // The line is as good a guess as any, and only leads near the law: the last bit of the way goes beside it. One that
-            // waits for its sync point does so at rest beside the line, not beside a law that trembles.
+            // The line is a good guess that only leads near the law; the last part of the way goes beside
+            // the law. A slave that waits for its sync point does so at rest beside the line, because the
+            // law itself may tremble.
             (way.lock, way.left) = (way.motion.scans(), scans);
             let near = 2 * scans;
             let waits = coupling.is_syncing() && difference.position * velocity > 0.0 && way.lock > near;
@@ -185,7 +190,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Braking within `limits` the slave would exceed its own velocity limit before its acceleration has faded out. Cost: one ramp.
+    /// Whether the slave, braking within `limits`, would exceed its own velocity limit before its
+    /// acceleration is 0. Cost: one ramp.
     fn gets_too_fast(&self, limits: &Limits, before: &Limits) -> bool {
         let most = self.parameters.limits.velocity * (1.0 + ROUNDING);
         let stop = self.planner.ramp_to(&self.setpoint, 0.0, limits, before);
@@ -196,7 +202,7 @@ impl<P: Planner> Axis<P> {
     /// The limits of the owner on its way onto the law.
     pub(super) fn limits_of_approach(&self, owner: &Entry) -> Limits {
         let (asked, axis) = (&owner.limits, &self.slowed(&self.parameters.limits));
-        // The Velocity of MC_GearInPos is one for the way to its sync point.
+        // The Velocity of MC_GearInPos limits the way to its sync point.
         let is_synced = |coupling: &Coupling| coupling.gearing.sync.is_some() && coupling.was_in_gear;
         let velocity = if self.coupling.as_ref().is_some_and(is_synced) {
             axis.velocity
@@ -212,8 +218,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The stretch of the law that the slave is to be led onto; the law was at `on_law` (u), in the turn of the slave, and has
-    /// moved by `step` (u) in this scan.
+    /// The stretch of the law that the slave is led onto. The law was at `on_law` (u), in the slave's
+    /// turn, and has moved by `step` (u) in this scan.
     fn next_stretch(&self, view: &View<'_, P::Plan>, on_law: f64, step: f64) -> Option<Stretch> {
         let coupling = self.coupling.as_ref()?;
         let cycle = self.planner.cycle();
@@ -241,7 +247,7 @@ impl<P: Planner> Axis<P> {
             return Some(unknown);
         };
         let late = u64::from(view.future.is_late());
-        // What all plans come to together, each geared.
+        // The sum of all plans at their ends, each with its gear ratio.
         let sum = |of: &dyn Fn(&Lead<'_, P::Plan>) -> f64| {
             let [first, second] = &leads;
             let [first_part, second_part] = &view.future.parts;
@@ -252,7 +258,7 @@ impl<P: Planner> Axis<P> {
             ])
         };
         let velocity = sum(&|lead| lead.plan.at(lead.elapsed.saturating_add(begin)).velocity);
-        // By how much the law comes further than the line on its way there.
+        // The distance by which the law runs ahead of the line on the way there.
         let way = leads.iter().flatten().map(|lead| {
             let at = |scan| lead.plan.at(scan).position;
             lead.factor * (at(lead.elapsed.saturating_add(begin)) - at(lead.elapsed))
@@ -268,13 +274,14 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The velocity of the law in its next stretch, without its sign (u/s).
+    /// The speed of the law in its next stretch (u/s).
     pub(super) fn law_speed(&self, view: &View<'_, P::Plan>) -> f64 {
         let stretch = self.next_stretch(view, 0.0, 0.0);
         stretch.map_or(0.0, |stretch| stretch.velocity.abs())
     }
 
-    /// Where a stop beside a line of this `velocity` (u/s) ends (u), more than 0 if ahead of it; `start` is the state beside it.
+    /// The place where a stop beside a line of this `velocity` (u/s) ends (u), positive if ahead of the
+    /// line. `start` is the state beside the line.
     fn stop_ahead(&self, start: &Setpoint, velocity: f64, limits: &Limits) -> Option<f64> {
         let lower = limits.lower_acceleration();
         let widest = Limits {
@@ -298,7 +305,7 @@ impl<P: Planner> Axis<P> {
         } else if limits.velocity < line * (1.0 - ROUNDING) {
             true
         } else {
-            // As fast as the line it can wait for it, not catch up with it.
+            // A slave as fast as the line can wait for it, but cannot catch up.
             let ahead = self.stop_ahead(&self.beside_stretch(stretch), stretch.velocity, limits);
             let resolved = RESOLVED * 4.0 * (stretch.now.abs() + self.setpoint.position.abs());
             ahead.is_some_and(|ahead| ahead < -resolved)
@@ -319,7 +326,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Onto a law that rests, planned as MC_MoveAbsolute to its place is.
+    /// Onto a law at rest, planned like MC_MoveAbsolute to the place of the law.
     fn onto_rest(&self, view: &View<'_, P::Plan>, limits: &Limits, before: &Limits) -> Option<Way<P::Plan>> {
         let coupling = self.coupling.as_ref()?;
         let anchor = coupling.anchor?;
@@ -379,8 +386,8 @@ impl<P: Planner> Axis<P> {
                 && self
                     .stop_ahead(&start, stretch.velocity, limits)
                     .is_some_and(|ahead| ahead > 0.0);
-            // Ahead of the line the slave lets it come. On its way to a sync point it does not go to meet it, later it does:
-            // against the line it may be faster beside it than with it.
+            // A slave ahead of the line waits for it. On the way to a sync point it does not go to meet
+            // the line. Later it does, and then it may be faster against the line than with it.
             let waits = is_syncing && is_ahead;
             let along = |limits: &Limits| if waits { line } else { limits.velocity - line };
             if along(limits) <= LEAST * limits.velocity {
@@ -416,9 +423,10 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// A plan onto a line of this `velocity` (u/s) from the state `start` beside it, no faster than there is `room`, and the
-    /// limits it has: the command's, or higher ones where those do not keep the axis inside its own; none where these do not
-    /// either. Its positions are those beside a line through the slave's place: a line far away would make them coarse.
+    /// A plan onto a line of this `velocity` (u/s) from the state `start` beside it, within the speeds of
+    /// `room`. Returns the plan with its limits: those of the command, or higher ones if the axis could
+    /// not stay inside its own with them; none if these do not suffice either. Positions are relative to
+    /// a line through the slave's place, because far from 0 numbers are coarse.
     fn beside_line(
         &self,
         start: &Setpoint,
@@ -427,7 +435,8 @@ impl<P: Planner> Axis<P> {
         limits: &Limits,
         before: &Limits,
     ) -> Option<(P::Plan, Limits)> {
-        // Speed that falls beside a line may be speed that grows: the lower rate holds both ways.
+        // A falling speed beside a line may be a rising speed of the slave, so the lower rate applies
+        // both ways.
         let beside = |limits: &Limits, velocity: f64| {
             let lower = limits.lower_acceleration();
             Limits {
@@ -478,7 +487,7 @@ impl<P: Planner> Axis<P> {
                         .ok()
                 };
                 let first = plan(along)?;
-                // More room against the line is of use where all of the other is.
+                // More room against the line helps only if all of the other room is used.
                 let uses_all = |peaks: Setpoint| peaks.velocity >= along * (1.0 - LEAST);
                 let plan = if against > along && self.planner.peaks((&first, 0)).is_some_and(uses_all) {
                     plan(against)?
@@ -492,7 +501,7 @@ impl<P: Planner> Axis<P> {
             })
     }
 
-    /// Beside the law: the difference comes to 0, or before the slave was in gear its velocity does.
+    /// Beside the law: brings the difference to 0, or its velocity only before the slave was in gear.
     fn beside_law(
         &self,
         view: &View<'_, P::Plan>,
@@ -508,11 +517,11 @@ impl<P: Planner> Axis<P> {
             return self.beside_measured(view, anchor, difference, line, limits);
         }
         let coupling = self.coupling.as_ref()?;
-        // The step of a plan that ended in this scan can't be looked at any more.
+        // The step of a plan that ended in this scan can no longer be checked.
         let leads = coupling.leads(&view.future).filter(|_| !view.future.is_late())?;
         let to_place = coupling.anchor.is_some();
         let is_syncing = coupling.is_syncing();
-        // On its way to a sync point the slave goes against the line no faster than it does already.
+        // On its way to a sync point the slave moves no faster against the line than it already does.
         let turns = |beside: &P::Plan| {
             let found = self.planner.velocities_behind(&leads, (beside, 0));
             let (against, start) = match found {
@@ -552,8 +561,8 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The same beside a law of measured values, with half of what that leaves now. Each step is looked at before it is made; none
-    /// again where that was not enough just now.
+    /// The same beside a law of measured values, with half of the limits that the law leaves now. Each
+    /// step is checked before it is made. There is none again if the half was not enough just now.
     fn beside_measured(
         &self,
         view: &View<'_, P::Plan>,
@@ -567,7 +576,7 @@ impl<P: Planner> Axis<P> {
             return None;
         }
         let mut room = self.room_now(view, limits)?;
-        // One that is ahead on its way to a sync point waits, and does not go to meet the law.
+        // A slave that is ahead on its way to a sync point waits, and does not go to meet the law.
         if coupling.is_syncing() && difference.position * line > 0.0 {
             room.velocity = room.velocity.min(line.abs());
         }
@@ -578,7 +587,7 @@ impl<P: Planner> Axis<P> {
             self.planner.ramp_to(difference, 0.0, &room, &room)
         };
         let planned = planned.ok()?;
-        // Outside the room it could be anywhere between two scans.
+        // Outside the room its motion between two scans would be unknown.
         let leaves = |excess: Excess| excess.acceleration > 0.0 || excess.jerk > 0.0;
         if planned.excess().is_some_and(leaves) {
             return None;
@@ -594,7 +603,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// Half of what the law leaves of `limits` in this scan; none where it leaves nothing.
+    /// Half of the limits that the law leaves of `limits` in this scan; none if it leaves nothing.
     pub(in crate::axis) fn room_now(&self, view: &View<'_, P::Plan>, limits: &Limits) -> Option<Limits> {
         let coupling = self.coupling.as_ref()?;
         let (_, law) = coupling.law(&coupling.anchor.unwrap_or_default(), &view.seen());
@@ -611,7 +620,7 @@ impl<P: Planner> Axis<P> {
         (least > LEAST * limits.velocity).then_some(room)
     }
 
-    /// What the law leaves of `limits` whatever is added when; none where it leaves nothing.
+    /// The part of `limits` that the law leaves at any time; none if it leaves nothing.
     pub(in crate::axis) fn room_beside(&self, leads: &Leads<'_, P::Plan>, limits: &Limits) -> Option<Limits> {
         let mut room = *limits;
         for lead in leads.iter().flatten() {
@@ -628,10 +637,10 @@ impl<P: Planner> Axis<P> {
         (least > 0.0 && leads.iter().any(Option::is_some)).then_some(room)
     }
 
-    /// As fast as it may, the way the law leads.
+    /// Moves as fast as it may, in the direction of the law.
     ///
     /// # Errors
-    /// Why it may not go there.
+    /// The reason why it may not go there.
     fn at_pace(
         &self,
         owner: &Entry,
@@ -665,7 +674,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// A ramp in the slave's own coordinates, planned as MC_MoveVelocity's is, and the limits in force along it.
+    /// A ramp in the slave's own coordinates, planned like MC_MoveVelocity's, and its limits.
     ///
     /// # Errors
     /// Why it may not go there.
@@ -689,7 +698,7 @@ impl<P: Planner> Axis<P> {
         Ok((motion, limits))
     }
 
-    /// From now on along `way`; the motion before was within `before`.
+    /// Takes `way` from now on; the motion before was within `before`.
     fn take_way(&mut self, way: Way<P::Plan>, before: Limits, scope: &mut Scope<'_>) {
         let scans = way.motion.scans();
         self.before = before;
@@ -711,7 +720,7 @@ impl<P: Planner> Axis<P> {
             coupling.told = told;
         }
         self.stir();
-        // The same way looked for again is no news.
+        // The same way found again is not recorded.
         if !is_told {
             let event = Event::Approaching {
                 way: way.name,
@@ -726,7 +735,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// No way leads on. What MC_Power or a limit switch bars waits to be permitted.
+    /// There is no way on. A way that MC_Power or a limit switch bars waits for permission.
     fn stay_back(&mut self, error: ErrorId, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         if let Some(coupling) = &mut self.coupling {
             coupling.rung = Rung::Due;
@@ -736,7 +745,7 @@ impl<P: Planner> Axis<P> {
             ErrorId::PositiveBarred | ErrorId::NegativeBarred | ErrorId::OutwardFromLimitSwitch => {
                 self.pause(error, scope);
                 if !self.is_coupled() {
-                    // One that no block follows has become a halt.
+                    // An owner that no block follows has become a halt.
                     self.advance(scope);
                 }
             }
@@ -746,7 +755,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The owner can't come to its sync point: it fails, and the slave comes to rest.
+    /// The owner can't reach its sync point: it fails, and the slave comes to rest.
     #[cold]
     fn give_up(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let Some(owner) = self.owner else { return };
@@ -763,12 +772,12 @@ impl<P: Planner> Axis<P> {
         self.advance(scope);
     }
 
-    /// What the law asks for beyond the limits in the master's plan: its name, the value and the limit.
+    /// The limit that the law exceeds in the master's plan: its name, the value and the limit.
     fn reason(&self, view: &View<'_, P::Plan>) -> Option<Beyond> {
         self.reason_beside(view, &Setpoint::default())
     }
 
-    /// The same with what may be `beside` it at most.
+    /// The same with the largest motion that may be added `beside` it.
     pub(in crate::axis) fn reason_beside(
         &self,
         view: &View<'_, P::Plan>,

@@ -1,10 +1,11 @@
-//! What the limits of slaves leave to their master (`on_limit` `slow_master`).
+//! The part of its limits that slaves leave to their master (`on_limit` `slow_master`).
 //!
-//! Collected at the end of each motion step, from the lowest slaves up, and in force from there on: for whatever is commanded
-//! to the master, for what waits, and for the motion in progress, which is planned anew from its state as by an override. Only
-//! the ramp of a fault does not look at slaves.
+//! Bounds are collected at the end of each motion step, from the lowest slaves up, and apply from then
+//! on. They apply to commands of the master, to commands that wait, and to the motion in progress, which
+//! is planned anew from its state as for an override. Only the ramp after a fault ignores slaves.
 //!
-//! A bound lasts from the first scan in gear to the end of the coupling, also while the slave lags or comes onto another ratio.
+//! A bound lasts from the first scan in gear to the end of the coupling, also while the slave lags or
+//! changes to another ratio.
 
 use super::super::commands::{Entry, Leg, REST, Work};
 use super::super::{Axis, Motion};
@@ -12,10 +13,12 @@ use super::Rung;
 use crate::{AxisId, Event, OnLimit, Scope};
 use standstill_planner::{Limits, Planner};
 
-/// Of the room a shift between master and slave may take this much, so that the master can always move.
+/// The largest part of the room that a shift between master and slave may take, so that the master can
+/// always move.
 const SHARE: f64 = 0.5;
 
-/// And this much of what the master leaves it now, so that the master's motion stays inside the rest whatever is rounded.
+/// The part of the remaining room that a shift may take now, so that rounding keeps the master's motion
+/// inside the rest.
 const NEARLY_ALL: f64 = 1023.0 / 1024.0;
 
 /// What slaves leave of the limits of an axis.
@@ -23,7 +26,7 @@ const NEARLY_ALL: f64 = 1023.0 / 1024.0;
 pub(in crate::axis) struct Bound {
     /// In force.
     now: Limits,
-    /// As found so far in this motion step.
+    /// The bound found so far in this motion step.
     next: Limits,
 }
 
@@ -38,13 +41,13 @@ impl Default for Bound {
 }
 
 impl<P: Planner> Axis<P> {
-    /// What slaves leave of `limits`.
+    /// `limits` lowered to what slaves leave.
     pub(in crate::axis) fn slowed(&self, limits: &Limits) -> Limits {
         limits.or_smaller(&self.bound.now)
     }
 
-    /// Lowers what `entry` asks for to what slaves leave. What is behind a master, keeps its times or is no motion has no
-    /// limits to be lowered here.
+    /// Lowers the limits of `entry` to what slaves leave. Commands behind a master, commands that keep
+    /// their times and commands without motion have no limits to lower here.
     pub(in crate::axis) fn bound_entry(&self, entry: &mut Entry) {
         if !Self::has_bound(&entry.work) {
             return;
@@ -56,7 +59,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Tells what of `entry` slaves have lowered.
+    /// Records which limits of `entry` slaves have lowered.
     pub(in crate::axis) fn record_slowed(&self, entry: &Entry, scope: &mut Scope<'_>) {
         if !self.is_slowed() || !Self::has_bound(&entry.work) {
             return;
@@ -74,7 +77,8 @@ impl<P: Planner> Axis<P> {
         self.record_slowed_pins(velocity, &asked, scope);
     }
 
-    /// The same for what is `asked`, whose velocity is that of pin `velocity`; what has none only brakes.
+    /// The same for the limits `asked`. The velocity is that of pin `velocity`; without one the command
+    /// only brakes.
     pub(in crate::axis) fn record_slowed_pins(
         &self,
         velocity: &'static str,
@@ -97,18 +101,19 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether it may slow its master down, or is slowed down.
+    /// Whether it may slow its master down, or is slowed down itself.
     pub(crate) fn may_bound(&self) -> bool {
         let slows = self.config.following.on_limit == OnLimit::SlowMaster;
         (slows && (self.is_coupled() || self.is_on_cam())) || self.is_slowed()
     }
 
-    /// Every limit of a velocity is finite, so there is a bound where that is.
+    /// Every velocity limit is finite, so there is a bound if the bound's velocity is finite.
     pub(in crate::axis) fn is_slowed(&self) -> bool {
         self.bound.now.velocity.is_finite()
     }
 
-    /// Before bounds are collected: no slave has left less than everything, and whether its master keeps its limits is noted.
+    /// Called before bounds are collected: resets the bound, and notes whether its master keeps its
+    /// limits.
     pub(crate) fn begin_bound(&mut self) {
         self.bound.next = Limits::NONE;
         if self.config.following.on_limit != OnLimit::SlowMaster {
@@ -129,7 +134,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A slave leaves no more than `bound`.
+    /// Lowers the bound to `bound`, which a slave leaves.
     pub(crate) fn lower_bound(&mut self, bound: &Limits) {
         self.bound.next = self.bound.next.or_smaller(bound);
     }
@@ -139,7 +144,8 @@ impl<P: Planner> Axis<P> {
         self.coupling.as_ref().is_some_and(|coupling| coupling.slows) || self.bound_on_cam().is_some()
     }
 
-    /// Whether its motion was planned within what its slaves leave, not before there were any, nor after a fault.
+    /// Whether its motion was planned within what its slaves leave. It was not if planned before there
+    /// were any, or after a fault.
     pub(super) fn keeps_bound(&self) -> bool {
         let own = Some(&self.in_force).filter(|_| !matches!(self.motion, Motion::Hold));
         let added = self.layer.as_ref().and_then(|layer| layer.limits_in_motion());
@@ -147,8 +153,8 @@ impl<P: Planner> Axis<P> {
         self.is_slowed() && all.all(|limits| self.slowed(limits) == *limits)
     }
 
-    /// What it leaves to each of its masters: its limits, and what its own slaves leave of them, as seen through the gear. Of two
-    /// masters each has half. A shift in motion has its part of them.
+    /// The limits that it leaves to each of its masters: its own limits and what its own slaves leave,
+    /// converted by the gear. Each of two masters gets half. A moving shift takes its part of them.
     pub(crate) fn bounds_of_masters(&self) -> impl Iterator<Item = (AxisId, Limits)> + use<P> {
         let coupling = self.coupling.as_ref().filter(|coupling| coupling.slows);
         let bounds = coupling.map_or([None; 2], |coupling| {
@@ -167,14 +173,14 @@ impl<P: Planner> Axis<P> {
         bounds.into_iter().flatten().chain(on_cam)
     }
 
-    /// What is left of `bound` beside a shift of the master of this number that is changing.
+    /// The part of `bound` that a changing shift of this master leaves.
     fn beside_shift(&self, leg: usize, bound: Limits) -> Limits {
         let shift = self.taken_by_shift(leg);
         shift.map_or(bound, |shift| beside(&bound, shift))
     }
 
-    /// The most a shift between master and slave may have of `room`, of which the slave has `limits` in all, in units of the
-    /// master.
+    /// The most of `room` that a shift between master and slave may take, in units of the master. The
+    /// slave has `limits` in all.
     pub(super) fn share_of_shift(&self, room: Limits, limits: &Limits) -> Limits {
         if self.config.following.on_limit != OnLimit::SlowMaster {
             return room;
@@ -182,7 +188,7 @@ impl<P: Planner> Axis<P> {
         room.times(NEARLY_ALL).or_smaller(&limits.times(SHARE))
     }
 
-    /// The bound found in this motion step holds from now on.
+    /// Applies the bound found in this motion step from now on.
     pub(crate) fn take_bound(&mut self, scope: &mut Scope<'_>) {
         if self.bound.next == self.bound.now {
             return;
@@ -194,7 +200,7 @@ impl<P: Planner> Axis<P> {
         self.override_superimposed(scope);
     }
 
-    /// The owner goes on within the bound that holds from now on. Where it can't be planned with it, it goes on as it was.
+    /// Plans the owner anew within the new bound. If it can't be planned with it, it continues unchanged.
     fn bound_owner(&mut self, scope: &mut Scope<'_>) {
         let Some(mut owner) = self.owner.filter(|owner| Self::has_bound(&owner.work)) else {
             return;
@@ -233,8 +239,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the motion in progress may go on as it is: its limits get lower, and it keeps them. It leads where it would lead
-    /// with them.
+    /// Whether the motion in progress may continue: its limits become lower, it keeps them, and it leads
+    /// to the same end.
     fn goes_on_within(&self, was: &Entry, owner: &Entry) -> bool {
         let is_lower = owner.limits == owner.limits.or_smaller(&was.limits);
         let Motion::Run { plan, elapsed, .. } = &self.motion else {
@@ -249,7 +255,7 @@ impl<P: Planner> Axis<P> {
                 .fits_behind(&[None; 2], &self.setpoint, Some((plan, *elapsed)), &owner.limits)
     }
 
-    /// Whether the limits of `work` are its own: slaves can lower them.
+    /// Whether the limits of `work` are its own, so that slaves can lower them.
     pub(in crate::axis) fn has_bound(work: &Work) -> bool {
         match work {
             Work::Position(_)
@@ -270,7 +276,8 @@ impl<P: Planner> Axis<P> {
     }
 }
 
-/// What a master may have for a slave of these `limits` behind a gear of this ratio; none where the slave does not move.
+/// The limits of a master whose slave has these `limits` behind a gear of this ratio; none if the slave
+/// does not move.
 fn behind(limits: &Limits, (numerator, denominator): (i32, u16)) -> Option<Limits> {
     let (ways, turns) = (f64::from(denominator), f64::from(numerator).abs());
     let behind = |limit: f64| limit * ways / turns;
@@ -283,8 +290,8 @@ fn behind(limits: &Limits, (numerator, denominator): (i32, u16)) -> Option<Limit
     })
 }
 
-/// What is left of `bound` beside a moving shift. Speed that falls beside it may be speed that grows: the lower rate holds both
-/// ways.
+/// The part of `bound` that a moving shift leaves. A falling speed of the shift may be a rising speed of
+/// the slave, so the lower rate applies both ways.
 fn beside(bound: &Limits, shift: &Limits) -> Limits {
     let less = |limit: f64, taken: f64| {
         if limit.is_finite() {

@@ -1,9 +1,10 @@
 //! On a cam: MC_CamIn and MC_CamOut on the slave's side.
 //!
-//! In sync the set-point *is* the cam at the master's place of the same scan ([`CamLaw`]). A slave that can't be there stays on the
-//! curve all the same, at the place of a master of its own that lags, its shadow: a lag in position would lead a tool off the
-//! curve, and into what it is to avoid. Only before it has come onto the curve the slave moves in its own coordinates, by a move
-//! to a place of the curve at which it rests.
+//! In sync the set-point *is* the cam at the master's place of the same scan ([`CamLaw`]). A slave that
+//! can't be there stays on the curve all the same. It then follows a lagging master of its own, its
+//! shadow. A lag in position would take a tool off the curve, and into an obstacle. Only before it has
+//! reached the curve does the slave move in its own coordinates, by a move to a place of the curve where
+//! the curve is at rest.
 //!
 //! | file | subject |
 //! | --- | --- |
@@ -49,23 +50,24 @@ use standstill_planner::{
 /// How an axis can go along a cam, without scalings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CamFit {
-    /// How many derivatives must go on: its cam_continuity, or 3 with a snap limit, 2 with a jerk limit, 1 without.
+    /// The number of derivatives that must be continuous: its cam_continuity, or 3 with a snap limit, 2
+    /// with a jerk limit, 1 without.
     pub needed: usize,
-    /// How many do: without a jerk limit from its first row to its last.
+    /// The number that are continuous; without a jerk limit counted from its first row to its last.
     pub smooth: CamSmooth,
-    /// How many its limits ask for; at a row at which one of these jumps it comes to rest.
+    /// The number that its limits require. It comes to rest at a row where one of these jumps.
     pub limits_need: usize,
     /// The highest or the lowest place of the cam, if it is outside the software limits, the limit, and the error of a cam whose
     /// places are those of the axis.
     pub outside: Option<(f64, f64, ErrorId)>,
-    /// The highest constant velocity of the master (u/s).
+    /// The highest constant velocity of the master (u/s) with which the slave can follow.
     pub highest: f64,
-    /// The limits that it follows from.
+    /// The limits from which it results.
     pub limits: Limits,
 }
 
 impl CamFit {
-    /// The derivatives of the slave by its master, as a table calls them.
+    /// The derivatives of the slave by its master, with the names of a table.
     pub const DERIVATIVES: [&'static str; 3] = ["Slope", "Curvature", "Third"];
 
     /// That of this order, less 1.
@@ -74,7 +76,7 @@ impl CamFit {
     }
 }
 
-/// Where the slave is, and what moves it.
+/// The place of the slave, and how it moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Rung {
     /// The next motion step decides.
@@ -91,7 +93,7 @@ enum Rung {
     /// A move in the slave's own coordinates, in its turn of this number, to where the curve is when the master is at this place; to
     /// rest without one.
     Moving { turns: i64, to: Option<Place> },
-    /// It waits where it is: there is no way onto the curve yet.
+    /// It waits at its place: there is no way onto the curve yet.
     Waiting,
     /// The master went out of operation: the slave rests until a block couples it anew.
     Lost,
@@ -128,7 +130,8 @@ pub(in crate::axis) struct OnCam {
     /// The limits of the shadow in motion; where it `slows` down, they are those of its way.
     shadow_limits: Limits,
     slows: bool,
-    /// Limits within which its shadow can come to rest before the next corner of the cam, and those of the slave at that time.
+    /// Limits within which its shadow can come to rest before the next corner of the cam, and the limits
+    /// of the slave then.
     brakes: Option<(Limits, Limits)>,
     /// The place on the cam at the end of the scan before.
     at: CamAt,
@@ -143,7 +146,7 @@ pub(in crate::axis) struct OnCam {
     limits: Limits,
     /// How often the slave's own coordinates had moved.
     moves: u32,
-    /// By how much the slave is off the cam at its master's place (u).
+    /// The distance of the slave from the cam at its master's place (u).
     deviation: f64,
     /// What was superimposed on the cam and where that lay first, less the place of the layer that is added to it (u).
     lead: f64,
@@ -151,7 +154,7 @@ pub(in crate::axis) struct OnCam {
     laid: f64,
     /// What it leaves to its master, once that keeps the limits of the slave.
     bound: Option<Limits>,
-    /// Where its master leads it (u), if that is outside its software limits.
+    /// The place to which its master leads it (u), if that is outside its software limits.
     leads_outside: Option<f64>,
 }
 
@@ -169,7 +172,7 @@ impl Curve<'_> {
         self.law.at(&self.cam, &self.anchor, place, moving, near)
     }
 
-    /// The master's place on its side of the cam, not taken back into one period (u).
+    /// The master's place on its side of the cam, not reduced to one period (u).
     fn unwound(&self, place: Place) -> f64 {
         self.law.unwound(&self.cam, &self.anchor, place)
     }
@@ -183,14 +186,14 @@ impl Curve<'_> {
         }
     }
 
-    /// What its derivatives are bounded by anywhere.
+    /// The bounds of its derivatives over the whole cam.
     fn bounds(&self) -> CamBounds {
         let head = self.cam.head;
         head.bounds
             .scaled(self.law.master_scaling, self.law.slave_scaling)
     }
 
-    /// A period later the slave is where it was.
+    /// Whether the slave is at the same place one period later.
     fn repeats(&self) -> bool {
         let head = self.cam.head;
         head.periodic && head.from == head.to
@@ -268,7 +271,7 @@ impl<P: Planner> Axis<P> {
         runs || awaits || self.owner.as_ref().is_some_and(is_of) || self.queue.iter().any(is_of)
     }
 
-    /// How often an end of a cam was reached by this axis: a number that only grows, until it wraps.
+    /// The number of cam ends that this axis has reached. It only grows, until it wraps.
     pub fn cam_ends(&self) -> u32 {
         self.cam_ends
     }
@@ -310,12 +313,13 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// What MC_CamTableSelect tells of a complete cam: the highest constant velocity of `master` (u/s) with which this axis can
-    /// follow it, without scalings.
+    /// Checks a complete cam for MC_CamTableSelect. Returns the highest constant velocity of `master`
+    /// (u/s) with which this axis can follow it, without scalings.
     ///
     /// # Errors
-    /// What of the cam this axis can't follow: [`ErrorId::CamNotSmooth`], [`ErrorId::TargetOutsideSoftwareLimits`] of an absolute
-    /// cam, [`ErrorId::CamBeyondLimits`]. It is recorded.
+    /// The reason why this axis can't follow the cam: [`ErrorId::CamNotSmooth`],
+    /// [`ErrorId::TargetOutsideSoftwareLimits`] of an absolute cam, [`ErrorId::CamBeyondLimits`]. It is
+    /// recorded.
     pub fn check_cam(
         &self,
         head: &CamHead,
@@ -486,7 +490,7 @@ impl<P: Planner> Axis<P> {
             ("MasterScaling", cam.master_scaling),
             ("SlaveScaling", cam.slave_scaling),
         ] {
-            // So far from 1 that a cam and its derivatives are not finite any more.
+            // So far from 1 that a cam and its derivatives are no longer finite.
             if !(value.is_normal() && value.abs() > 1e-30 && value.abs() < 1e30) {
                 return refuse(pin, value, f64::NAN, ErrorId::CamScalingInvalid);
             }
@@ -576,7 +580,7 @@ impl<P: Planner> Axis<P> {
             .get_or_insert_with(|| OnCam::new(camming, limits, moves));
         let is_lost = on_cam.rung == Rung::Lost;
         if on_cam.camming != camming {
-            // Where the master was lost other values are no wish to move again.
+            // After the master was lost, other values must not start a motion.
             *on_cam = OnCam {
                 was: on_cam.was,
                 known: on_cam.known,

@@ -1,4 +1,4 @@
-//! The motion step of a slave: after that of its master.
+//! The motion step of a slave, after that of its master.
 
 use super::super::commands::ROUNDING;
 use super::super::guard::LAST_SCAN;
@@ -11,14 +11,15 @@ use super::{Coupling, FURTHEST, Rung};
 use crate::{ErrorId, Event, Fate, OnLimit, OnMasterLost, Scope};
 use standstill_planner::{Anchor, Leads, Limits, Place, Plan, Planner, Setpoint};
 
-/// What of a motion is beyond a limit: its name, its value and the limit.
+/// The excess of a motion: the name, its value and the limit.
 pub(in crate::axis) type Beyond = (&'static str, f64, f64);
 
-/// The last scan of the master's plan, or of one beside the law, may be longer: times a scan.
+/// The longest last scan, relative to a scan: that of the master's plan, or of a plan beside the law, may
+/// be longer.
 pub(super) const LONGEST: f64 = 1.0 + LAST_SCAN;
 
 impl Coupling {
-    /// Where the law is for masters that are there, and how it moves.
+    /// The place of the law for given masters, and its derivatives.
     pub(super) fn law(&self, anchor: &Anchor, seen: &SeenBoth) -> (Place, Setpoint) {
         let slave = self.gearing.slave(anchor, seen.map(|seen| seen.place));
         let derivative =
@@ -40,23 +41,24 @@ impl Coupling {
         part(0, first) + part(1, second)
     }
 
-    /// Whatever the masters do, the law does not move.
+    /// Whether the law stands still for any motion of the masters.
     pub(super) fn stands<Q>(&self, future: &Future<'_, Q>) -> bool {
         let [first, second] = &future.parts;
         self.gearing.factor(0, first.factor) == 0.0 && self.gearing.factor(1, second.factor) == 0.0
     }
 
-    /// The plans of the masters, as the slave sees them; `None` where they are not known.
+    /// The plans of the masters, as the slave sees them; `None` if they are not known.
     pub(super) fn leads<'a, Q: Plan>(&self, future: &Future<'a, Q>) -> Option<Leads<'a, Q>> {
         future.leads(|leg, factor| self.gearing.factor(leg, factor))
     }
 }
 
 impl<P: Planner> Axis<P> {
-    /// [`Axis::advance`] of an axis that may follow a master, with a look at it.
+    /// [`Axis::advance`] for an axis that may follow a master, which it can see.
     ///
-    /// Cost: in gear one evaluation of the law, and one ramp while what the master does next is not known or there are software
-    /// limits; where the master got another plan, at most seven plans and six looks along two of them.
+    /// Cost in gear: one evaluation of the law, and one ramp while the master's next motion is not known
+    /// or there are software limits. If the master got another plan: at most seven plans and six searches
+    /// along two of them.
     #[inline(never)]
     pub(crate) fn advance_behind(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         if !self.still_follows(view, scope) {
@@ -69,7 +71,7 @@ impl<P: Planner> Axis<P> {
         if self.stays_paused(is_new, scope) {
             return self.measure(view, scope);
         }
-        // A slave that must not lag is in gear until it can't be.
+        // A slave that must not lag stays in gear until it can't.
         let stays = self.config.following.on_limit == OnLimit::Error;
         self.superimpose_behind(view, is_new, !stays, scope);
         let stays = self.is_locked() && (stays || self.adds_motion());
@@ -80,7 +82,7 @@ impl<P: Planner> Axis<P> {
                 coupling.is_kept = false;
             }
             self.tell_outside(view, scope);
-            // The last step of a shift is one of its own.
+            // The last step of a shift is a special one.
             if !shifts {
                 self.note_source();
             }
@@ -96,8 +98,8 @@ impl<P: Planner> Axis<P> {
         self.note_steady();
     }
 
-    /// What comes first in the motion step of a slave, behind a gear or on a cam: power, a master that is lost. Returns whether it
-    /// still follows; if not, its step is done.
+    /// The first part of the motion step of a slave, behind a gear or on a cam: power, and a lost master.
+    /// Returns whether it still follows; if not, its step is done.
     pub(super) fn still_follows(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) -> bool {
         self.apply_power(scope);
         self.follow_torque_order();
@@ -122,12 +124,13 @@ impl<P: Planner> Axis<P> {
         follows
     }
 
-    /// The owner follows a master, behind a gear or on a cam.
+    /// Whether the owner follows a master, behind a gear or on a cam.
     pub(in crate::axis) fn follows(&self) -> bool {
         self.is_coupled() || self.is_on_cam()
     }
 
-    /// A slave that is paused goes on if what its master does `is_new`. Returns whether it stays paused; its step is done then.
+    /// A paused slave continues if the master's next motion `is_new`. Returns whether it stays paused;
+    /// its step is done then.
     pub(super) fn stays_paused(&mut self, is_new: bool, scope: &mut Scope<'_>) -> bool {
         if self.is_paused() && is_new {
             self.resume(scope);
@@ -139,7 +142,7 @@ impl<P: Planner> Axis<P> {
         stays
     }
 
-    /// Its coupling is in gear, whether or not it moves by that now.
+    /// Whether its coupling is in gear, whether or not the motion follows it now.
     fn is_locked(&self) -> bool {
         self.coupling
             .as_ref()
@@ -150,7 +153,7 @@ impl<P: Planner> Axis<P> {
         self.coupling.as_ref().map(|coupling| coupling.rung)
     }
 
-    /// Coordinates of master or slave have moved: the law moves with them, and nobody else.
+    /// Coordinates of master or slave have moved: the law moves with them, and nothing else changes.
     fn rebase(&mut self, view: &View<'_, P::Plan>, scan: u64) {
         let (here, moves) = (self.place(), self.frame.moves());
         let own = self.coordinates_moved(scan);
@@ -159,12 +162,12 @@ impl<P: Planner> Axis<P> {
         };
         let now = view.seen();
         for (was, now) in coupling.was.iter_mut().zip(&now) {
-            // What moved in the motion step itself was not seen before it.
+            // A move of coordinates within the motion step was not seen before it.
             let late = now.moved - was.moved;
             was.place.position += late;
             was.at.position += late;
             if late.abs() > FURTHEST {
-                // Numbers of that size hold no step.
+                // At numbers of that size a step is lost in rounding.
                 (was.place, was.at.position) = (now.place, now.at.position);
             }
         }
@@ -197,8 +200,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Notes what the master does next. Returns whether that, or a limit, is another one than in the scan before, or the way
-    /// onto the law is to be looked for again.
+    /// Notes the master's next motion. Returns whether that or a limit has changed since the last scan,
+    /// or whether the way onto the law is due to be searched again.
     fn look_ahead(&mut self, view: &View<'_, P::Plan>) -> bool {
         let limits = self.slowed(&self.parameters.limits);
         let Some(coupling) = &mut self.coupling else {
@@ -235,7 +238,7 @@ impl<P: Planner> Axis<P> {
             position: law.position,
             ..law.plus(&added)
         });
-        // What is added to a law that stands was held against the limits before.
+        // A motion added to a law at rest was checked against the limits before.
         let is_held = added.is_some() && self.law_stands(view);
         let rough = self.rough(view, &law).filter(|_| !is_held);
         let reason = self.beyond(Some(place), &next, &limits, rough);
@@ -264,7 +267,7 @@ impl<P: Planner> Axis<P> {
         (self.is_locked() || self.is_locked_on_cam()) && matches!(self.motion, Motion::Geared)
     }
 
-    /// The masters have not moved in this scan, and will not as far as is known.
+    /// Whether the masters have not moved in this scan, and will not move as far as is known.
     pub(in crate::axis) fn law_stands(&self, view: &View<'_, P::Plan>) -> bool {
         if let Some(was) = self.master_of_cam_was() {
             let has_stood = was.place == view.now.place && was.at.is_at_rest();
@@ -278,7 +281,8 @@ impl<P: Planner> Axis<P> {
             && both.all(|(was, now)| was.place == now.place && was.at.is_at_rest())
     }
 
-    /// The plans ahead, as the law of a gear has them, or as they are for a cam; `None` while it rests or is not known.
+    /// The plans ahead, as the law of a gear has them, or unchanged for a cam; `None` while it stands or
+    /// they are not known.
     pub(in crate::axis) fn leads_of_law<'a>(&self, view: &View<'a, P::Plan>) -> Option<Leads<'a, P::Plan>> {
         if self.is_on_cam() {
             return self.lead_of_master(view).map(|lead| [Some(lead), None]);
@@ -287,7 +291,7 @@ impl<P: Planner> Axis<P> {
         leads.iter().any(Option::is_some).then_some(leads)
     }
 
-    /// How the law moves at the end of the scan before, and at the end of this one.
+    /// The law at the end of the last scan, and at the end of this one.
     pub(in crate::axis) fn law_before_and_now(
         &self,
         view: &View<'_, P::Plan>,
@@ -298,7 +302,7 @@ impl<P: Planner> Axis<P> {
         Some((law(&coupling.was), law(&view.seen())))
     }
 
-    /// Beside the law, or beside the line that it leads onto.
+    /// A step beside the law, or beside the line that it leads onto.
     fn step_beside(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let here = self.place();
         let cycle = self.planner.cycle();
@@ -355,7 +359,7 @@ impl<P: Planner> Axis<P> {
         self.look_from_near(&beside, frame.position - frame_place.position);
         let arrives = arrives && self.law_fits(view, true);
         if arrives && known.is_some() && self.is_on(&end, frame_place, &law, law_place) {
-            // The snap is that of the way here.
+            // The snap is that of the way up to here.
             let snap = next.snap;
             self.publish_behind(law_place, Setpoint { snap, ..law }, scope);
             return self.lock_unless_stopped(anchor, view, scope);
@@ -386,7 +390,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether a frame at the end of a plan is the law but for rounding; else the way is looked for again.
+    /// Whether a frame at the end of a plan is the law except for rounding. If not, the way is searched
+    /// again.
     fn is_on(&mut self, frame: &Setpoint, frame_place: Place, law: &Setpoint, law_place: Place) -> bool {
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
         let place = Place {
@@ -401,7 +406,8 @@ impl<P: Planner> Axis<P> {
         is_on
     }
 
-    /// After a step of its own: in gear, if it has come to the velocity of the law, was not in gear before and can stay.
+    /// After a step of its own: in gear, if it has reached the velocity of the law, was not in gear
+    /// before, and can stay.
     fn lock_at_velocity(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let Some(coupling) = &self.coupling else { return };
         let is_at_goal = matches!(&self.motion, Motion::Run { elapsed, scans, .. } if elapsed >= scans);
@@ -416,13 +422,13 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether two velocities are one but for rounding.
+    /// Whether two velocities are equal except for rounding.
     fn law_is_near(&self, one: &Setpoint, law: &Setpoint) -> bool {
         (one.velocity - law.velocity).abs() <= ROUNDING * self.parameters.limits.velocity
     }
 
-    /// Whether the law keeps the limits of the slave as far as is known: from the end of this scan on, if it `is_over`, else
-    /// from the end of the one before.
+    /// Whether the law keeps the limits of the slave as far as is known. It is checked from the end of
+    /// this scan if the step `is_over`, else from the end of the last one.
     pub(super) fn law_fits(&self, view: &View<'_, P::Plan>, is_over: bool) -> bool {
         let Some(coupling) = &self.coupling else {
             return false;
@@ -434,7 +440,7 @@ impl<P: Planner> Axis<P> {
         let (_, after) = coupling.law(&anchor, &view.seen());
         let (_, before) = coupling.law(&anchor, &coupling.was);
         let is_late = view.future.is_late();
-        // A plan that began and ended within this scan was never looked at.
+        // A plan that began and ended within this scan was never checked.
         if is_late && self.beyond_now(view).is_some() {
             return false;
         }
@@ -453,7 +459,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// What of the law of measured values is beyond the limits between the ends of the last two scans, which are not.
+    /// The limit that the law of measured values exceeds between the ends of the last two scans, although
+    /// both ends keep it.
     fn beyond_on_the_way(
         &self,
         anchor: &Anchor,
@@ -464,7 +471,7 @@ impl<P: Planner> Axis<P> {
         let (_, from) = coupling.law(anchor, &coupling.was);
         let (_, to) = coupling.law(anchor, &view.seen());
         let peaks = Piece::between(&from, &to, self.planner.cycle()).peaks();
-        // What is superimposed may take its limits whenever it likes.
+        // A superimposed motion may use its limits at any time.
         let most = self.layer.as_ref().and_then(|layer| layer.limits_in_motion());
         let added = |of: fn(&Limits) -> f64| most.map_or(0.0, of);
         let steepest = |limits: &Limits| limits.acceleration.max(limits.deceleration);
@@ -486,8 +493,8 @@ impl<P: Planner> Axis<P> {
             .find(|(_, value, limit)| !(*value <= limit * (1.0 + ROUNDING)))
     }
 
-    /// Whether the law of measured values left a plan this `room` beside it all along this scan, at whose end both together are at
-    /// `next`.
+    /// Whether the law of measured values left a plan this `room` beside it during the whole scan. At the
+    /// end of the scan both together are at `next`.
     fn leaves_room(&self, anchor: &Anchor, view: &View<'_, P::Plan>, room: &Limits, next: &Setpoint) -> bool {
         let Some(coupling) = &self.coupling else {
             return false;
@@ -497,7 +504,7 @@ impl<P: Planner> Axis<P> {
         let (_, to) = coupling.law(anchor, &view.seen());
         let peaks = Piece::between(&from, &to, cycle).peaks();
         let rate = limits.lower_acceleration();
-        // Between two velocities a scan apart.
+        // Between two velocities one scan apart.
         let fastest = 0.5 * (self.setpoint.velocity + next.velocity).abs() + 0.5 * rate * cycle;
         fastest <= limits.velocity
             && peaks.acceleration + room.acceleration <= rate
@@ -505,7 +512,8 @@ impl<P: Planner> Axis<P> {
             && peaks.snap + room.snap <= limits.snap
     }
 
-    /// Whether measured places are told so finely that what numbers round off is no step of the slave. Only jumps lead so far.
+    /// Whether measured places are fine enough that rounding causes no step of the slave. Only jumps lead
+    /// to places that are too coarse.
     pub(super) fn is_told_finely(&self, view: &View<'_, P::Plan>) -> bool {
         let Some(coupling) = self.coupling.as_ref().filter(|_| self.follows_actual()) else {
             return true;
@@ -515,7 +523,7 @@ impl<P: Planner> Axis<P> {
         rounded <= LAST_SCAN * self.parameters.limits.velocity * self.planner.cycle()
     }
 
-    /// What the law asks for beyond the limits in this scan, where nothing is known of what comes.
+    /// The limit that the law exceeds in this scan, if the motion ahead is not known.
     pub(super) fn beyond_now(&self, view: &View<'_, P::Plan>) -> Option<Beyond> {
         let coupling = self.coupling.as_ref()?;
         let anchor = coupling.anchor.unwrap_or_default();
@@ -524,13 +532,15 @@ impl<P: Planner> Axis<P> {
         self.beyond(place, &law, &coupling.limits, self.rough(view, &law))
     }
 
-    /// `Some` where this step was not held against the limits before: the slave stays in gear as long as it can, or nothing is known of what the master does next, or not until
-    /// now, or it stands, maybe since a plan of one scan. `Some(TRUE)` if it does that less smoothly than the slave may.
+    /// `Some` if this step was not checked against the limits before. Causes: the slave stays in gear as
+    /// long as it can, the master's motion ahead is not known, it was not known until now, or the master
+    /// stands, perhaps after a plan of one scan. `Some(TRUE)` if the master's motion is less smooth than
+    /// the slave needs.
     fn rough(&self, view: &View<'_, P::Plan>, law: &Setpoint) -> Option<bool> {
         let degree = self.slowed(&self.parameters.limits).order().degree();
         let is_rough = view.degree() < degree && law.acceleration != 0.0;
         match view.future.kind() {
-            // What they do was planned for this slave, if it does nothing else.
+            // Their motion was planned for this slave, unless it does something else.
             _ if self.slows_master() && view.keeps_bound() && !self.adds_motion() => None,
             _ if self.config.following.on_limit == OnLimit::Error => Some(is_rough),
             Kind::Unknown | Kind::Measured | Kind::Still | Kind::NotSeen => Some(is_rough),
@@ -556,7 +566,7 @@ impl<P: Planner> Axis<P> {
         self.note_sync(view, scope);
     }
 
-    /// No longer in gear: the law asks for `value` of what may be at most `limit`.
+    /// No longer in gear: the law needs `value`, and at most `limit` is allowed.
     pub(in crate::axis) fn lose_gear(&mut self, (what, value, limit): Beyond, scope: &mut Scope<'_>) {
         if self.is_on_cam() {
             return self.lose_sync((what, value, limit), scope);
@@ -568,9 +578,9 @@ impl<P: Planner> Axis<P> {
         self.record(event, &mut self.owner_scope(scope));
     }
 
-    /// What of the state `next` at `place` is beyond `limits`. Where nothing is known of what
-    /// comes (`rough` says how the master moves), a step that no motion within them makes, and a state that can only lead beyond
-    /// them, are, too. Cost: then a ramp.
+    /// The limit that the state `next` at `place` exceeds. If the motion ahead is not known (`rough` says
+    /// how the master moves), there are two more checks: a step that no motion within the limits can
+    /// make, and a state that must lead out of them. They cost a ramp.
     pub(super) fn beyond(
         &self,
         place: Option<Place>,
@@ -617,7 +627,8 @@ impl<P: Planner> Axis<P> {
             return None;
         }
         let ramp = self.planner.ramp_to(next, 0.0, limits, limits);
-        // The velocity that it can only come to. That a stop in the middle of a reversal turns back is within the limits.
+        // The velocity that it can only reach. A stop in the middle of a reversal turns back within the
+        // limits.
         let most = match &ramp {
             Ok(ramp) => {
                 let excess = ramp.excess()?;
@@ -643,7 +654,7 @@ impl<P: Planner> Axis<P> {
             next.position = position;
             turns = turns.saturating_add(further);
             let was = self.place();
-            // Where it was, as a position in the turn that it is in now.
+            // Its last place, as a position in its present turn.
             self.setpoint.position = was.position + (was.turns.wrapping_sub(turns)) as f64 * modulo.length;
         }
         if !next.is_finite() {
@@ -676,7 +687,7 @@ impl<P: Planner> Axis<P> {
         steps_within(limits) || steps_within(&limits.or_larger(&self.before).or_larger(&self.stop_limits()))
     }
 
-    /// The master went out of operation: to rest, and no way onto the law is looked for.
+    /// The master went out of operation: comes to rest and searches no way onto the law.
     #[cold]
     fn hold_without_master(&mut self, scope: &mut Scope<'_>) {
         self.pause(ErrorId::MasterLost, scope);
@@ -690,7 +701,7 @@ impl<P: Planner> Axis<P> {
         self.hold_off_cam();
     }
 
-    /// By how much it is off the law now, and whether that is too much.
+    /// Its present distance from the law, and whether that is too large.
     fn measure(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let here = self.place();
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
@@ -712,7 +723,7 @@ impl<P: Planner> Axis<P> {
     }
 }
 
-/// The first derivative of a state that is beyond its limit.
+/// The first derivative of a state that exceeds its limit.
 #[inline]
 fn beyond_limits(next: &Setpoint, limits: &Limits) -> Option<Beyond> {
     let rate = if next.velocity * next.acceleration < 0.0 {
@@ -730,12 +741,12 @@ fn beyond_limits(next: &Setpoint, limits: &Limits) -> Option<Beyond> {
     told.into_iter().find(beyond)
 }
 
-/// How far `one` is from `other` (u), turns of `length` (u) and all.
+/// The distance of `one` from `other` (u), including turns of `length` (u).
 pub(super) fn off(one: Place, other: Place, length: f64) -> f64 {
     (one.turns.wrapping_sub(other.turns)) as f64 * length + (one.position - other.position)
 }
 
-/// The same of two masters as their slave sees them: with what shifts them.
+/// The same for two masters as their slave sees them, including phase shifts.
 pub(super) fn apart(one: Place, other: Place, length: f64) -> f64 {
     off(one, other, length) + (one.phase - other.phase)
 }

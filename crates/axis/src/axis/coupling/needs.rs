@@ -1,17 +1,17 @@
-//! What a step from one set-point to the next needs of the limits, whatever the motion between them is.
+//! The share of the limits that a step between two set-points needs, for any motion between them.
 
 use super::super::commands::ROUNDING;
 use super::follow::Beyond;
 use standstill_planner::{Limits, Setpoint};
 
-/// What [`Step::needs`] tells, in its order.
+/// The order of the results of [`Step::needs`].
 pub(super) const DERIVATIVES: [&str; 4] = ["velocity", "acceleration", "jerk", "snap"];
 
 /// A third derivative of at most J leads at most J cycle^3 / `BENT` off the way that velocities and accelerations at both ends
 /// of a scan explain: 36 times the root of 3 (error of the trapezoidal rule with end correction).
 const BENT: f64 = 62.353_829_072_479_58;
 
-/// What a position is off by at most, relative to the largest one that enters it.
+/// The largest relative error of a position, relative to the largest position that it was made from.
 pub(super) const RESOLVED: f64 = 16.0 * f64::EPSILON;
 
 /// Two set-points one scan apart.
@@ -20,15 +20,16 @@ pub(super) struct Step<'a> {
     pub next: &'a Setpoint,
     /// The way between them (u), if known.
     pub way: Option<f64>,
-    /// The largest position besides theirs that the way was made of (u).
+    /// The largest other position that the way was made from (u).
     pub coarsest: f64,
     /// Length of a scan (s).
     pub cycle: f64,
 }
 
 impl Step<'_> {
-    /// The velocity, acceleration, jerk and snap that are reached at least between the two, less what rounding may take: from the
-    /// change of each derivative, and from how far that is off what the next ones explain.
+    /// The velocity, acceleration, jerk and snap that are at least reached between the two, less the
+    /// largest rounding error. They follow from the change of each derivative, and from the part of it
+    /// that the next derivatives do not explain.
     pub(super) fn needs(&self) -> [f64; 4] {
         let Self {
             last, next, cycle, ..
@@ -41,7 +42,8 @@ impl Step<'_> {
         let bend = |of: [f64; 2]| cycle * cycle / 12.0 * change(of);
         let resolved = |[from, to]: [f64; 2], more: f64| RESOLVED * (from.abs() + to.abs() + more);
         let [once, twice, thrice] = [1.0 / cycle, 4.0 / (cycle * cycle), BENT / (cycle * cycle * cycle)];
-        // Of a way, a change of velocity and one of acceleration, for what takes one, two and three derivatives of it.
+        // For a way, a change of velocity and a change of acceleration: the part that one, two and three
+        // derivatives of it explain.
         let place = resolved([last.position, next.position], self.coarsest);
         let way = |of: &dyn Fn(f64) -> f64, by: f64| {
             let off = self.way.map_or(0.0, of);
@@ -66,19 +68,20 @@ impl Step<'_> {
     }
 }
 
-/// How much a limit may be exceeded by rounding that a moment is off by `1`, relative to it: where a motion is at its limit all
-/// along, what is left to it grows with the square of what the limit grows by.
+/// How much rounding may exceed a limit if it moves a moment by `1`, relative to the limit: if a motion
+/// is at its limit all the time, the room left grows with the square of the excess.
 const FAR: f64 = 64.0;
 
-/// A moment that rounding puts off by more than this, relative to the largest it may have, says nothing.
+/// A moment with a rounding error above this, relative to its largest possible value, is ignored.
 const COARSE: f64 = 1e-3;
 
 impl Step<'_> {
-    /// The first derivative of which no motion from one set-point to the next keeps the limit: its name, the least that some
-    /// motion needs of it, and the limit. Each derivative is looked at by itself, whatever those below it do between the two.
+    /// The first derivative whose limit no motion between the two set-points keeps: its name, the least
+    /// value that some motion needs, and the limit. Each derivative is checked by itself, whatever the
+    /// lower ones do between the two.
     ///
-    /// The derivative is a function of time between -L and L, and what the set-points tell of it are its first moments. Which
-    /// moments such a function can have is known: see [`are_possible`].
+    /// The derivative is a function of time between -L and L, and the set-points give its first moments.
+    /// The possible moments of such a function are known: see [`are_possible`].
     pub(super) fn beyond(&self, most: &Limits) -> Option<Beyond> {
         let steepest = most.acceleration.max(most.deceleration);
         let limits = [steepest, most.jerk, most.snap];
@@ -88,8 +91,8 @@ impl Step<'_> {
         Some((name, self.least(number + 1, limit), limit))
     }
 
-    /// The least limit of the derivative of this order that a motion keeps, to a part in 2^20; more than `limit`. Cost: at most
-    /// 84 looks.
+    /// The least limit of the derivative of this order that a motion keeps, to a part in 2^20; more than
+    /// `limit`. Cost: at most 84 checks.
     fn least(&self, order: usize, limit: f64) -> f64 {
         let (mut low, mut high) = (limit, 2.0 * limit);
         for _ in 0..64 {
@@ -116,7 +119,8 @@ impl Step<'_> {
         } = *self;
         let half = 0.5 * cycle * cycle;
         let resolved = |from: f64, to: f64| RESOLVED * (from.abs() + to.abs());
-        // How far each derivative, from the third on down, ends off what those above it explain, and what rounding makes of it.
+        // The final error of each derivative, from the third down, that those above do not explain, and
+        // its rounding.
         let snapless = order < 4;
         let jerk = if snapless { 0.0 } else { last.jerk };
         let acceleration = if order < 3 { 0.0 } else { last.acceleration };
@@ -198,7 +202,7 @@ fn measure([c0, c1, c2, c3]: [f64; 4]) -> [f64; 4] {
     ]
 }
 
-/// By how much the moments are further apart than those of a function that is 1 in one piece.
+/// How much the moments spread beyond those of a function that is 1 in one piece.
 fn spread([c0, c1, c2]: [f64; 3]) -> f64 {
     let square = c0 * c0;
     c0 * c2 - c1 * c1 - square * square / 12.0
@@ -303,7 +307,8 @@ mod tests {
             let of = |most: f64| moments(sign * most, &switches[..round / 4 % count]);
             let are_all = |most| (1..=count).all(|count| are_possible(&of(most), count, 1.0 + 1e-9));
             assert!(are_all(1.0), "{count} {switches:?}");
-            // Where a switch is next to another or to an end the function is hardly larger than one without it.
+            // If a switch is next to another one or to an end, the function is hardly larger than one
+            // without it.
             let ends = [0.0, switches[0], switches[1], switches[2], 1.0];
             if ends.windows(2).all(|pair| pair[1] - pair[0] > 0.05) {
                 assert!(!are_all(1.001), "{count} {switches:?}");
@@ -311,7 +316,7 @@ mod tests {
         }
     }
 
-    /// A piece of constant snap, then another one, each half a scan long.
+    /// Two pieces of constant snap, each half a scan long.
     fn after(start: &Setpoint, time: f64, snap: f64) -> Setpoint {
         let (t, t2) = (time, time * time);
         let (t3, t4) = (t2 * t, t2 * t2);
@@ -345,7 +350,8 @@ mod tests {
         step(last, next).needs()
     }
 
-    /// The ends of a scan tell of each derivative by itself no more than the limit, all together tell that it was above.
+    /// For each derivative alone the ends of a scan are within the limit; together they show that it was
+    /// exceeded.
     #[test]
     fn a_switch_within_a_scan_shows_at_its_ends() {
         let start = Setpoint {

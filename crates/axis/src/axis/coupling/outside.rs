@@ -1,4 +1,5 @@
-//! A master that is commanded to where its slave must not go: told at once, not only when the slave stops inside.
+//! A master that is commanded to a place where its slave must not go. This is reported at once, and not
+//! only when the slave stops inside.
 
 use super::super::Axis;
 use super::view::{View, way_to_rest};
@@ -6,15 +7,16 @@ use super::{Coupling, OnCam};
 use crate::{Event, Scope};
 use standstill_planner::{Leads, Plan, Planner};
 
-/// The way (u of what the `leads` are of) from the end of this scan until all masters have come to rest; `None` while that is not
-/// known, or one of them goes on.
+/// The way (in the unit of the `leads`) from the end of this scan until all masters have come to rest.
+/// `None` while it is not known or one of them is endless.
 pub(super) fn way_left<Q: Plan>(view: &View<'_, Q>, leads: &Leads<'_, Q>) -> Option<f64> {
-    // At the end of this scan a plan that is not late is one scan further than at its beginning.
+    // At the end of this scan, a plan that is not late is one scan further than at its beginning.
     way_to_rest(leads, u64::from(!view.future.is_late()))
 }
 
 impl Coupling {
-    /// Where the law is (u) when all masters have come to rest; `None` while that is not known, or one of them goes on.
+    /// The place of the law (u) when all masters have come to rest. `None` while it is not known or one
+    /// of them is endless.
     fn rest_of_law<Q: Plan>(&self, view: &View<'_, Q>) -> Option<f64> {
         let anchor = self.anchor?;
         let (now, _) = self.law(&anchor, &view.seen());
@@ -23,10 +25,11 @@ impl Coupling {
 }
 
 impl<P: Planner> Axis<P> {
-    /// Records that the masters lead out of the software limits of this slave, once for each place they lead to. The law is known
-    /// once it was in gear, or from the sync positions of MC_GearInPos; a cam as soon as it lies.
+    /// Records that the masters lead out of the software limits of this slave, once for each end place.
+    /// The law is known once the slave was in gear, or from the sync positions of MC_GearInPos; a cam is
+    /// known as soon as it is laid.
     ///
-    /// Cost: where a master got another plan, one evaluation of the law or the cam and two of each plan.
+    /// Cost, if a master got another plan: one evaluation of the law or the cam, and two of each plan.
     pub(super) fn tell_outside(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         if self.parameters.software_limits.is_none() {
             return;

@@ -1,8 +1,9 @@
-//! MC_PhasingAbsolute and MC_PhasingRelative: the slave sees its master ahead of where it is, or behind.
+//! MC_PhasingAbsolute and MC_PhasingRelative: the slave sees its master at a shifted place.
 //!
-//! The shift moves on a plan of its own, in units of the master, which leaves the sum of master and shift inside the limits of the
-//! slave: slower than asked, or it waits until there is room. It belongs to the slave, stays when another coupling with the same
-//! master takes over, and ends with the last.
+//! The shift moves on a plan of its own, in units of the master. The plan keeps the sum of master and
+//! shift inside the limits of the slave: it is slower than asked, or waits for room. The shift belongs to
+//! the slave. It stays when another coupling with the same master takes over, and ends with the last
+//! coupling.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_PhasingAbsolute, MC_PhasingRelative; V21. What the standard leaves open is told in
 //! docs/coupling.md.
@@ -13,17 +14,17 @@ use super::view::{Course, Kind, Seen, View};
 use crate::{AxisId, BufferMode, Cams, CommandId, ErrorId, Event, Fate, InstanceId, PhaseShift, Scope};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
-/// How a shift is to change.
+/// A change of the shift.
 #[derive(Clone, Copy, Debug)]
 struct Shift {
     id: CommandId,
     instance: InstanceId,
-    /// To this, or by it (u of the master).
+    /// To this value, or by it (u of the master).
     shift: f64,
     is_relative: bool,
-    /// As asked; infinite where the slave's limits decide.
+    /// The limits asked for; infinite if the slave's limits decide.
     limits: Limits,
-    /// The shift moves as this command says.
+    /// Whether this command moves the shift now.
     runs: bool,
 }
 
@@ -34,25 +35,25 @@ struct Moving<Plan> {
     elapsed: u64,
     scans: u64,
     limits: Limits,
-    /// The same, or those of the shifts before it that it took over from in motion.
+    /// The same, or those of the earlier shifts that it took over from in motion.
     most: Limits,
 }
 
-/// The shift between one master and what its slave sees of it.
+/// The shift of one master's place, as its slave sees it.
 #[derive(Clone, Copy, Debug, Default)]
 struct Shifts {
-    /// The shift (u of the master), and how it moves.
+    /// The present shift (u of the master) and its derivatives.
     now: Setpoint,
     command: Option<Shift>,
-    /// One that is to follow it.
+    /// A shift that waits behind it.
     next: Option<Shift>,
 }
 
-/// The shifts between masters and what their slave sees of them.
+/// The shifts of all masters of a slave.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::axis) struct Phasing<Plan> {
     legs: [Shifts; 2],
-    /// The shift that moves, one at a time, and of which master.
+    /// The moving shift and its master; only one moves at a time.
     motion: Option<(usize, Moving<Plan>)>,
 }
 
@@ -66,7 +67,7 @@ impl<Plan> Default for Phasing<Plan> {
 }
 
 impl<Plan> Phasing<Plan> {
-    /// There is no shift, and none is asked for.
+    /// Whether there is no shift and none is asked for.
     pub(super) fn is_none(&self) -> bool {
         let rests = |leg: &Shifts| leg.command.is_none() && leg.now.position == 0.0;
         self.motion.is_none() && self.legs.iter().all(rests)
@@ -81,7 +82,7 @@ impl<Plan> Phasing<Plan> {
 }
 
 impl Seen {
-    /// The same master as it is seen with a shift.
+    /// The same master, seen with a shift.
     pub(super) fn shifted(self, by: &Setpoint) -> Self {
         let mut seen = self;
         seen.place.phase += by.position;
@@ -99,7 +100,8 @@ impl Seen {
 }
 
 impl<P: Planner> Axis<P> {
-    /// By how much the slave sees this master ahead of where it is (u of the master); 0 where it does not follow it.
+    /// The distance by which the slave sees this master ahead of its real place (u of the master); 0 if
+    /// it does not follow it.
     pub fn phase_of(&self, master: AxisId) -> f64 {
         let mut phases = self.followed().into_iter().zip(self.phases());
         phases
@@ -107,17 +109,17 @@ impl<P: Planner> Axis<P> {
             .map_or(0.0, |(_, phase)| phase)
     }
 
-    /// By how much the slave sees each of its masters ahead of where it is (u of the master); 0 without.
+    /// The same for each of its masters; 0 without a shift.
     pub fn phases(&self) -> [f64; 2] {
         self.phasing.legs.map(|leg| leg.now.position)
     }
 
-    /// MC_PhasingAbsolute, MC_PhasingRelative: what the slave sees of its master is shifted. Nothing is planned here: in the motion
-    /// step the master has moved already.
+    /// MC_PhasingAbsolute, MC_PhasingRelative: shifts the master as the slave sees it. Nothing is planned
+    /// here, because the master moves first in the motion step.
     ///
     /// # Errors
-    /// The [`ErrorId`] the block shows: the axis does not follow this master, a pin is not usable, or another command waits already
-    /// behind the one in progress. Nothing changes then.
+    /// The [`ErrorId`] the block shows: the axis does not follow this master, a pin is not usable, or
+    /// another command already waits behind the one in progress. Nothing changes then.
     pub fn shift_phase(&mut self, request: &PhaseShift, scope: &mut Scope<'_>) -> Result<CommandId, ErrorId> {
         let Some(mode) = request.buffer_mode.get() else {
             let number = f64::from(request.buffer_mode.number());
@@ -194,7 +196,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The commands for the shift of the master of this number have ended; it stays as it is.
+    /// Ends the commands for the shift of this master; the shift stays as it is.
     fn end_shifts(&mut self, leg: usize, fate: Fate) {
         let Some(leg) = self.phasing.legs.get_mut(leg) else {
             return;
@@ -205,7 +207,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The coupling has ended, and with it the shifts.
+    /// Ends the shifts together with the coupling.
     pub(in crate::axis) fn end_phasing(&mut self) {
         for leg in 0..self.phasing.legs.len() {
             self.end_shifts(leg, Fate::Aborted);
@@ -213,7 +215,7 @@ impl<P: Planner> Axis<P> {
         self.phasing = Phasing::default();
     }
 
-    /// The shifts, if they go on with `entry`, which takes over: behind the same masters.
+    /// The shifts, if `entry`, which takes over, continues them behind the same masters.
     pub(in crate::axis) fn lend_phasing(&mut self, entry: &Entry) -> Phasing<P::Plan> {
         if self.goes_on_behind_masters(entry) {
             core::mem::take(&mut self.phasing)
@@ -222,7 +224,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// `entry` follows the masters that the owner follows.
+    /// Whether `entry` follows the masters of the owner.
     pub(super) fn goes_on_behind_masters(&self, entry: &Entry) -> bool {
         match entry.work {
             Work::Gear(gearing) => self.followed() == gearing.masters(),
@@ -231,7 +233,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// What became of command `id`, if it is one for the shift in progress.
+    /// The state of command `id`, if it belongs to the shift in progress.
     pub(in crate::axis) fn phasing_fate(&self, id: CommandId) -> Option<Fate> {
         let shift = self.phasing.shifts().find(|shift| shift.id == id)?;
         Some(if shift.runs {
@@ -241,7 +243,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// If command `id` waits for its turn or for room, it is taken out. Returns whether that is so.
+    /// Removes command `id` if it waits for its turn or for room. Returns whether it did.
     pub(in crate::axis) fn withdraw_shift(&mut self, id: CommandId) -> bool {
         let waits = |shift: &mut Shift| shift.id == id && !shift.runs;
         let mut taken = false;
@@ -263,7 +265,7 @@ impl<P: Planner> Axis<P> {
         self.phasing.motion.is_some()
     }
 
-    /// The most that a shift of the master of this number takes that is changing (u of the master).
+    /// The limits that a changing shift of this master takes at most (u of the master).
     pub(super) fn taken_by_shift(&self, leg: usize) -> Option<&Limits> {
         let motion = self.phasing.motion.as_ref();
         motion
@@ -271,15 +273,15 @@ impl<P: Planner> Axis<P> {
             .map(|(_, moving)| &moving.most)
     }
 
-    /// The shifts as they are now.
+    /// The present shifts.
     pub(super) fn phases_now(&self) -> [&Setpoint; 2] {
         let [first, second] = &self.phasing.legs;
         [&first.now, &second.now]
     }
 
-    /// The masters as this slave sees them in this scan: a shift that moves goes on by a scan.
+    /// The masters as this slave sees them in this scan; a moving shift advances by one scan.
     ///
-    /// Cost: where a command for a shift waits, a look along the masters' plans and a plan.
+    /// Cost: if a command for a shift waits, a search along the masters' plans and one plan.
     pub(super) fn shifted_view<'v>(
         &mut self,
         view: &View<'v, P::Plan>,
@@ -293,7 +295,7 @@ impl<P: Planner> Axis<P> {
         }
         let mut shifted = *view;
         for leg in &mut self.phasing.legs {
-            // What brought it to rest is over.
+            // The condition that stopped it is over.
             leg.now = Setpoint::at_rest(leg.now.position);
         }
         if let Some((leg, moving)) = &mut self.phasing.motion {
@@ -330,7 +332,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The command that waits for room begins, if there is some.
+    /// Begins the command that waits for room, if there is some.
     fn begin_shift(&mut self, leg: usize, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let Some(Shifts { now, command, .. }) = self.phasing.legs.get(leg).copied() else {
             return;
@@ -376,7 +378,7 @@ impl<P: Planner> Axis<P> {
         if let (Ok(slow), Some(most), true) = (&planned, &most, self.slows_master())
             && slow.excess().is_some()
         {
-            // With rates that low it would overrun what the master leaves it.
+            // At such low rates it would overrun the room that the master leaves.
             limits = Limits {
                 velocity: limits.velocity,
                 acceleration: limits.acceleration.max(most.acceleration),
@@ -411,8 +413,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// What the law leaves of the slave's limits, in units of the master; none while it leaves nothing, or while the slave is not
-    /// in gear or what the master does next is not known.
+    /// The part of the slave's limits that the law leaves, in units of the master. None if it leaves
+    /// nothing, or while the slave is not in gear or the master's motion ahead is not known.
     fn room_for_shift(
         &self,
         (leg, asked): (usize, &Limits),
@@ -432,7 +434,7 @@ impl<P: Planner> Axis<P> {
             return Some(*limits);
         }
         let room = match view.future.kind() {
-            // A master's step in this scan was of another plan, which has left it less room.
+            // A master's step in this scan belonged to another plan, which has left it less room.
             _ if self.slows_master() && (view.future.is_new || view.future.is_late()) => return None,
             Kind::Still => *limits,
             Kind::Measured => self.room_now(view, limits)?,

@@ -1,8 +1,9 @@
-//! A scan in which nothing is new: the slave is in gear or in sync on a cam, its master goes on as it did, and the set-point is the
-//! law.
+//! A scan in which nothing is new: the slave is in gear or in sync on a cam, its master continues as
+//! before, and the set-point is the law.
 //!
-//! It is what [`follow`](super::follow) does in such a scan and no more: where anything is not as it was, that is left to it, and
-//! nothing has changed yet. So such a slave costs little more than an axis in a move, and every bit is the same.
+//! This is what [`follow`](super::follow) does in such a scan, and no more. If anything has changed, this
+//! code changes nothing and leaves the step to `follow`. So such a slave costs little more than an axis
+//! in a move, and every bit is the same.
 
 use super::super::commands::ROUNDING;
 use super::super::modulo::Modulo;
@@ -28,20 +29,21 @@ pub(in crate::axis) struct Steady {
     pub(super) source: Source,
 }
 
-/// What the set-point of a slave may have for a scan in which nothing is new, worked out once. All of it is finite, so what is within it
-/// is a number.
+/// The limits that the set-point of a slave may use in a scan in which nothing is new, computed once. All
+/// are finite, so a value within them is a number.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Room {
     /// Its derivatives: the limits of the slave.
     most: Limits,
-    /// Way (u) from the set-point before it, and what velocity (u/s) and acceleration (u/s^2) change by: the limits of the axis.
+    /// Way (u) from the last set-point, and changes of velocity (u/s) and acceleration (u/s^2): the
+    /// limits of the axis.
     step: [f64; 3],
-    /// It is in gear by a law of axes without turns, and neither is shifted.
+    /// It is in gear by a law of axes without turns, and neither is phase shifted.
     is_straight: bool,
 }
 
 impl Room {
-    /// Of a slave with these limits, on an axis of `widest` limits with this sample time (s).
+    /// For a slave with these limits, on an axis of `widest` limits with this sample time (s).
     fn new(limits: &Limits, widest: &Limits, cycle: f64, is_straight: bool) -> Self {
         let finite = |most: f64| most.min(f64::MAX);
         let most = |limit: f64| finite(limit * (1.0 + ROUNDING));
@@ -63,8 +65,8 @@ impl Room {
         }
     }
 
-    /// The derivatives of `next` are within the limits of the slave.
-    // In line, so that the set-point stays in registers.
+    /// Whether the derivatives of `next` are within the limits of the slave.
+    // Inlined, so that the set-point stays in registers.
     #[inline(always)]
     pub(super) fn holds(&self, next: &Setpoint) -> bool {
         let most = &self.most;
@@ -79,7 +81,7 @@ impl Room {
             && next.snap.abs() <= most.snap
     }
 
-    /// The axis may go from `last` to `next` in a scan, whatever positions are rounded by.
+    /// Whether the axis may go from `last` to `next` in a scan, allowing for the rounding of positions.
     // In line, so that the set-point stays in registers.
     #[inline(always)]
     fn holds_step(&self, last: &Setpoint, next: &Setpoint) -> bool {
@@ -91,17 +93,18 @@ impl Room {
 }
 
 impl KnownPart {
-    /// What was known of the master before a scan goes on in it: it follows the plan of that axis, so many scans after its start.
+    /// Whether the known motion of the master continues in this scan: it follows the plan of that axis,
+    /// this many scans after its start.
     #[inline(always)]
     pub(super) fn goes_on(&self, (root, elapsed): (usize, u64)) -> bool {
-        // The first scan of a plan is told by where that ends.
+        // The first scan of a plan is recognized by the end of the plan.
         self.root == root && self.elapsed.wrapping_add(1) == elapsed && elapsed > 1
     }
 }
 
 impl Coupling {
-    /// Nothing of the coupling keeps the next step from being that of a scan in which nothing is new: it is in gear behind the set-point
-    /// of one master. The limits of the slave are these, and its coordinates have moved so often.
+    /// Whether the coupling permits a step in which nothing is new: it is in gear behind the set-point of
+    /// one master, the limits of the slave are these, and its coordinates have moved this many times.
     fn may_go_on(&self, limits: &Limits, moves: u32) -> bool {
         self.rung.is_locked()
             && self.gearing.second.is_none()
@@ -113,7 +116,7 @@ impl Coupling {
             && self.left == u64::MAX
     }
 
-    /// The law is that of axes without turns, and neither is shifted.
+    /// Whether the law is that of axes without turns, and neither is phase shifted.
     fn is_straight(&self) -> bool {
         let gear = &self.gearing.first.gear;
         self.anchor.is_some_and(|anchor| gear.is_straight(&anchor))
@@ -121,8 +124,9 @@ impl Coupling {
 }
 
 impl<P: Planner> Axis<P> {
-    /// Whether nothing of its own keeps the next step from being that of a scan in which nothing is new: it is in gear or in sync on a
-    /// cam, and neither moves beside the law nor waits for anything, nor looks at each of its steps.
+    /// Whether its own state permits a next step in which nothing is new. It is then in gear or in sync
+    /// on a cam; it does not move beside the law, waits for nothing, and does not check each of its
+    /// steps.
     fn may_go_on(&self) -> bool {
         let (limits, moves) = (self.slowed(&self.parameters.limits), self.frame.moves());
         let in_gear = self.coupling.as_ref();
@@ -143,7 +147,7 @@ impl<P: Planner> Axis<P> {
             && !self.bars_any()
     }
 
-    /// After a step: notes whether the next one may be that of a scan in which nothing is new.
+    /// After a step: notes whether nothing may be new in the next one.
     pub(super) fn note_steady(&mut self) {
         self.steady.is_settled = self.may_go_on();
         if self.steady.is_settled {
@@ -158,8 +162,8 @@ impl<P: Planner> Axis<P> {
         self.steady.is_settled = true;
     }
 
-    /// Nothing is new: it follows none, or is a slave whose next step may be that of a scan in which nothing is new. Whatever ends
-    /// that says so ([`Axis::unsettle`]).
+    /// Whether nothing is new: it follows none, or it is a slave whose next step may be one in which
+    /// nothing is new. Whatever ends that calls [`Axis::unsettle`].
     #[inline]
     pub(crate) fn is_settled(&self) -> bool {
         self.steady.is_settled
@@ -171,14 +175,14 @@ impl<P: Planner> Axis<P> {
         self.steady.is_settled = false;
     }
 
-    /// Before a step in which something may be new.
+    /// Called before a step in which something may be new.
     pub(crate) fn begin_anew(&mut self) {
         self.unsettle();
         self.steady.has_gone_on = false;
         self.note_source();
     }
 
-    /// Before its step, if some slave may follow it: notes where it is.
+    /// Called before its step, if some slave may follow it: notes its place.
     #[inline(always)]
     pub(crate) fn note_before(&mut self, scan: u64) {
         if !self.links.is_followed() {
@@ -195,13 +199,13 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The same on an axis that comes round.
+    /// The same on a modulo axis.
     #[inline(never)]
     fn note_before_round(&mut self, scan: u64) {
         self.steady.was = self.seen_before(scan);
     }
 
-    /// After its step: where it was before that, as noted.
+    /// After its step: its place before the step, as noted.
     pub(crate) fn was(&self) -> Seen {
         let mut was = self.steady.was;
         was.place.position = was.at.position;
@@ -221,11 +225,12 @@ impl<P: Planner> Axis<P> {
         )
     }
 
-    /// After its step, if it went on as its slaves know it: the axis whose plan it follows, and the scans after the start of that.
+    /// After its step, if it continued as its slaves know: the axis whose plan it follows, and the scans
+    /// since the start of that plan.
     #[inline(always)]
     fn went_on(&self) -> Option<(usize, u64)> {
         match &self.motion {
-            // Where something was new for it, or for a master of it, its slaves look at the step as it did.
+            // If something was new for it or for a master of it, its slaves check the step in full.
             Motion::Geared if self.steady.has_gone_on => {
                 let coupling = self.coupling.as_ref().filter(|_| self.steady.is_settled)?;
                 let known = &coupling.known[0];
@@ -239,8 +244,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The step of a slave for which nothing is new, after that of its master. Returns FALSE, and has done nothing, if something is
-    /// new all the same: its master did not go on as it was known to.
+    /// The step of a slave for which nothing is new, after that of its master. Returns FALSE and changes
+    /// nothing if something is new after all, because its master did not continue as known.
     ///
     /// Cost: one evaluation of the law.
     #[inline(always)]

@@ -1,8 +1,9 @@
-//! MC_GearInPos: a law that is given before the slave is on it, and a start that waits for a place of the master, which MC_CamIn
-//! may have, too.
+//! MC_GearInPos: a law that is given before the slave is on it, and a start that waits for a place of the
+//! master. MC_CamIn may also have such a start.
 //!
-//! Until the start the command waits beside whatever owns the slave, and changes nothing of that. Whether the slave can be in
-//! sync in time is looked at when the start point is crossed, before the owner is interrupted.
+//! Until the start the command waits beside the owner of the slave, and does not affect it. When the
+//! start point is crossed, it is checked whether the slave can be in sync in time, before the owner is
+//! interrupted.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_GearInPos; V19, V19a. What the standard leaves open is told in docs/coupling.md.
 
@@ -17,13 +18,13 @@ use crate::{
 use standstill_planner::turns::split;
 use standstill_planner::{Anchor, CamLaw, Limits, Place, Plan, Planner};
 
-/// What a place of the master may be off by for rounding, relative to the numbers it is made of.
+/// The largest rounding error of a master's place, relative to the numbers it is made of.
 const ROUNDING: f64 = 1e-9;
 
 /// Most halvings of a span of scans, of which a plan has at most 2^31.
 const HALVINGS: u32 = 32;
 
-/// Why something can't be in sync in time: the pin, its value and the limit.
+/// The reason why a slave can't be in sync in time: the pin, its value and the limit.
 pub(super) type NotInTime = (&'static str, f64, f64, ErrorId);
 
 /// A command that waits for a place of its master.
@@ -35,19 +36,21 @@ pub(in crate::axis) struct Awaited {
     /// The master at the end of the scan before, in its coordinates of now.
     was: Seen,
     start: StartPoint,
-    /// Where its cam lies at the master, once that is settled, and which place of the cam that is.
+    /// The place at the master where its cam is laid, once that is known, and the place of the cam there.
     laid: Option<(Place, f64)>,
 }
 
 /// A place of the master at which something starts.
 #[derive(Clone, Copy, Debug)]
 struct StartPoint {
-    /// The sync point, and how far before it the start point is, with the sign of the direction in which it is crossed.
+    /// The sync point, and the distance of the start point before it, with the sign of the direction in
+    /// which it is crossed.
     goal: f64,
     distance: f64,
-    /// It has not been looked for yet.
+    /// It has not been searched yet.
     is_new: bool,
-    /// The master has been between start and sync point since the command was given, and has not gone back.
+    /// The master has been between start and sync point since the command was given, and has not gone
+    /// back.
     is_between: bool,
 }
 
@@ -56,9 +59,9 @@ struct Course {
     before: f64,
     here: f64,
     way: f64,
-    /// It goes on with this velocity.
+    /// Its velocity after the step.
     velocity: f64,
-    /// So much further on it is at the same place again.
+    /// The distance after which it is at the same place again.
     length: Option<f64>,
 }
 
@@ -77,7 +80,7 @@ impl StartPoint {
         }
     }
 
-    /// Whether the master has come to the start point in this scan, or is on its way from there to the sync point.
+    /// Whether the master has reached the start point in this scan, or is between it and the sync point.
     fn starts(&mut self, course: &Course) -> bool {
         let Self { goal, distance, .. } = *self;
         if distance == 0.0 {
@@ -89,7 +92,7 @@ impl StartPoint {
         let way = heading * course.way;
         let has_crossed = match course.length {
             None => heading * (before - point) < 0.0 && heading * (here - point) >= 0.0,
-            // How far it is behind the start point is less than it came in this scan.
+            // Its distance behind the start point is less than its way in this scan.
             Some(length) => wrapped(heading * (here - point), length) < way,
         };
         if core::mem::take(&mut self.is_new) {
@@ -106,7 +109,7 @@ impl StartPoint {
 }
 
 impl Awaited {
-    /// `entry` waits; `None` for one that has nothing to wait for.
+    /// The entry of `entry` while it waits; `None` if it has nothing to wait for.
     fn new(entry: Entry) -> Option<Self> {
         let (master, source, goal, distance) = match entry.work {
             Work::Gear(gearing) => {
@@ -132,7 +135,8 @@ impl Awaited {
         })
     }
 
-    /// Where the cam lies at its master with new values: one that is counted from where that was at the edge still is.
+    /// The place of the cam at its master with new values. A cam that counts from the master's place at
+    /// the edge still does.
     fn laid_for(&self, entry: &Entry, cams: &Cams<'_>) -> Option<(Place, f64)> {
         let (Work::Cam(before), Work::Cam(camming)) = (self.entry.work, entry.work) else {
             return None;
@@ -151,8 +155,8 @@ impl Awaited {
         Some((place, cams.cam(camming.cam)?.head.begin))
     }
 
-    /// How the master came from the end of the scan before to where it is `now`, on its side of the cam for one that goes onto
-    /// that; `turn` is the length of the master's turn (u).
+    /// The way of the master from the end of the last scan to `now`, on the master's side of the cam if a
+    /// cam is given. `turn` is the length of the master's turn (u).
     fn course(&mut self, now: &Seen, turn: Option<f64>, cams: &Cams<'_>) -> Option<Course> {
         // What moved in the motion step itself was not seen before it.
         let late = now.moved - self.was.moved;
@@ -197,7 +201,7 @@ impl Awaited {
 }
 
 impl<P: Planner> Axis<P> {
-    /// The pins that only MC_GearInPos has; `turn` is the length of the master's turn (u).
+    /// Checks the pins that only MC_GearInPos has; `turn` is the length of the master's turn (u).
     pub(super) fn check_sync(
         &self,
         point: &SyncPoint,
@@ -235,7 +239,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// A command waits for its start point, in place of one that did before.
+    /// A command waits for its start point and replaces one that waited before.
     pub(in crate::axis) fn await_start(
         &mut self,
         work: Work,
@@ -255,7 +259,7 @@ impl<P: Planner> Axis<P> {
         Ok(entry.id)
     }
 
-    /// If command `id` waits for its start point, it does so with these values from now on.
+    /// Gives command `id`, if it waits for its start point, these values from now on.
     pub(in crate::axis) fn update_awaited(
         &mut self,
         id: CommandId,
@@ -270,7 +274,7 @@ impl<P: Planner> Axis<P> {
             return Ok(());
         };
         self.take_values(&mut entry, work, limits);
-        // What sets off at once takes over in the next motion step as what was at its start point does.
+        // A command that starts at once takes over in the next motion step, like one at its start point.
         self.awaited = Awaited::new(entry).map(|awaited| Awaited {
             was: before.was,
             laid: before.laid_for(&entry, &scope.cams),
@@ -279,14 +283,14 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
-    /// Command `id` waits for its start point.
+    /// Whether command `id` waits for its start point.
     pub(in crate::axis) fn awaits_start(&self, id: CommandId) -> bool {
         self.awaited
             .as_ref()
             .is_some_and(|awaited| awaited.entry.id == id)
     }
 
-    /// What waits for its start point does so no longer.
+    /// Ends the command that waits for its start point.
     pub(in crate::axis) fn end_awaited(&mut self, fate: Fate) {
         if let Some(awaited) = self.awaited.take() {
             self.decide(awaited.entry.id, fate);
@@ -298,22 +302,22 @@ impl<P: Planner> Axis<P> {
         self.awaited.as_ref().map(|awaited| awaited.master)
     }
 
-    /// The same, and which values of it.
+    /// The same master, with the values of it that count.
     pub(crate) fn awaited_values(&self) -> Option<Values> {
         self.awaited
             .as_ref()
             .map(|awaited| (awaited.master, awaited.source))
     }
 
-    /// Before any axis has moved in this scan: the master whose place a command waits for is there.
+    /// Before any axis has moved in this scan: notes the place of the master that a command waits for.
     pub(crate) fn note_awaited_master(&mut self, seen: Seen) {
         if let Some(awaited) = &mut self.awaited {
             awaited.was = seen;
         }
     }
 
-    /// Whether the command that waits for a place of its master, now seen there, starts in this scan; `turn` is the length of the
-    /// master's turn (u). To be asked once in a motion step.
+    /// Whether the command that waits for a place of its master starts in this scan, with the master seen
+    /// at `now`. `turn` is the length of the master's turn (u). Call it once in a motion step.
     pub(crate) fn reaches_start(&mut self, now: &Seen, turn: Option<f64>, cams: &Cams<'_>) -> bool {
         let Some(awaited) = &mut self.awaited else {
             return false;
@@ -322,10 +326,10 @@ impl<P: Planner> Axis<P> {
         course.is_some_and(|course| awaited.start.starts(&course))
     }
 
-    /// The master is at the start point of the command that waits for it: that takes over, or it fails and what owns the axis goes
-    /// on.
+    /// The master is at the start point of a waiting command. The command takes over, or it fails and the
+    /// owner of the axis continues.
     ///
-    /// Cost: that of the plans looked at where the way onto a law is looked for.
+    /// Cost: that of the plans tried in the search for a way onto a law.
     pub(crate) fn start_at_point(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let Some(Awaited { entry, was, laid, .. }) = self.awaited else {
             return;
@@ -372,7 +376,8 @@ impl<P: Planner> Axis<P> {
         found
     }
 
-    /// What waits for a place of its master can't follow it: it fails, and what owns the axis goes on.
+    /// The command that waits for a place of its master can't follow it: it fails, and the owner of the
+    /// axis continues.
     pub(crate) fn bar_awaited(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
         let master = self.awaited_master().unwrap_or_default();
         self.fail_awaited(("Master", f64::from(master.number()), f64::NAN), error, scope);
@@ -389,8 +394,8 @@ impl<P: Planner> Axis<P> {
         self.lose_heir(entry.id, scope);
     }
 
-    /// Whether `entry`, whose coupling is lent for the time of the question, is in sync in time: else the pin, its value and limit,
-    /// and why.
+    /// Whether `entry` is in sync in time; its coupling is lent for this check. If not: the pin, its
+    /// value and limit, and the reason.
     fn way_at_start(&mut self, entry: &Entry, view: &View<'_, P::Plan>) -> Result<(), NotInTime> {
         self.lay_law(view);
         let Some(coupling) = &self.coupling else {
@@ -428,7 +433,7 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
-    /// How far (u) the master is from its sync point at the end of the scan before.
+    /// The distance (u) of the master from its sync point at the end of the last scan.
     fn way_to_sync(&self, view: &View<'_, P::Plan>, anchor: &Anchor) -> f64 {
         let Some(coupling) = &self.coupling else {
             return 0.0;
@@ -438,7 +443,8 @@ impl<P: Planner> Axis<P> {
         turns * view.turn.unwrap_or(0.0) + (anchor.master.position - was.position) - was.phase
     }
 
-    /// How far (u) the master comes in so many scans from the end of the scan before, as far as is known.
+    /// The distance (u) that the master covers in this many scans from the end of the last one, as far as
+    /// is known.
     fn way_of_master(&self, view: &View<'_, P::Plan>, scans: u64) -> f64 {
         let cycle = self.planner.cycle();
         match view.future.plan() {
@@ -456,8 +462,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Scans from the end of the scan before until the master has come `way` (u) in the direction of its motion, as far as is
-    /// known; none if never.
+    /// Scans from the end of the last one until the master has covered `way` (u) in the direction of its
+    /// motion, as far as is known; none if never.
     fn scans_of_master(&self, view: &View<'_, P::Plan>, way: f64) -> Option<u64> {
         let heading = 1.0_f64.copysign(view.now.at.velocity);
         let left = heading * way;
@@ -477,8 +483,8 @@ impl<P: Planner> Axis<P> {
         Some(high)
     }
 
-    /// Where a law that was given lies is settled: in which turn of the master, and in which of the slave. Nothing for any other,
-    /// and for one that is settled.
+    /// Settles the turns of a law with sync positions: that of the master, and that of the slave. No
+    /// effect on any other law, or on one already settled.
     pub(super) fn lay_law(&mut self, view: &View<'_, P::Plan>) {
         let Some(coupling) = &self.coupling else { return };
         let (Some(sync), None) = (coupling.gearing.sync, coupling.anchor) else {
@@ -505,13 +511,13 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// In which turn of `length` (u) the slave has its place when the master is at the sync point.
+    /// The turn of `length` (u) in which the slave has its place when the master is at the sync point.
     fn slave_turn(&self, sync: &Sync, anchor: &Anchor, length: f64, view: &View<'_, P::Plan>) -> i64 {
         let Some(coupling) = &self.coupling else { return 0 };
         let here = self.place();
         let cycle = self.planner.cycle();
-        // Where the slave would be without the command when the master is there, and where it is to be; what is not known to come
-        // is looked at now.
+        // The slave's place without the command when the master gets there, and its place with the
+        // command. If the master's way is not known, its place now counts.
         let scans = self.scans_of_master(view, self.way_to_sync(view, anchor));
         let (kept, wanted) = match scans {
             Some(scans) => {
@@ -523,7 +529,7 @@ impl<P: Planner> Axis<P> {
                 (here.position, place)
             }
         };
-        // The turn of the law that lies at or before `kept`, counted from that of the slave.
+        // The turn of the law that is at or before `kept`, counted from that of the slave.
         let (before, rest) = split(kept - wanted.position, length);
         let line = coupling.gearing.first.gear.derivative(view.now.at.velocity);
         let is_forward = line >= 0.0;
@@ -541,7 +547,7 @@ impl<P: Planner> Axis<P> {
         turns.wrapping_sub(wanted.turns).wrapping_add(anchor.slave.turns)
     }
 
-    /// In sync for the first time: told if the master is past the sync point.
+    /// In sync for the first time: recorded if the master is past the sync point.
     pub(super) fn note_sync(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let Some(coupling) = &mut self.coupling else {
             return;
@@ -563,8 +569,8 @@ impl<P: Planner> Axis<P> {
     }
 }
 
-/// In which turn the master's sync point lies: on its way from the start point, else the next it comes by, or that of this turn
-/// while it stands.
+/// The turn in which the master's sync point is. On the way from the start point it is the turn ahead;
+/// otherwise the next one the master passes, or the present one while it stands.
 fn master_turn<Q>(sync: &Sync, was: &Seen, view: &View<'_, Q>) -> i64 {
     let Some(length) = view.turn else { return 0 };
     let (from, heading) = if sync.start_distance == 0.0 {

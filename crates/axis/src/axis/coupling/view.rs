@@ -1,4 +1,5 @@
-//! What a slave may know of its master in its motion step: where it is, where it was, and its plan. Nothing else.
+//! The values of its master that a slave may use in its motion step: its place, its last place, and its
+//! plan. Nothing else.
 
 use super::super::modulo::Modulo;
 use super::super::{Axis, Motion};
@@ -10,20 +11,20 @@ pub(crate) struct Seen {
     pub place: Place,
     /// Its derivatives; the position is that of `place`.
     pub at: Setpoint,
-    /// By how much its coordinates moved in this scan (u).
+    /// The move of its coordinates in this scan (u).
     pub moved: f64,
     /// Its set-point is the result of a plan.
     pub is_operating: bool,
-    /// How smooth its motions are: 2, 3 or 4.
+    /// The smoothness of its motions: 2, 3 or 4.
     pub degree: usize,
-    /// Its motion was planned within what its slaves leave of its limits.
+    /// Its motion was planned within the limits that its slaves leave.
     pub keeps_bound: bool,
 }
 
-/// The masters of a slave as they are seen: a second one only where it has two.
+/// The masters of a slave as it sees them; a second one only if it has two.
 pub(crate) type SeenBoth = [Seen; 2];
 
-/// The law that holds when the masters are as `seen` and the slave is there.
+/// The law that applies if the masters are as `seen` and the slave is at this place.
 pub(super) fn anchor_at(seen: &SeenBoth, slave: Place) -> Anchor {
     Anchor {
         master: seen[0].place,
@@ -32,7 +33,7 @@ pub(super) fn anchor_at(seen: &SeenBoth, slave: Place) -> Anchor {
     }
 }
 
-/// The masters in their slave's motion step, after their own.
+/// The masters in their slave's motion step, after their own step.
 #[derive(Clone, Copy)]
 pub(crate) struct View<'a, Plan> {
     /// The first master, or the only one.
@@ -44,27 +45,27 @@ pub(crate) struct View<'a, Plan> {
     pub future: Future<'a, Plan>,
 }
 
-/// What the masters do next, as far as is known.
+/// The next motion of the masters, as far as is known.
 #[derive(Clone, Copy)]
 pub(crate) struct Future<'a, Plan> {
-    /// Of each master; of the second one nothing where there is none.
+    /// For each master; the second is empty if there is none.
     pub parts: [Part<'a, Plan>; 2],
-    /// It holds from the end of this scan on: the step of a master in this scan came from something else.
+    /// It applies from the end of this scan: the step of a master in this scan had another source.
     pub is_new: bool,
 }
 
-/// What a master does next, as far as is known.
+/// The next motion of a master, as far as is known.
 #[derive(Clone, Copy)]
 pub(crate) struct Part<'a, Plan> {
-    /// The axis whose plan it is: the master, or the first one of a chain in gear.
+    /// The axis that has the plan: the master, or the first axis of a chain in gear.
     pub root: usize,
-    /// What the derivatives of the plan are multiplied by to be those of the master.
+    /// The factor from the derivatives of the plan to those of the master.
     pub factor: f64,
     pub course: Course<'a, Plan>,
 }
 
 impl<Plan> Part<'_, Plan> {
-    /// Of a master that there is not.
+    /// For a master that does not exist.
     pub(crate) const NONE: Self = Self {
         root: usize::MAX,
         factor: 0.0,
@@ -72,23 +73,24 @@ impl<Plan> Part<'_, Plan> {
     };
 }
 
-/// What an axis does next.
+/// The next motion of an axis.
 #[derive(Clone, Copy)]
 pub(crate) enum Course<'a, Plan> {
     /// It stands.
     Still,
-    /// This plan, so many scans after its start.
+    /// This plan, at this number of scans after its start.
     Plan(&'a Plan, u64),
     /// Not known: more than one plan at once, or a curve.
     Unknown,
-    /// Measured values: not known, and never quite even. The way onto the law is looked for again after so many scans.
+    /// Measured values: the motion is not known and never quite even. The way onto the law is searched
+    /// again after this many scans.
     Measured(u64),
 }
 
-/// Scans after which the way is looked for again while what the master does next is not known.
+/// Scans after which the way is searched again while the master's next motion is not known.
 pub(super) const UNKNOWN: u64 = 16;
 
-/// Where the set-points of an axis come from.
+/// The source of the set-points of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum Source {
     /// Nothing moves it.
@@ -102,7 +104,7 @@ pub(crate) enum Source {
     Other,
 }
 
-/// What kind of course it is.
+/// The kind of a course.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::axis) enum Kind {
     #[default]
@@ -113,10 +115,10 @@ pub(in crate::axis) enum Kind {
     Measured,
 }
 
-/// What a slave remembers of what its masters do next, to see that it is something else.
+/// What a slave keeps of its masters' next motions, in order to detect a change.
 pub(super) type Known = [KnownPart; 2];
 
-/// What it remembers of one.
+/// What it keeps of one master.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct KnownPart {
     pub root: usize,
@@ -128,11 +130,12 @@ pub(super) struct KnownPart {
 }
 
 impl<'a, P: Plan> Part<'a, P> {
-    /// What is known of it now, and whether it goes on from what was `known` in the scan before.
+    /// The known motion now, and whether it continues the motion `known` in the last scan.
     fn compare(&self, known: &KnownPart) -> (KnownPart, bool) {
         let (kind, elapsed, end) = match self.course {
             Course::Still => (Kind::Still, 0, (0.0, 0.0)),
-            // A plan in progress is told by its scans; only one that has just begun could be taken for another.
+            // A plan in progress is recognized by its scans. Only a plan that has just begun could be
+            // mistaken for another.
             Course::Plan(_, elapsed) if elapsed > 1 => (Kind::Plan, elapsed, known.end),
             Course::Plan(plan, elapsed) => {
                 let end = plan.at(u64::from(plan.scans()));
@@ -160,13 +163,13 @@ impl<'a, P: Plan> Part<'a, P> {
     }
 }
 
-/// Where the plan of a master ends.
+/// The end of a master's plan.
 pub(in crate::axis) fn end_of<Q: Plan>(lead: &Lead<'_, Q>) -> Setpoint {
     lead.plan.at(u64::from(lead.plan.scans()))
 }
 
-/// The way (u of the slave) on which the masters still lead it, so many `scans` after where the leads begin; `None` where one of them does not
-/// come to rest.
+/// The way (u of the slave) on which the masters still lead it, from this many `scans` after the leads
+/// begin. `None` if one of them does not come to rest.
 pub(in crate::axis) fn way_to_rest<Q: Plan>(leads: &Leads<'_, Q>, scans: u64) -> Option<f64> {
     leads.iter().flatten().try_fold(0.0, |way, lead| {
         let end = end_of(lead);
@@ -184,8 +187,9 @@ impl<'a, P: Plan> Future<'a, P> {
         ([first, second], goes_on && second_goes_on)
     }
 
-    /// Notes what is known of it now, and the limits of the slave. Returns whether that, or a limit, is another one than in the scan
-    /// before, or the scans are over after which the way is to be looked for again, unless the slave is locked.
+    /// Notes the known motion and the limits of the slave. Returns whether the motion or a limit has
+    /// changed since the last scan. Unless the slave is locked, it also returns TRUE when the scans until
+    /// the next search are over.
     pub(super) fn is_new_to(
         &self,
         (known, left, held): (&mut Known, &mut u64, &mut Limits),
@@ -203,7 +207,7 @@ impl<'a, P: Plan> Future<'a, P> {
         !goes_on || is_lowered || (is_over && !is_locked)
     }
 
-    /// What kind of course the masters take together.
+    /// The kind of course that the masters have together.
     pub(in crate::axis) fn kind(&self) -> Kind {
         let kind = |part: &Part<'_, P>| match part.course {
             Course::Still => Kind::Still,
@@ -219,7 +223,8 @@ impl<'a, P: Plan> Future<'a, P> {
         }
     }
 
-    /// The values of the masters are measured: after how many scans the way onto their law is looked for again.
+    /// If the values of the masters are measured: the number of scans after which the way onto their law
+    /// is searched again.
     pub(super) fn measured(&self) -> Option<u64> {
         let scans = |part: &Part<'_, P>| match part.course {
             Course::Measured(scans) => Some(scans),
@@ -229,7 +234,7 @@ impl<'a, P: Plan> Future<'a, P> {
         scans.filter(|_| self.kind() == Kind::Measured)
     }
 
-    /// It has a plan that the master's step in this scan was not of.
+    /// Whether it has a plan that was not used for the master's step in this scan.
     pub(in crate::axis) fn is_late(&self) -> bool {
         let plans = self.parts.iter().map(|part| &part.course);
         let is_late = |course: &Course<'_, P>| match course {
@@ -239,8 +244,9 @@ impl<'a, P: Plan> Future<'a, P> {
         self.kind() == Kind::Plan && plans.into_iter().any(is_late)
     }
 
-    /// The plans of the masters from the end of the scan before on, or from the end of this one if they are late: each with the
-    /// factor that `geared` gives for it and its number. Nothing of a master that stands, nor of one that is geared by 0.
+    /// The plans of the masters from the end of the last scan, or from the end of this one if they are
+    /// late. Each has the factor that `geared` returns for it, and its number. Masters that stand, or
+    /// have a ratio of 0, are left out.
     pub(super) fn leads(&self, geared: impl Fn(usize, f64) -> f64) -> Option<Leads<'a, P>> {
         let is_late = self.is_late();
         let mut leads = [None; 2];
@@ -262,8 +268,9 @@ impl<'a, P: Plan> Future<'a, P> {
         (self.kind() == Kind::Plan).then_some(leads)
     }
 
-    /// The plan of the first master from the end of the scan before on: the scans after its start, and how many scans later than
-    /// that it begins, which is 1 for one that the master's step in this scan was not of.
+    /// The plan of the first master from the end of the last scan: the scans since its start, and the
+    /// number of scans by which it begins later. That number is 1 for a plan that was not used for the
+    /// master's step in this scan.
     pub(super) fn plan(&self) -> Option<(&'a P, u64, u64)> {
         match self.parts[0].course {
             Course::Plan(plan, elapsed) if self.is_new => Some((plan, elapsed, 1)),
@@ -275,7 +282,7 @@ impl<'a, P: Plan> Future<'a, P> {
 }
 
 impl<Plan> View<'_, Plan> {
-    /// Both masters as they are.
+    /// Both masters as they are now.
     pub(super) fn seen(&self) -> SeenBoth {
         [self.now, self.second.unwrap_or_default()]
     }
@@ -285,12 +292,12 @@ impl<Plan> View<'_, Plan> {
         self.now.is_operating && self.second.is_none_or(|seen| seen.is_operating)
     }
 
-    /// The motions of all masters were planned within what their slaves leave of their limits.
+    /// Whether the motions of all masters were planned within the limits that their slaves leave.
     pub(super) fn keeps_bound(&self) -> bool {
         self.now.keeps_bound && self.second.is_none_or(|seen| seen.keeps_bound)
     }
 
-    /// How smooth the motions of the masters are: 2, 3 or 4.
+    /// The smoothness of the masters' motions: 2, 3 or 4.
     pub(super) fn degree(&self) -> usize {
         let second = self.second.map_or(usize::MAX, |seen| seen.degree);
         self.now.degree.min(second)
@@ -298,7 +305,7 @@ impl<Plan> View<'_, Plan> {
 }
 
 impl<P: Planner> Axis<P> {
-    /// Where it is: whole turns, and the position programs see.
+    /// Its place: whole turns, and the position that programs see.
     #[inline(always)]
     pub(crate) fn place(&self) -> Place {
         match &self.modulo {
@@ -326,7 +333,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Before its step in this scan: what its slaves remember of where it was.
+    /// Before its step in this scan: the place that its slaves remember.
     pub(crate) fn seen_before(&self, scan: u64) -> Seen {
         let place = self.place();
         Seen {
@@ -340,7 +347,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// As its slaves see it.
+    /// The axis as its slaves see it.
     pub(crate) fn seen(&self, scan: u64) -> Seen {
         Seen {
             is_operating: self.is_operating(),
@@ -350,20 +357,20 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Its set-point is the result of a plan, not the feedback.
+    /// Whether its set-point is the result of a plan, and not the feedback.
     pub(crate) fn is_operating(&self) -> bool {
         !matches!(self.motion, Motion::Follow | Motion::Torque { .. })
     }
 
-    /// What it does next, if that is its own plan.
+    /// Its next motion, if that is its own plan.
     pub(crate) fn course(&self) -> Course<'_, P::Plan> {
         match &self.motion {
             _ if self.layer.is_some() => Course::Unknown,
             Motion::Hold => Course::Still,
-            // Nothing is known of a curve through points ahead.
+            // The motion along a curve through points ahead is not known.
             Motion::Run { plan, elapsed, .. } if self.planner.is_curve((plan, *elapsed)) => Course::Unknown,
             Motion::Run { plan, elapsed, .. } => Course::Plan(plan, *elapsed),
-            // In gear behind measured values it is no more even than those.
+            // In gear behind measured values it is no more even than they are.
             Motion::Geared if self.follows_actual() => Course::Measured(UNKNOWN),
             Motion::Follow | Motion::Torque { .. } | Motion::Geared | Motion::Closing { .. } => {
                 Course::Unknown
@@ -371,7 +378,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Where its next set-point comes from.
+    /// The source of its next set-point.
     #[inline]
     fn source(&self) -> Source {
         match self.course() {
@@ -382,17 +389,17 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Before its step in this scan, which is from here.
+    /// Before its step in this scan: notes the source of the step.
     pub(crate) fn note_source(&mut self) {
         self.steady.source = self.source();
     }
 
-    /// Its next set-point comes from elsewhere than that of this scan.
+    /// Whether its next set-point has another source than that of this scan.
     pub(crate) fn has_new_source(&self) -> bool {
         self.steady.source != self.source()
     }
 
-    /// What its actual values do next.
+    /// The next motion of its actual values.
     pub(crate) fn course_of_actual(&self) -> Course<'_, P::Plan> {
         if self.is_measured_still() {
             Course::Still
@@ -401,7 +408,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// In gear it does what the plan of its master does, its derivatives times this.
+    /// In gear, the factor from the derivatives of its master's plan to its own.
     pub(crate) fn factor_in_gear(&self) -> Option<f64> {
         let coupling = self.coupling.as_ref().filter(|_| !self.follows_actual())?;
         let follows_one = coupling.gearing.second.is_none() && !self.is_phasing() && !self.adds_motion();
@@ -409,7 +416,7 @@ impl<P: Planner> Axis<P> {
             .then(|| coupling.gearing.first.gear.derivative(1.0))
     }
 
-    /// Before any axis has moved in this scan: its masters are there.
+    /// Before any axis has moved in this scan: notes the places of its masters.
     pub(crate) fn note_masters(&mut self, seen: SeenBoth) {
         let [first, second] = seen;
         let [by, by_second] = self.phases_now();

@@ -1,4 +1,5 @@
-//! Homing by the drive: the drive leads, and the set-point follows it until it is back at the command.
+//! Homing by the drive: the drive leads, and the set-point follows it until the drive obeys the command
+//! again.
 //!
 //! Source: CiA 402, homing mode; V11, CI-3.
 
@@ -11,7 +12,7 @@ use crate::{AxisState, DriveHoming, DrivePosition, ErrorId, Scope};
 use standstill_planner::{Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
-    /// Whether the drive moves as it likes.
+    /// Whether the drive moves by itself.
     pub(in crate::axis) fn moves_itself(&self) -> bool {
         self.beside.report.homing != DriveHoming::Off
     }
@@ -29,7 +30,7 @@ impl<P: Planner> Axis<P> {
         in_operation && matches!(self.motion, Motion::Follow) && !self.moves_itself()
     }
 
-    /// The drive homes by itself, or has yet to return to the command.
+    /// The drive homes by itself, or has not returned to the command yet.
     pub(super) fn follow_drive_homing(&mut self, scope: &mut Scope<'_>) {
         let told = self.beside.report.homing;
         if let (DriveHoming::Attained(reference) | DriveHoming::Done(reference), Phase::Drive) =
@@ -65,8 +66,9 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// From this scan on the drive calls its positions anew: the place of `reference` is where the homing has its
-    /// Position. What positions were before that cannot be compared with them, so this scan counts as at rest.
+    /// The drive names its positions anew from this scan on: at the place of `reference` the homing has
+    /// its Position. Earlier positions cannot be compared with the new ones, so this scan counts as at
+    /// rest.
     fn take_names_of_drive(&mut self, reference: DrivePosition, scope: &mut Scope<'_>) {
         let Some(Work::Home(position)) = self.owner.map(|owner| owner.work) else {
             return;

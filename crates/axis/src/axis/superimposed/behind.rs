@@ -1,8 +1,9 @@
 //! What is superimposed on a slave.
 //!
-//! In gear the set-point is the law with the place of the slave moved on by what has been added; once that is done it stays in the
-//! law, to the bit. Whether there is room is looked at in the motion step, where the master has moved already and its plan is
-//! known. When the slave loses its law, what is being added passes its velocity on to the slave, and the rest of it waits.
+//! In gear the set-point is the law, with the place of the slave moved by the added distance. Once the
+//! distance is added it stays in the law, to the bit. Room is checked in the motion step, after the
+//! master has moved and when its plan is known. When the slave loses its law, the added motion passes its
+//! velocity to the slave, and the rest of the distance waits.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_MoveSuperimposed, MC_HaltSuperimposed. What the standard leaves open is told in
 //! docs/coupling.md.
@@ -26,7 +27,7 @@ impl<P: Planner> Axis<P> {
     /// Refuses what could not be added even to a master at rest.
     ///
     /// # Errors
-    /// The planner refuses the command as it is asked for, or MC_Power bars its direction.
+    /// The planner refuses the command as asked, or MC_Power bars its direction.
     pub(super) fn propose_alone(&self, layer: &Layer<P::Plan>, command: &Added) -> Result<(), ErrorId> {
         let room = || Room {
             limits: self.slowed(&self.config.limits),
@@ -40,7 +41,7 @@ impl<P: Planner> Axis<P> {
         self.layer.as_ref().is_some_and(Layer::moves)
     }
 
-    /// A halt of what is superimposed that finds nothing in motion is done.
+    /// A halt of a superimposed motion that finds nothing in motion is done.
     pub(in crate::axis) fn end_idle_halt(&mut self) {
         let idle = |layer: &Layer<P::Plan>| {
             !layer.moves() && layer.command.is_none_or(|command| command.adds == Adds::Halt)
@@ -50,7 +51,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The slave is not on its law: it has the velocity of what was being added, and what is left of that waits.
+    /// The slave is not on its law: it takes the velocity of the added motion, and the rest of the
+    /// distance waits.
     pub(in crate::axis) fn rest_superimposed(&mut self) {
         let setpoint = self.setpoint;
         if let Some(layer) = self.layer.as_mut().filter(|layer| layer.moves()) {
@@ -60,9 +62,9 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Before the step of a slave: what has no room beside the law any more gives way, and what waits for room begins. `is_new`:
-    /// the master does something else than was known, or a limit has changed; the slave loses its gear for lack of room if it
-    /// `may_lose` it.
+    /// Before the step of a slave: a motion without room beside the law gives way, and a command that
+    /// waits for room begins. `is_new`: the master's motion differs from the known one, or a limit has
+    /// changed. The slave loses its gear for lack of room if it `may_lose` it.
     ///
     /// Cost: at most nine plans, each laid over the master's.
     pub(in crate::axis) fn superimpose_behind(
@@ -88,7 +90,7 @@ impl<P: Planner> Axis<P> {
         self.begin_behind(view, scope);
     }
 
-    /// A command that waits says so once.
+    /// Records once that a command waits.
     fn tell_waiting(&mut self, scope: &mut Scope<'_>) {
         let Some(layer) = self.layer.as_mut().filter(|layer| layer.retry == 0) else {
             return;
@@ -99,11 +101,11 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// What the law does from the end of the scan before on is known.
+    /// Whether the law is known from the end of the last scan on.
     fn sees_law(&self, view: &View<'_, P::Plan>) -> bool {
         match view.future.kind() {
             _ if self.holds_end_of_cam() => true,
-            // Of measured values each step is looked at, but not on a cam.
+            // With measured values each step is checked, but not on a cam.
             Kind::Measured => !self.is_on_cam(),
             Kind::Plan => true,
             // It may have come to rest in this scan.
@@ -112,8 +114,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// What moves beside the law gives way to what the master does now: slower, or to rest. Where there is no room for that
-    /// either, the gear is lost.
+    /// The motion beside the law gives way to the master's new motion: it becomes slower, or comes to
+    /// rest. If there is no room for that either, the gear is lost.
     fn give_way(&mut self, view: &View<'_, P::Plan>, may_lose: bool, scope: &mut Scope<'_>) {
         let Some(layer) = &mut self.layer else { return };
         layer.retry = layer.retry.min(1);
@@ -121,7 +123,7 @@ impl<P: Planner> Axis<P> {
         let Motion::Run { plan, elapsed, .. } = &motion else {
             return;
         };
-        // Where the way of the master is not known each step is looked at.
+        // If the way of the master is not known, each step is checked.
         if !self.sees_law(view)
             || view.future.kind() == Kind::Measured
             || self.fits_law(view, (plan, *elapsed), &scope.cams)
@@ -164,7 +166,7 @@ impl<P: Planner> Axis<P> {
         self.take_proposal(view, scope);
     }
 
-    /// Sets in motion what fits beside the law from now on. Returns whether there is something.
+    /// Starts a motion that fits beside the law from now on. Returns whether there is one.
     fn take_proposal(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) -> bool {
         let Some(layer) = &self.layer else { return false };
         let Some(command) = &layer.command else {
@@ -172,7 +174,7 @@ impl<P: Planner> Axis<P> {
         };
         let room = || self.room_of_law(view, &scope.cams);
         let fits = |plan: &P::Plan| self.fits_law(view, (plan, 0), &scope.cams);
-        // What the planner took once it takes again; while it is barred everything stays as it is.
+        // The planner takes again what it took once. While the direction is barred nothing changes.
         let Ok(proposed) = self.propose_within(layer, command, room, fits) else {
             return false;
         };
@@ -197,7 +199,8 @@ impl<P: Planner> Axis<P> {
         is_found
     }
 
-    /// What is superimposed comes to rest with the stop dynamics or more slowly, if there is room for that.
+    /// The superimposed motion comes to rest with the stop dynamics, or more slowly, if there is room for
+    /// that.
     fn brake_behind(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) -> bool {
         let Some(layer) = &self.layer else { return false };
         let Some(command) = layer.command else {
@@ -229,8 +232,8 @@ impl<P: Planner> Axis<P> {
         self.leads_of_law(view)?.into_iter().flatten().next()
     }
 
-    /// The scan at which a plan of a master next changes its highest derivative, and that of now, both counted from the start of
-    /// the first of them.
+    /// The scan at which a master's plan next changes its highest derivative, and the present scan, both
+    /// counted from the start of the first plan.
     fn next_switch_of_law(&self, view: &View<'_, P::Plan>) -> Option<(u64, u64)> {
         let now = self.first_lead(view)?.elapsed;
         let leads = self.leads_of_law(view)?;
@@ -242,7 +245,7 @@ impl<P: Planner> Axis<P> {
         Some((now.saturating_add(next.min().unwrap_or(0)), now))
     }
 
-    /// What the law leaves of the limits of the slave all the time.
+    /// The part of the slave's limits that the law always leaves.
     fn room_of_law(&self, view: &View<'_, P::Plan>, cams: &Cams<'_>) -> Room {
         let limits = &self.slowed(&self.parameters.limits);
         let none = Limits {
@@ -272,8 +275,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether what is superimposed, so many scans after its start at the end of the scan before, keeps the limits together with
-    /// the law as far as that is known.
+    /// Whether the superimposed motion keeps the limits together with the law, as far as the law is
+    /// known. `elapsed` counts the scans from its start to the end of the last scan.
     fn fits_law(&self, view: &View<'_, P::Plan>, (plan, elapsed): (&P::Plan, u64), cams: &Cams<'_>) -> bool {
         if self.is_on_cam() {
             let room = self.room_on_cam(view, cams);
@@ -312,10 +315,11 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Where the slave will stand once everything is added (u), if its master comes to rest as far as is known.
+    /// The place where the slave will stand once everything is added (u), if its master comes to rest as
+    /// far as is known.
     fn end_behind(&self, view: &View<'_, P::Plan>, layer: &Layer<P::Plan>) -> Option<f64> {
         if self.is_on_cam() {
-            // Where a cam leads its slave is not looked at.
+            // The end of a cam's motion is not checked.
             let stands = self.law_stands(view);
             return stands.then(|| self.setpoint.position + layer.left());
         }
@@ -324,7 +328,7 @@ impl<P: Planner> Axis<P> {
         Some(self.setpoint.position + way + layer.left())
     }
 
-    /// Everything added, the slave would stand outside its software limits.
+    /// Refuses a distance with which the slave would stand outside its software limits.
     #[cold]
     fn refuse_end(&mut self, view: &View<'_, P::Plan>, command: &Added, scope: &mut Scope<'_>) {
         let Adds::Distance { distance, .. } = command.adds else {
@@ -351,7 +355,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// `added` was published on top of the law.
+    /// Notes that `added` was published on top of the law.
     pub(in crate::axis) fn note_added(&mut self, added: Setpoint) {
         let Some(layer) = &mut self.layer else { return };
         layer.added = added;
@@ -372,7 +376,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// After the step of a slave: its own part of the set-point is what is not added.
+    /// After the step of a slave: its own part of the set-point is the part that is not added.
     pub(in crate::axis) fn note_own_part(&mut self) {
         let Some(layer) = &mut self.layer else { return };
         let (all, added) = (&self.setpoint, &layer.added);

@@ -10,7 +10,7 @@ use standstill_planner::{Limits, Plan, Planner, Setpoint};
 /// Motions tried, one after the other, until one fits.
 pub(super) const PROPOSALS: usize = 7;
 
-/// From the fourth on the motion asked for is tried this much slower: the same path in longer time.
+/// From the fourth on, the motion asked for is slowed by this factor: the same path in more time.
 const SLOWER: [f64; PROPOSALS - 3] = [0.75, 0.5, 0.25, 0.125];
 
 /// A motion that fits.
@@ -25,16 +25,16 @@ fn min(a: f64, b: f64) -> f64 {
     if b < a { b } else { a }
 }
 
-/// What the owner's motion leaves free all the time.
+/// The room that the owner's motion always leaves.
 pub(super) struct Room {
     pub limits: Limits,
-    /// It goes on as it is: what it leaves now is all there will be.
+    /// It is endless: there will be no more room than now.
     pub endless: bool,
 }
 
 impl Room {
-    /// `asked` or what is free of it. `None` if that is nothing, or less than the slowest proposal takes while
-    /// the owner's motion will end: then waiting is faster.
+    /// `asked`, or the part of it that is free. `None` if nothing is free, or if it is less than the
+    /// slowest proposal takes and the owner's motion will end: then waiting is faster.
     fn of(&self, asked: f64, free: f64, least: f64) -> Option<f64> {
         let least = if self.endless { 0.0 } else { least * asked };
         (free >= asked || (free > 0.0 && free >= least)).then_some(min(asked, free))
@@ -53,8 +53,8 @@ pub(super) fn slower(limits: &Limits, rate: f64) -> Limits {
     }
 }
 
-/// The limits of proposal `index`: as asked; at most the velocity that is free all the time; at most
-/// everything that is free all the time; slower and slower. `None` if there is no such proposal.
+/// The limits of proposal `index`: as asked; at most the velocity that is always free; at most all limits
+/// that are always free; then slower and slower. `None` if there is no such proposal.
 pub(super) fn limits_of(index: usize, asked: &Limits, room: &Room) -> Option<Limits> {
     const LEAST: f64 = SLOWER[SLOWER.len() - 1];
     const LEAST_2: f64 = LEAST * LEAST;
@@ -77,7 +77,7 @@ pub(super) fn limits_of(index: usize, asked: &Limits, room: &Room) -> Option<Lim
 }
 
 impl<P: Planner> Axis<P> {
-    /// The values at the pins of MC_MoveSuperimposed.
+    /// Checks the values at the pins of MC_MoveSuperimposed.
     pub(super) fn superimposed_limits(
         &self,
         dynamics: &Dynamics,
@@ -105,8 +105,8 @@ impl<P: Planner> Axis<P> {
             .map(|(min, max)| (min + taken, max + taken))
     }
 
-    /// The first proposal for `command` from the state of `layer` that fits the owner's motion; `Ok(None)` if
-    /// none does for now.
+    /// The first proposal for `command` from the state of `layer` that fits the owner's motion;
+    /// `Ok(None)` if none does for now.
     ///
     /// # Errors
     /// The planner refuses the command as it is asked for, or MC_Power bars its direction.
@@ -127,7 +127,7 @@ impl<P: Planner> Axis<P> {
             self.admit_way(layer, command)?;
             return self.soonest(layer, command, &room(), &Below { rest, axis, range });
         }
-        // What lies over nothing may not turn outside the software limits either.
+        // A motion over nothing may not turn outside the software limits either.
         let still = Setpoint::at_rest(layer.base.position);
         let hold = range.and_then(|_| self.planner.ramp_to(&still, 0.0, axis, axis).ok());
         let base = base.or(hold.as_ref().map(|plan| (plan, 0)));
@@ -136,7 +136,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The same over whatever leaves this `room` all the time, and that a motion `fits` or not.
+    /// The same over anything that always leaves this `room`, if the motion `fits`.
     pub(super) fn propose_within(
         &self,
         layer: &Layer<P::Plan>,
@@ -177,8 +177,8 @@ impl<P: Planner> Axis<P> {
                     {
                         return Err(error);
                     }
-                    // Alone it exceeds the axis limits only where it takes over from a motion in a way that
-                    // its own limits are too low for. That motion may go on instead.
+                    // Alone it exceeds the axis limits only if it takes over from a motion for which its
+                    // own limits are too low. That motion may continue instead.
                     let motion = Motion::along(plan);
                     if !self.exceeds(&motion) && fits(&plan) {
                         return Ok(Some(Proposal {
@@ -206,8 +206,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Sets the layer's command in motion as proposed, or lets it wait; what moves already is left as it is if
-    /// the proposal is not faster.
+    /// Starts the layer's command as proposed, or lets it wait. A motion in progress continues if the
+    /// proposal is not faster.
     pub(super) fn add(&mut self, proposed: Option<Proposal<P::Plan>>, scope: &mut Scope<'_>) {
         let next_switch = self
             .rest_of_base()
@@ -259,7 +259,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Tells which pins ask for more than there is room for.
+    /// Records which pins ask for more than there is room for.
     fn record_lowered(&self, command: &Added, used: &Limits, scope: &mut Scope<'_>) {
         let asked = &command.limits;
         let pins = [
@@ -277,7 +277,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The override has changed: a superimposed move takes its new limits, comes to rest, or goes on.
+    /// The override has changed: a superimposed move takes its new limits, comes to rest, or continues.
     pub(in crate::axis) fn override_superimposed(&mut self, scope: &mut Scope<'_>) {
         let Some(mut layer) = self.layer else { return };
         let Some(command) = layer
@@ -314,14 +314,15 @@ impl<P: Planner> Axis<P> {
         if !command.lacks_room() || !due {
             return;
         }
-        // What the planner took once it takes again; if not, or while it is barred, everything stays as it is.
+        // The planner takes again what it took once. If not, or while the direction is barred, nothing
+        // changes.
         if let Ok(proposed) = self.propose(layer, command) {
             self.add(proposed, scope);
         }
     }
 
-    /// The limits that hold for the state published last: those of the motion in progress, both together if
-    /// there are two, but never more than the axis has; `own` if there is none.
+    /// The limits that apply to the last set-point: those of the motion in progress, of both together if
+    /// there are two, but at most those of the axis; `own` if there is no motion.
     pub(in crate::axis) fn limits_before(&self, own: &Limits) -> Limits {
         let base = self.limits_of_owner();
         let base = base.as_ref();
@@ -339,17 +340,17 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Plans a waiting command that becomes the owner, on top of which a superimposed motion may go on;
-    /// `Ok(None)` if it must wait for that motion.
+    /// Plans a waiting command that becomes the owner, on top of which a superimposed motion may
+    /// continue; `Ok(None)` if it must wait for that motion.
     ///
-    /// It starts at the real set position. If what is added leaves room for it, it starts with the velocity
-    /// its predecessor alone has. If not, the velocity of what is added passes to it, and what is left of the
-    /// added distance starts again from rest when there is room.
+    /// It starts at the real set position. If the added motion leaves room for it, it starts with the
+    /// velocity of its predecessor alone. If not, it also takes the velocity of the added motion, and the
+    /// rest of the added distance starts again from rest when there is room.
     pub(in crate::axis) fn plan_next(
         &mut self,
         entry: &mut Entry,
     ) -> Result<Option<Motion<P::Plan>>, ErrorId> {
-        // MC_Home names a position at rest. What was to bring the axis there may have failed.
+        // MC_Home names a position at rest. The command that was to bring the axis there may have failed.
         if matches!(entry.work, Work::Home(_)) {
             if self.is_superimposing() {
                 return Ok(None);
@@ -362,7 +363,7 @@ impl<P: Planner> Axis<P> {
             if self.layer.as_ref().is_some_and(Layer::moves) {
                 return Ok(None);
             }
-            // Only now: where this command is refused, what was added stays with the owner.
+            // Only now: if this command is refused, the added motion stays with the owner.
             let motion = self.plan_for(entry)?;
             self.end_superimposed(Fate::Aborted);
             return Ok(Some(motion));
@@ -390,7 +391,7 @@ impl<P: Planner> Axis<P> {
         };
         let motion = self.plan_from(entry, &start, &in_force)?;
         let mut motion = self.kept_inside(entry, motion, &start, &in_force)?;
-        // A stop is never refused: on its way out it is watched.
+        // A stop is never refused; it is watched on its way out.
         let leads_somewhere = !entry.is_endless() && entry.end.is_some();
         if let (Motion::Run { plan, .. }, true) = (&motion, leads_somewhere) {
             self.allowed(plan.at(u64::from(plan.scans())).position + layer.left())?;
@@ -400,7 +401,7 @@ impl<P: Planner> Axis<P> {
         if !self.fits_under(&motion, &layer) {
             motion = self.plan_from(entry, &self.setpoint, &self.limits_before(&entry.limits))?;
             if self.exceeds(&motion) {
-                // It cannot take this velocity over either; soon there is less of it.
+                // It cannot take over this velocity either; soon the velocity is lower.
                 return Ok(None);
             }
             layer.pass_velocity(self.setpoint);

@@ -6,13 +6,14 @@ use crate::{CommandId, ErrorId, Scope, Superimpose};
 use standstill_planner::Planner;
 
 impl<P: Planner> Axis<P> {
-    /// ContinuousUpdate of MC_MoveSuperimposed: command `id` goes on with other values from where it is. Its distance
-    /// counts from where it did (R13). One that has ended does not mind.
+    /// ContinuousUpdate of MC_MoveSuperimposed: command `id` continues from its present state with other
+    /// values. Its distance counts from where it did (R13). No effect on a command that has ended.
     ///
     /// Cost: that of a new command.
     ///
     /// # Errors
-    /// What a new command with these values would show. It is recorded, and the command goes on as it was.
+    /// The error that a new command with these values would show. It is recorded, and the command
+    /// continues unchanged.
     pub fn update_superimposed(
         &mut self,
         id: CommandId,
@@ -45,7 +46,7 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
-    /// A command on `layer` whose distance counts from `origin` (u), if its values and its end are good.
+    /// A command on `layer` whose distance counts from `origin` (u), if its values and its end are valid.
     pub(super) fn added(
         &self,
         id: CommandId,
