@@ -339,7 +339,7 @@ fn rank_below<P: Planner>(axes: &[Axis<P>], axis: &Axis<P>) -> u16 {
 }
 
 /// A command that waits behind a motion may become active in this step. If it could not follow then, it
-/// is told before.
+/// gets the reason before.
 fn bar_rings<P: Planner>(axes: &mut [Axis<P>], index: usize) {
     let Some(axis) = axes.get_mut(index).filter(|axis| axis.links().is_bound()) else {
         return;

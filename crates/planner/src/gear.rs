@@ -1,8 +1,9 @@
-//! The law of an electronic gear: where a slave is for a place of its master, or of its two masters.
+//! The law of an electronic gear: the slave's place for a place of its master, or of its two masters.
 //!
-//! What stands here: a ratio of integers, places with whole turns, and the law as a pure function of the master's place. So
-//! nothing adds up from scan to scan: a master that comes back to a place brings the slave back to its bits, and after any
-//! number of turns the slave is where the exact ratio says. What does not: how a slave comes onto the law.
+//! This module has a ratio of integers, places with whole turns, and the law as a pure function of the
+//! master's place. So no error accumulates from scan to scan. A master that returns to a place returns
+//! the slave to the same bits, and after any number of turns the slave has the place of the exact ratio.
+//! The module does not bring a slave onto the law.
 
 use crate::turns::{two_product, two_sum};
 
@@ -15,29 +16,29 @@ const WHOLE_MOST: u128 = 1 << 63;
 /// Products with larger numbers might overflow: 2^900.
 const LARGE: f64 = 8.452_712_498_170_644e270;
 
-/// What larger numbers are multiplied by first, which changes no bit of them: 2^-120.
+/// Larger numbers are first multiplied by this factor, which changes no bit of them: 2^-120.
 const SMALLER: f64 = 7.523_163_845_262_64e-37;
 
-/// Geared ways down to here are found without a product that underflows.
+/// Ways times the ratio down to this size are found without a product that underflows.
 const SHORTEST: f64 = 1e-200;
 
-/// By how much more than what was rounded in a few operations, relative to what is added: 2^-98.
+/// The remaining error of a few operations, relative to the summands: 2^-98.
 const SHORT: f64 = 3.155_443_620_884_047e-30;
 
-/// Where an axis is: whole turns, and the position (u), in the first turn on an axis that has turns. An axis without turns has 0
-/// of them.
+/// The place of an axis: whole turns, and the position (u), in the first turn on an axis with turns. An
+/// axis without turns has 0 of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Place {
     /// Whole turns.
     pub turns: i64,
     /// Position (u).
     pub position: f64,
-    /// How far ahead of that it is seen (u): a shift, which is no part of where it is. Of a slave's place in an [`Anchor`]: what
-    /// is added to the law.
+    /// The shift by which it is seen ahead of that (u); it is not part of the place. For a slave's place
+    /// in an [`Anchor`]: the distance added to the law.
     pub phase: f64,
 }
 
-/// A master's place and where the slave is when the master is there.
+/// A place of the master, and the slave's place when the master is there.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Anchor {
     /// Of the master.
@@ -48,7 +49,7 @@ pub struct Anchor {
     pub slave: Place,
 }
 
-/// How many turns a slave makes for one turn of its master: two integers without a common divisor.
+/// The turns of a slave for one turn of its master: two integers without a common divisor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Turns {
     slave: i64,
@@ -68,15 +69,15 @@ pub struct Gear {
     turns: Option<Turns>,
 }
 
-/// A number of about 106 bits: the rounded value, and what rounding took away.
+/// A number of about 106 bits: the rounded value, and the rounding error.
 pub(crate) type Double = (f64, f64);
 
 impl Gear {
     /// The slave moves `numerator` / `denominator` times as far as the master. The turns (u) are those of modulo axes, above 0
     /// and finite.
     ///
-    /// `None` if the denominator is 0, or if both axes have turns and the ratio of their turns is no ratio of integers below
-    /// 2^63.
+    /// `None` if the denominator is 0, or if both axes have turns and the ratio of their turns is not a
+    /// ratio of integers below 2^63.
     pub fn new(
         numerator: i16,
         denominator: u16,
@@ -99,8 +100,8 @@ impl Gear {
         })
     }
 
-    /// The largest numerator, without its sign, and denominator that [`Gear::new`] takes whatever the other one is, where both axes
-    /// have these turns (u); 0 where it takes none.
+    /// The largest magnitude of the numerator and the largest denominator that [`Gear::new`] accepts with
+    /// any value of the other, if both axes have these turns (u); 0 if it accepts none.
     pub fn largest_ratio(master_turn: f64, slave_turn: f64) -> [f64; 2] {
         let Some([up, down]) = common_measures(master_turn, slave_turn) else {
             return [0.0; 2];
@@ -110,7 +111,7 @@ impl Gear {
         [up, down].map(|turn| most(turn).map_or(0.0, |most| most as f64))
     }
 
-    /// The same gear the other way round: where the slave went up it goes down.
+    /// The same gear in the other direction: where the slave went up it goes down.
     pub fn reversed(self) -> Self {
         let reversed = |turns: Turns| Turns {
             slave: turns.slave.wrapping_neg(),
@@ -128,17 +129,18 @@ impl Gear {
         (self.numerator as i32, self.denominator as u16)
     }
 
-    /// The slave's derivative for one of the master: the exact quotient but for two roundings.
+    /// The slave's derivative for one of the master: the exact quotient except for two roundings.
     #[inline]
     pub fn derivative(&self, of_master: f64) -> f64 {
         // Adding 0 takes the sign from -0.
         self.numerator * of_master / self.denominator + 0.0
     }
 
-    /// Where the slave is for a `master` that is there: the exact value of the law rounded once, but where it lies so near the
-    /// middle of two numbers that 106 bits do not tell.
+    /// The slave's place for a `master` at its place: the exact value of the law, rounded once. The
+    /// exception is a value so near the middle of two numbers that 106 bits do not decide.
     ///
-    /// Cost: about 60 operations, about 150 where those leave the last bit open, there is a shift or the slave has come round.
+    /// Cost: about 60 operations; about 150 if those leave the last bit open, if there is a shift, or if
+    /// the slave has wrapped.
     #[inline(never)]
     pub fn slave(&self, anchor: &Anchor, master: Place) -> Place {
         let (turns, way) = self.way(&anchor.master, &master);
@@ -158,23 +160,23 @@ impl Gear {
         self.placed(anchor, turns, self.geared(start, way))
     }
 
-    /// Neither axis has turns, and neither is shifted at the anchor: a master that is not shifted has its slave where
-    /// [`Gear::slave_straight`] says.
+    /// Whether neither axis has turns and neither is shifted at the anchor. A master without a shift then
+    /// has its slave at [`Gear::slave_straight`].
     pub fn is_straight(&self, anchor: &Anchor) -> bool {
         let has_turns = self.master_turn.is_some() || self.slave_turn.is_some();
         !has_turns && anchor.master.phase == 0.0 && anchor.slave.phase == 0.0
     }
 
-    /// The position of [`Gear::slave`] for that of the master (u), in line with the caller; `None` where it takes more than a few
-    /// operations to tell.
+    /// The position of [`Gear::slave`] for that of the master (u), inlined; `None` if it takes more than
+    /// a few operations to decide.
     #[inline(always)]
     pub fn slave_straight(&self, anchor: &Anchor, master: f64) -> Option<f64> {
         debug_assert!(self.is_straight(anchor));
         self.geared_shortly(anchor.slave.position, two_sum(master, -anchor.master.position))
     }
 
-    /// Where the slave of two masters is for masters that are there: the ways of both, each geared, added, and rounded once to less
-    /// than an ulp.
+    /// The slave's place for two masters at their places: the ways of both, each times its ratio, added,
+    /// and rounded once to less than an ulp.
     ///
     /// Cost: about 200 operations.
     pub fn slave_of_two(&self, second: &Self, anchor: &Anchor, masters: [Place; 2]) -> Place {
@@ -187,7 +189,7 @@ impl Gear {
         self.placed(anchor, turns.wrapping_add(more), position)
     }
 
-    /// How far a master has come: whole turns of the slave that this makes, and the rest of the way (u of the master).
+    /// The way of a master: the whole turns of the slave that it makes, and the rest (u of the master).
     #[inline(always)]
     fn way(&self, from: &Place, to: &Place) -> (i64, Double) {
         let whole = to.turns.wrapping_sub(from.turns);
@@ -198,14 +200,14 @@ impl Gear {
         self.way_round(whole, within, two_sum(to.phase, -from.phase))
     }
 
-    /// The same where it has come round, or is shifted.
+    /// The same if it has wrapped, or is shifted.
     #[inline(never)]
     fn way_round(&self, whole: i64, within: Double, phase: Double) -> (i64, Double) {
-        // As many turns of the master as are whole turns of the slave are taken off first: no number grows with them. The rest
-        // has the sign of all, so that it is never the larger one of two.
+        // First, master turns that make whole turns of the slave are taken off, so that no number grows
+        // with them. The rest has the sign of the total, so that it is never the larger part.
         let (turns, whole) = match &self.turns {
             Some(ratio) => (
-                // It is above 0, which nothing here shows.
+                // It is above 0, but nothing here proves it.
                 whole
                     .checked_div(ratio.master)
                     .map_or(0, |turns| turns.wrapping_mul(ratio.slave)),
@@ -221,7 +223,7 @@ impl Gear {
         (turns, way)
     }
 
-    /// `position` as a place of the slave, so many whole turns further than the anchor.
+    /// `position` as a place of the slave, this many whole turns further than the anchor.
     fn placed(&self, anchor: &Anchor, turns: i64, position: Double) -> Place {
         match self.slave_turn {
             None => Place {
@@ -240,8 +242,8 @@ impl Gear {
         }
     }
 
-    /// What [`Gear::geared`] rounds to, where a few operations show that: they tell the value so finely that it lies between no two
-    /// numbers, or they are exact. `None` elsewhere.
+    /// The rounded value of [`Gear::geared`], if a few operations prove it: either their error interval
+    /// contains no rounding border, or they are exact. `None` otherwise.
     #[inline(always)]
     fn geared_shortly(&self, start: f64, (way, fine): Double) -> Option<f64> {
         let (numerator, denominator) = (self.numerator, self.denominator);
@@ -254,7 +256,7 @@ impl Gear {
         let (high, below) = two_sum(start, quotient);
         let rest = below + low;
         let size = start.abs() + quotient.abs();
-        // Numbers in between have no product that over- or underflows.
+        // Products of numbers in between do not over- or underflow.
         if !(quotient.abs() > SHORTEST && size < LARGE) {
             return None;
         }
@@ -263,7 +265,7 @@ impl Gear {
         if least == most {
             return Some(least + 0.0);
         }
-        // What lies in the middle of two numbers is told by nothing less than exact numbers.
+        // A value in the middle of two numbers can be decided only by exact numbers.
         let is_exact = cut(fine) == fine
             && cut(low) == low
             && low * denominator == left + lost
@@ -273,12 +275,12 @@ impl Gear {
         is_exact.then_some(high + rest + 0.0)
     }
 
-    /// `start` and `way` times numerator by denominator: divided once, after what is exact has been added, so that nothing is
-    /// lost where the one takes away most of the other.
+    /// `start` and `way` times numerator by denominator. It is divided once, after the exact parts have
+    /// been added, so that nothing is lost if they nearly cancel.
     #[inline(never)]
     fn geared(&self, start: Double, way: Double) -> Double {
         if start.0.abs() > LARGE || way.0.abs() > LARGE {
-            // What is divided at last must not overflow before.
+            // The number that is divided at last must not overflow before.
             let times = |number: Double, by: f64| (number.0 * by, number.1 * by);
             let position = self.geared_small(times(start, SMALLER), times(way, SMALLER));
             return times(position, 1.0 / SMALLER);
@@ -305,12 +307,13 @@ fn cut(number: f64) -> f64 {
     f64::from_bits(number.to_bits() & !((1 << 27) - 1))
 }
 
-/// Whether `sum`, that of `a` and `b` rounded, is exact: what it exceeds the larger one by is always told exactly.
+/// Whether `sum`, that of `a` and `b` rounded, is exact; its excess over the larger one is always exact.
 fn is_sum(sum: f64, a: f64, b: f64) -> bool {
     sum - a == b && sum - b == a
 }
 
-/// `integer`, of up to 17 bits, times `number` less `near`, a number next to that product: exact.
+/// The rounding error of `integer`, of up to 17 bits, times `number`, relative to `near`, a number next
+/// to that product: exact.
 fn lost_in_product(integer: f64, number: f64, near: f64) -> f64 {
     let high = cut(number);
     (integer * high - near) + integer * (number - high)
@@ -382,12 +385,12 @@ fn ratio_of_turns(numerator: i16, denominator: u16, master: f64, slave: f64) -> 
     })
 }
 
-/// Two lengths above 0 as integers of at most 111 bits of one measure.
+/// Two lengths above 0 as integers of at most 111 bits in a common unit.
 fn common_measures(master: f64, slave: f64) -> Option<[u128; 2]> {
     let (master, master_power) = odd(master)?;
     let (slave, slave_power) = odd(slave)?;
     let shift = master_power - slave_power;
-    // With 16 bits of a ratio 127; more than 58 of shift do not fit, whatever divides both.
+    // With 16 bits of a ratio 127; more than 58 bits of shift do not fit, whatever divides both.
     let shifted = |value: u64, by: i32| (by <= 58).then(|| u128::from(value) << by.max(0));
     Some([shifted(master, shift)?, shifted(slave, -shift)?])
 }
@@ -578,7 +581,7 @@ mod tests {
         assert!(told > rounds / 2, "{told} of {rounds}");
     }
 
-    /// A slave that comes back to 0: what is left is far smaller than what it is made of.
+    /// A slave that returns to 0: the rest is far smaller than the numbers it is made of.
     ///
     /// Covers: G25
     #[test]
@@ -591,7 +594,7 @@ mod tests {
             let denominator = 1 + i128::from(random.below(65_535));
             let x0 = i128::from(random.below(1 << 53));
             let m0 = i128::from(random.below(1 << 40)) * i128::from(random.below(2));
-            // As near to the master's place for 0 as a number is.
+            // As near to the master's place for 0 as a number can be.
             let m = (m0 - x0 * denominator / numerator) as f64 as i128;
             let anchor = Anchor {
                 master: at(in_units(m0)),

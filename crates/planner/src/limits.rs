@@ -1,20 +1,21 @@
-//! The bounds a plan keeps.
+//! The bounds that a plan keeps.
 
 use crate::math::sqrt;
 use crate::{Field, PlanError, Setpoint};
 
-/// The part of a cycle in which a derivative comes to its bound at the soonest: no difference of set-points can
-/// tell a sooner one.
+/// The shortest part of a cycle in which a derivative reaches its bound: differences of set-points cannot
+/// resolve a shorter one.
 const SOONEST: f64 = 1.0 / 1024.0;
 
-/// The scans in which it comes there at the latest: no plan has more.
+/// The largest number of scans in which it reaches its bound: no plan has more.
 const LATEST: f64 = 2_147_483_648.0;
 
-/// A derivative that rises as steeply as it may and falls again stays below this many times the square root of its
-/// bound times that of the derivative it changes, from one bound to the other.
+/// The acceleration rises and falls with at most the jerk bound while the velocity goes from one bound to
+/// the other. It then stays below this factor times the square root of jerk bound times velocity bound.
+/// The same holds for the jerk, with the bounds of snap and acceleration.
 const REACHED: f64 = 4.0;
 
-/// How many times the speed a motion may come to its velocity bound is at most.
+/// The largest ratio of the velocity bound to the speed a motion may reach.
 pub(crate) const REACH: f64 = 64.0;
 
 /// Largest magnitudes a plan may use; `f64::INFINITY` means no bound.
@@ -32,9 +33,9 @@ pub struct Limits {
     pub snap: f64,
 }
 
-/// Bounds with a velocity bound for each direction.
+/// Bounds with a separate velocity bound for each direction.
 ///
-/// A move beside something that moves itself needs them: beside a line of velocity `v`, 0 or more, an axis of the
+/// A move beside a moving line needs them: beside a line of velocity `v`, 0 or more, an axis with
 /// velocity bound `V` has `V - v` left forwards and `V + v` backwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectedLimits {
@@ -42,7 +43,7 @@ pub struct DirectedLimits {
     pub positive: f64,
     /// The same towards smaller positions, as a magnitude.
     pub negative: f64,
-    /// All other bounds; the velocity in it plays no part.
+    /// All other bounds; its velocity is not used.
     pub limits: Limits,
 }
 
@@ -85,7 +86,7 @@ impl DirectedLimits {
         if side < 0.0 { self.negative } else { self.positive }
     }
 
-    /// By how much a velocity is outside its bound (u/s), below 0 inside.
+    /// The excess of a velocity over its bound (u/s); negative inside.
     pub(crate) fn outside(&self, velocity: f64) -> f64 {
         velocity.abs() - self.velocity(velocity)
     }
@@ -135,12 +136,12 @@ impl DirectedLimits {
     }
 }
 
-/// The larger one of a pair; an infinite bound of `old` says nothing.
+/// The larger one of a pair; an infinite bound of `old` is ignored.
 fn larger(new: f64, old: f64) -> f64 {
     if old.is_finite() && old > new { old } else { new }
 }
 
-/// Which derivative of position is the highest that stays finite, that is, how smooth a plan is.
+/// The highest derivative of position that stays finite: the smoothness of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Order {
     /// Acceleration jumps (no jerk and no snap bound).
@@ -192,7 +193,8 @@ impl Limits {
         }
     }
 
-    /// The larger one of each finite pair; an infinite bound of `before` says nothing, that of these limits stays.
+    /// The larger one of each finite pair; an infinite bound of `before` is ignored, and that of these
+    /// limits stays.
     pub fn or_larger(&self, before: &Self) -> Self {
         Self {
             velocity: larger(self.velocity, before.velocity),
@@ -215,12 +217,13 @@ impl Limits {
         }
     }
 
-    /// Each of them `factor` times as large, and at most the largest number: one that is finite stays so.
+    /// Each of them times `factor`, and at most the largest number, so that a finite one stays finite.
     pub fn times(&self, factor: f64) -> Self {
         self.map(|bound| bound * factor)
     }
 
-    /// The `divisor`-th part of each of them, and at most the largest number: one that is finite stays so.
+    /// Each of them divided by `divisor`, and at most the largest number, so that a finite one stays
+    /// finite.
     pub fn over(&self, divisor: f64) -> Self {
         self.map(|bound| bound / divisor)
     }
@@ -242,10 +245,11 @@ impl Limits {
         }
     }
 
-    /// The bounds that a plan with sample time `cycle` (s) uses: these, but none so high that it limits nothing
-    /// (docs/planner.md, eq. 39).
+    /// The bounds that a plan with sample time `cycle` (s) uses: these, but lowered if a bound is so high
+    /// that it limits nothing (docs/planner.md, eq. 39).
     ///
-    /// The order is the same: an infinite bound stays infinite. Where these are larger, what is used is not lower.
+    /// The order does not change: an infinite bound stays infinite. If these limits are larger than
+    /// others, the bounds used are not lower than theirs.
     pub fn acting(&self, cycle: f64) -> Self {
         let (soonest, latest) = (SOONEST * cycle, LATEST * cycle);
         // In a plan of the most scans no derivative gets higher than this.
@@ -253,7 +257,8 @@ impl Limits {
         let highest = jerk * latest;
         let higher = self.acceleration.max(self.deceleration).min(highest);
         let velocity = self.velocity.min(higher * latest);
-        // None need come to its bound sooner than this, nor higher than between the bounds of what it changes.
+        // None needs to reach its bound in a shorter time, or to exceed what the bounds of the derivative
+        // it changes permit.
         let highest = highest
             .min(velocity / soonest)
             .min(REACHED * sqrt(jerk) * sqrt(velocity));
@@ -280,9 +285,10 @@ impl Limits {
         }
     }
 
-    /// As [`Limits::acting`], for a motion that begins in `start`, ends with the speed `end` (u/s) and, on its way to a
-    /// position, `distance` (u) from it. Speeds are judged by parts of the velocity bound, so one that such a motion
-    /// comes nowhere near is lowered to [`REACH`] times what it may come to (docs/planner.md, eq. 40).
+    /// The same as [`Limits::acting`] for one motion. It begins in `start`, ends with the speed `end`
+    /// (u/s), and if it goes to a position, is `distance` (u) from it. Speeds are judged relative to the
+    /// velocity bound. So a velocity bound far above the speeds of the motion is lowered to [`REACH`]
+    /// times the speed it may reach (docs/planner.md, eq. 40).
     pub(crate) fn acting_for(&self, start: &Setpoint, end: f64, distance: f64, cycle: f64) -> Self {
         let Self {
             acceleration,
@@ -302,8 +308,8 @@ impl Limits {
         let way = distance.abs() + speed * (settled + stopped);
         let reached = speed + (2.0 * sqrt(lower) * sqrt(way)).min(way / (SOONEST * cycle));
         let reached = if distance == 0.0 { speed } else { reached };
-        // Where a state of almost no speed settles sooner than bounds are reached at all, the bounds that follow from the
-        // speed are not below the state's own acceleration and jerk.
+        // A state of almost no speed may settle before any bound is reached. Then the bounds that follow
+        // from the speed are not below the state's own acceleration and jerk.
         let soonest = SOONEST * cycle;
         let least = soonest * (steepest + soonest * start.jerk.abs());
         let velocity = if reached > 0.0 {

@@ -1,6 +1,6 @@
 //! The few real functions the planner needs beyond `+ - * /`.
 
-/// Square root, correctly rounded as IEEE 754 asks: the same bits from hardware and from software.
+/// Square root, correctly rounded as IEEE 754 requires: the same bits from hardware and from software.
 #[inline]
 pub fn sqrt(x: f64) -> f64 {
     #[cfg(feature = "std")]
@@ -13,7 +13,7 @@ pub fn sqrt(x: f64) -> f64 {
     }
 }
 
-/// The larger of two numbers that are not NaN: one instruction, where `f64::max` also sorts out NaN.
+/// The larger of two numbers that are not NaN. It is one instruction; `f64::max` also handles NaN.
 #[inline]
 pub fn max(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
@@ -28,8 +28,8 @@ pub fn min(a: f64, b: f64) -> f64 {
 /// From here on every `f64` is whole.
 const WHOLE: f64 = (1_u64 << 52) as f64;
 
-/// The nearest whole number to `x` >= 0: from [`WHOLE`] on a sum has no room for a fraction. Two additions,
-/// where a conversion to an integer and back also guards against what does not fit.
+/// The nearest whole number to `x` >= 0: from [`WHOLE`] on a sum has no room for a fraction. This takes
+/// two additions. A conversion to an integer and back would also check the range.
 #[inline]
 fn nearest(x: f64) -> f64 {
     if x < WHOLE { (x + WHOLE) - WHOLE } else { x }
@@ -58,9 +58,9 @@ pub fn rough_cbrt(x: f64) -> f64 {
     f64::from_bits(x.to_bits() / 3 + TWO_THIRDS_OF_ONE)
 }
 
-/// Cube root of `x` >= 0 within an ulp or two: five of Newton's steps, which from 6 % off are enough.
+/// Cube root of `x` >= 0 within an ulp or two: five of Newton's steps are enough from 6 %.
 pub fn cbrt(x: f64) -> f64 {
-    /// Lifts what is below the normal range into it; its cube root is 2^54.
+    /// Scales numbers below the normal range into it; its cube root is 2^54.
     const LIFT: f64 = ((1_u128 << 81) as f64) * ((1_u128 << 81) as f64);
     if x == 0.0 {
         return 0.0;

@@ -1,4 +1,4 @@
-//! The seam between an axis and the maths: what an axis may ask of any planner.
+//! The interface between an axis and the maths: the questions that an axis may ask any planner.
 
 use crate::grid::Family;
 use crate::{
@@ -9,22 +9,23 @@ use crate::{
 
 /// Plans moves for an axis.
 ///
-/// An axis knows only this trait, so tests can put a countdown in the planner's place and a host can bring
-/// its own. Every method is bounded work without heap and never panics.
+/// An axis knows only this trait, so a test can use a countdown as planner and a host can bring its own.
+/// Every method is bounded work without heap and never panics.
 pub trait Planner {
     /// A plan: a plain value.
     type Plan: Plan;
 
-    /// The sample time (s): the distance in time of two set-points.
+    /// The sample time (s): the time between two set-points.
     fn cycle(&self) -> f64;
 
     /// A move from `start` that ends at rest exactly on `target` (u) within `limits`.
     ///
-    /// `profile` is what the axis asks for; a planner may know one only. `before` are the limits that held for
-    /// the motion `start` belongs to: until the state is inside `limits` the larger of the two hold.
+    /// `profile` is the method that the axis asks for; a planner may support only one. `before` are the
+    /// limits of the motion that `start` belongs to: until the state is inside `limits` the larger of the
+    /// two apply.
     ///
     /// # Errors
-    /// [`PlanError`] if an input is not usable or the move too long.
+    /// [`PlanError`] if an input is invalid or the move too long.
     fn move_to(
         &self,
         profile: MoveProfile,
@@ -38,7 +39,7 @@ pub trait Planner {
     /// [`Planner::move_to`].
     ///
     /// # Errors
-    /// [`PlanError`] if an input is not usable or the ramp too long.
+    /// [`PlanError`] if an input is invalid or the ramp too long.
     fn ramp_to(
         &self,
         start: &Setpoint,
@@ -47,9 +48,9 @@ pub trait Planner {
         before: &Limits,
     ) -> Result<Self::Plan, PlanError>;
 
-    /// A move from `start` that has the `velocity` (u/s, signed, at most that of `limits`) when it is at
-    /// `target` (u), and keeps it from there on; `before` as in [`Planner::move_to`]. Against the direction
-    /// in which the target lies it passes, turns, and is there again.
+    /// A move from `start` that has `velocity` (u/s, signed, at most that of `limits`) at `target` (u),
+    /// and keeps it from there on; `before` as in [`Planner::move_to`]. If the velocity points against
+    /// the direction of the target, the move passes the target, reverses, and reaches it again.
     ///
     /// # Errors
     /// [`PlanError`] if an input is not usable or the move too long.
@@ -62,9 +63,9 @@ pub trait Planner {
         before: &Limits,
     ) -> Result<Self::Plan, PlanError>;
 
-    /// A move that passes `target` (u) as `passage` says, with the wanted speed or the nearest that needs no
-    /// overshoot and no reversal; `None` if there is none. The wanted speed may be above that of `limits`,
-    /// which then holds until just before the target; `before` as in [`Planner::move_to`].
+    /// A move that passes `target` (u) as `passage` says, with the wanted speed or the nearest one that
+    /// needs no overshoot and no reversal; `None` if there is none. The wanted speed may be above that of
+    /// `limits`, which then applies until just before the target. `before` as in [`Planner::move_to`].
     ///
     /// # Errors
     /// [`PlanError`] if an input is not usable or the move too long.
@@ -77,8 +78,9 @@ pub trait Planner {
         before: &Limits,
     ) -> Result<Option<Self::Plan>, PlanError>;
 
-    /// A move from `start` that ends at rest exactly on `target` (u), switches anywhere, with a velocity bound for each
-    /// direction; `before` as in [`Planner::move_to`]. A planner that knows one velocity bound only keeps the lower one.
+    /// A move from `start` that ends at rest exactly on `target` (u), with switches anywhere and a
+    /// velocity bound for each direction; `before` as in [`Planner::move_to`]. A planner with only one
+    /// velocity bound uses the lower one.
     ///
     /// # Errors
     /// [`PlanError`] if an input is not usable or the move too long.
@@ -96,10 +98,11 @@ pub trait Planner {
         self.move_to(MoveProfile::Online, start, target, &lower, &before.either())
     }
 
-    /// The curve through `points` from `start`, inside `limits` and, where given, a range of positions (u).
+    /// The curve through `points` from `start`, inside `limits` and, if given, inside a range of
+    /// positions (u).
     ///
     /// # Errors
-    /// [`ProfileFault`] names the point and what is wrong with it.
+    /// [`ProfileFault`] names the point and its fault.
     fn profile(
         &self,
         kind: ProfileKind,
@@ -113,8 +116,8 @@ pub trait Planner {
     /// begin up to one scan late and still pass its end with no more than the speed `exit`.
     fn entry_speed(&self, wanted: f64, distance: f64, exit: f64, limits: &Limits) -> f64;
 
-    /// Whether two plans, each so many scans after its start, keep `limits` together from now on and do not
-    /// turn outside `range` (u), which is one of the sum of their positions.
+    /// Whether two plans, each at its number of scans after its start, together keep `limits` from now on
+    /// and do not turn outside `range` (u), which applies to the sum of their positions.
     fn fits(
         &self,
         first: (&Self::Plan, u64),
@@ -123,19 +126,20 @@ pub trait Planner {
         range: Option<(f64, f64)>,
     ) -> bool;
 
-    /// What the rest of a plan leaves of `limits` whatever is added when; 0 where it leaves nothing.
+    /// The part of `limits` that the rest of a plan always leaves to another motion; 0 if it leaves
+    /// nothing.
     fn room(&self, rest: (&Self::Plan, u64), limits: &Limits) -> Limits;
 
-    /// The scan of a plan, counted from its start, at which it next changes its highest derivative, or what
-    /// is given if it never does again.
+    /// The scan of a plan, counted from its start, at which it next changes its highest derivative; the
+    /// given scan if it never does again.
     fn next_switch(&self, rest: (&Self::Plan, u64)) -> u64;
 
-    /// How far (u) the rest of a plan moves up and how far down, up to its goal.
+    /// The ways (u) of the rest of a plan up to its goal: upwards, and downwards.
     fn ways(&self, rest: (&Self::Plan, u64)) -> (f64, f64);
 
-    /// Whether the rest of the masters' plans and what a slave moves beside keep `limits` together from now on, and nothing jumps
-    /// whose derivative they bound; `now` is the sum as published. A planner that can't tell says no: its slaves are then looked
-    /// after scan by scan.
+    /// Whether the rest of the masters' plans and the slave's motion beside them together keep `limits`
+    /// from now on, and no derivative jumps whose own derivative is bounded. `now` is the sum as
+    /// published. A planner that can't decide returns FALSE; its slaves are then checked scan by scan.
     fn fits_behind(
         &self,
         _leads: &Leads<'_, Self::Plan>,
@@ -146,7 +150,8 @@ pub trait Planner {
         false
     }
 
-    /// The lowest and the highest velocity (u/s) of what [`Planner::fits_behind`] looks at; `None` where they are not known.
+    /// The lowest and the highest velocity (u/s) of the motions of [`Planner::fits_behind`]; `None` if
+    /// they are not known.
     fn velocities_behind(
         &self,
         _leads: &Leads<'_, Self::Plan>,
@@ -155,28 +160,29 @@ pub trait Planner {
         None
     }
 
-    /// The next stretch in which the masters' plans together have a constant velocity: in how many scans it begins and ends, the
-    /// largest number if it has no end. `None` where that is not known.
+    /// The next stretch in which the masters' plans together have a constant velocity: the scans until it
+    /// begins and until it ends, the largest number if it has no end. `None` if that is not known.
     fn stretch(&self, _leads: &Leads<'_, Self::Plan>) -> Option<(u64, u64)> {
         None
     }
 
-    /// Whether a plan is on a curve through points, of which nothing is known ahead.
+    /// Whether a plan is on a curve through points, whose motion ahead is not known.
     fn is_curve(&self, _rest: (&Self::Plan, u64)) -> bool {
         false
     }
 
-    /// The largest magnitudes of the derivatives of the rest of a plan; `None` where they are not known.
+    /// The largest magnitudes of the derivatives of the rest of a plan; `None` if they are not known.
     fn peaks(&self, _rest: (&Self::Plan, u64)) -> Option<Setpoint> {
         None
     }
 
-    /// The same of the next scan alone, with all that begins and ends in it.
+    /// The same for the next scan alone, including all that begins and ends in it.
     fn peaks_in_scan(&self, _rest: (&Self::Plan, u64)) -> Option<Setpoint> {
         None
     }
 
-    /// The velocity (u/s) that `start` comes to once its acceleration and jerk are zero as soon as `limits` allow.
+    /// The velocity (u/s) of `start` after its acceleration and jerk have become zero as soon as `limits`
+    /// allow.
     fn coasting(&self, start: &Setpoint, _limits: &Limits) -> f64 {
         start.velocity
     }
@@ -184,30 +190,31 @@ pub trait Planner {
 
 /// How the moves of an axis to a position are planned (docs/planner.md, section 13).
 ///
-/// Every profile ends at rest exactly on the target within the limits. A move that the one asked for cannot
-/// serve is planned as [`MoveProfile::Online`]: for all but `ShortPath` every move that starts in motion.
+/// Every profile ends at rest exactly on the target within the limits. If the requested method cannot
+/// serve a move, the move is planned as [`MoveProfile::Online`]. For all methods but `ShortPath` that is
+/// every move that starts in motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MoveProfile {
-    /// Every switch on the sample grid, the fewest scans when two snap pulses may overlap: [`GridPlan`] with
-    /// [`Method::Overlapped`], [`UnequalPlan`] where acceleration and deceleration differ.
+    /// Every switch on the sample grid, the fewest scans if two snap pulses may overlap: [`GridPlan`]
+    /// with [`Method::Overlapped`], [`UnequalPlan`] if acceleration and deceleration differ.
     #[default]
     Overlapped,
     /// As `Overlapped`, without the overlap: [`Method::Grid`].
     Grid,
     /// The published steps on the sample grid, [`Method::Sequential`]; the lower one of acceleration and
-    /// deceleration holds for both.
+    /// deceleration applies to both.
     Sequential,
     /// Switches anywhere: [`OnlinePlan`].
     Online,
-    /// The one of `Overlapped` and `Online` with the fewer scans; `Overlapped` where they are equal.
+    /// `Overlapped` or `Online`, whichever has fewer scans; `Overlapped` if they are equal.
     Fastest,
-    /// [`SCurve`](crate::papers::SCurve): moves from rest with a bound on jerk and none on snap; the lower one
-    /// of acceleration and deceleration holds for both.
+    /// [`SCurve`](crate::papers::SCurve): moves from rest with a bound on jerk and none on snap; the
+    /// lower one of acceleration and deceleration applies to both.
     SCurve,
     /// [`Trapezoid`](crate::papers::Trapezoid): moves from rest with no bound on jerk and none on snap.
     Trapezoid,
-    /// [`ShortPath`](crate::papers::ShortPath): moves with a bound on jerk and none on snap, from rest or from
-    /// a velocity towards the target without acceleration, where the way is long enough to stop.
+    /// [`ShortPath`](crate::papers::ShortPath): moves with a bound on jerk and none on snap, from rest or
+    /// from a velocity towards the target without acceleration, if the way is long enough to stop.
     ShortPath,
 }
 
@@ -250,32 +257,34 @@ pub trait Plan: Copy + core::fmt::Debug {
     /// velocity kept for ever.
     fn at(&self, scan: u64) -> Setpoint;
 
-    /// [`Plan::at`] for plans that tell it in a few operations, to be had in line; `None` for all others.
+    /// [`Plan::at`] for plans that compute it in a few operations, for inlining; `None` for all others.
     #[inline(always)]
     fn brief(&self, _scan: u64) -> Option<Setpoint> {
         None
     }
 
-    /// [`Plan::at`] where a motion mostly is, as far as it can be told without a call; `None` elsewhere.
+    /// [`Plan::at`] in the most frequent phase of a motion, if it needs no call; `None` otherwise.
     #[inline(always)]
     fn usual(&self, _scan: u64) -> Option<Setpoint> {
         None
     }
 
-    /// As [`Plan::at`], for the motion in progress: asked for scan after scan, a plan may remember where it was.
+    /// As [`Plan::at`], for the motion in progress, in rising scans. A plan may remember its present
+    /// phase.
     #[inline]
     fn next(&mut self, scan: u64) -> Setpoint {
         self.at(scan)
     }
 
-    /// By how much the start state forced the plan out of its limits, if it did.
+    /// The amount by which the start state forced the plan out of its limits, if it did.
     fn excess(&self) -> Option<Excess>;
 
-    /// What of [`Plan::excess`] is beyond `limits`, too, which are no lower than those of the plan.
+    /// The part of [`Plan::excess`] that is also beyond `limits`, which are not lower than those of the
+    /// plan.
     fn excess_over(&self, limits: &Limits) -> Option<Excess>;
 
-    /// The rung of the online planner's ladder the plan is from, for hosts that count them; none for plans
-    /// of another kind.
+    /// The rung of the online planner's ladder that made the plan, for hosts that count them; none for
+    /// plans of another kind.
     fn rung(&self) -> Option<Rung> {
         None
     }
@@ -283,18 +292,18 @@ pub trait Plan: Copy + core::fmt::Debug {
     /// The same motion in coordinates moved by `by` (u): every position of the plan is that much larger.
     fn shift(&mut self, by: f64);
 
-    /// Where `scan` is past the goal of an endless motion: the same motion with that scan as its start, and
-    /// whole `length`s (u) taken off its position so that it starts within one. Returns how many; `None`, and
-    /// the plan as it is, for any other scan or plan.
+    /// If `scan` is past the goal of an endless motion: makes that scan the start, and takes whole
+    /// `length`s (u) off its position so that it starts within one. Returns their number. `None`, and no
+    /// change, for any other scan or plan.
     ///
-    /// However often a motion is brought back, its position is off by a rounding or two, not by one for each
+    /// A motion that is brought back many times has the error of a rounding or two, and not one for each
     /// time.
     fn bring_back(&mut self, _scan: u64, _length: f64) -> Option<i64> {
         None
     }
 }
 
-/// The planner of the product: moves to a position by [`MoveProfile`], ramps for velocities.
+/// The standard planner: moves to a position by [`MoveProfile`], ramps for velocities.
 #[derive(Clone, Copy, Debug)]
 pub struct Standard {
     cycle: f64,
@@ -305,7 +314,7 @@ pub struct Standard {
 pub enum StandardPlan {
     /// From rest to rest, every switch on the grid.
     Grid(GridPlan),
-    /// The same where acceleration and deceleration differ.
+    /// The same if acceleration and deceleration differ.
     Unequal(UnequalPlan),
     /// To a velocity.
     Ramp(RampPlan),
@@ -317,7 +326,7 @@ pub enum StandardPlan {
     Profile(ProfilePlan),
 }
 
-/// A plan is copied about by value, once a command.
+/// A plan is copied by value, once a command, so it stays small.
 const _: () = assert!(size_of::<StandardPlan>() <= 1832);
 
 impl Standard {
@@ -328,7 +337,7 @@ impl Standard {
 }
 
 impl Standard {
-    /// From rest, every switch on the grid. The published steps know one rate.
+    /// From rest, every switch on the grid. The published steps have only one rate.
     fn on_grid(
         &self,
         method: Method,
@@ -350,7 +359,7 @@ impl Standard {
         }
     }
 
-    /// The plan of `profile`, none where it does not serve the move.
+    /// The plan of `profile`; none if it cannot serve the move.
     fn by_profile(
         &self,
         profile: MoveProfile,
@@ -360,7 +369,7 @@ impl Standard {
     ) -> Option<Result<StandardPlan, PlanError>> {
         let rest = start.is_at_rest();
         let grid = |method| rest.then(|| self.on_grid(method, start.position, target, limits));
-        // A method of a paper that does not serve the move says so by an error.
+        // A method of a paper that cannot serve the move returns an error.
         let sampled =
             |plan: Result<SampledPlan, PlanError>| plan.ok().map(|plan| Ok(StandardPlan::Sampled(plan)));
         match profile {
@@ -383,7 +392,7 @@ impl Standard {
 }
 
 impl StandardPlan {
-    /// From now on `cruise`, its own motion at its end, brought back.
+    /// From now on it is `cruise`, its own motion at its end, brought back.
     fn bring_back_cruise(&mut self, mut cruise: RampPlan, scan: u64, length: f64) -> Option<i64> {
         let turns = cruise.bring_back(scan, length);
         *self = Self::Ramp(cruise);
@@ -565,7 +574,8 @@ impl Planner for Standard {
 }
 
 impl StandardPlan {
-    /// The stretches of constant highest derivative, in order of time; at most 46 of them, and none of a profile.
+    /// The stretches of constant highest derivative, in order of time; at most 46 of them, and none for a
+    /// profile.
     pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
         let (grid, unequal, ramp, online, sampled) = match self {
             // Its stretches have no constant derivative.
@@ -598,7 +608,7 @@ impl Plan for StandardPlan {
         }
     }
 
-    // The most frequent kind in line with the axis, the others by a call.
+    // The most frequent kind is inlined into the axis, the others are called.
     #[inline(always)]
     fn at(&self, scan: u64) -> Setpoint {
         match self {

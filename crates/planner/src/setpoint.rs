@@ -2,8 +2,8 @@
 
 /// Position and its derivatives at one instant, as published at the end of a scan.
 ///
-/// At orders 3 and 2 the highest bounded derivative jumps; its value is then the one in force just before
-/// the instant, like that of `snap` at order 4, and the derivatives above it are 0.
+/// At orders 3 and 2 the highest bounded derivative jumps. Its value is then the one just before the
+/// instant, like that of `snap` at order 4, and the derivatives above it are 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Setpoint {
     /// Position (u).
@@ -35,7 +35,7 @@ impl Setpoint {
         self.velocity == 0.0 && self.acceleration == 0.0 && self.jerk == 0.0
     }
 
-    /// The sum of both: what is published where one motion is beside another.
+    /// The sum of both, which is published if one motion is beside another.
     #[inline]
     #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
@@ -59,8 +59,8 @@ impl Setpoint {
         }
     }
 
-    /// Position and derivatives in order. What a function out of line gives back as numbers, its caller can keep
-    /// in registers; a set-point it would keep in memory, along with those it computed itself.
+    /// Position and derivatives in order. A caller can keep numbers that a function returns in registers.
+    /// It would keep a returned set-point in memory, together with those it computed itself.
     #[inline]
     pub(crate) const fn numbers(self) -> [f64; 5] {
         [
@@ -88,8 +88,8 @@ impl Setpoint {
     /// Whether all five values are finite.
     #[inline]
     pub fn is_finite(&self) -> bool {
-        // One look at the sum instead of five: infinity and NaN stay in it. Of finite values only huge ones have
-        // a sum that is not finite.
+        // One check of the sum instead of five: infinity and NaN remain in it. Of finite values only huge
+        // ones have a sum that is not finite.
         let sum = self.position + self.velocity + self.acceleration + self.jerk + self.snap;
         sum.is_finite() || each_is_finite(self.numbers())
     }

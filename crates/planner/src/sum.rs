@@ -1,8 +1,8 @@
-//! Some motions at once: whether their sum keeps the limits.
+//! Several motions at once: whether their sum keeps the limits.
 //!
-//! What stands here: two plans laid over each other piece by piece, and the head room one leaves. What does
-//! not: how the second motion is chosen. Between two switches of either plan the sum is a polynomial of
-//! constant snap, so its extremes are those of [`extremes`](crate::ramp::path::Path::extremes) (R20).
+//! This module adds two plans piece by piece, and finds the room that one leaves. It does not choose the
+//! second motion. Between two switches of either plan the sum is a polynomial of constant snap, so its
+//! extremes are those of [`extremes`](crate::ramp::path::Path::extremes) (R20).
 
 use crate::ramp::excess;
 use crate::ramp::path::{Path, moved};
@@ -14,17 +14,18 @@ const MAX_SWITCHES: usize = 96;
 /// Most switches of three plans.
 const MAX_SWITCHES_BEHIND: usize = 144;
 
-/// Shorter pieces of the sum are rounding, not motion, relative to a cycle: where two switches that belong
-/// to the same scan end do not coincide to the bit.
+/// Shorter pieces of the sum, relative to a cycle, are rounding and not motion. They occur if two
+/// switches at the same scan end differ in a bit.
 const GRAIN: f64 = 1e-9;
 
-/// What changes at once by this part of what it may change by in a cycle does so by rounding.
+/// A jump up to this part of the change in a cycle is rounding.
 const JUMP: f64 = 1e-6;
 
-/// How far a turning point may lie beyond the end of a range, relative to its numbers: rounding.
+/// The largest distance of a turning point beyond the end of a range that counts as rounding, relative to
+/// the numbers.
 const ROUNDING: f64 = 1e-9;
 
-/// A plan, so many scans after its start.
+/// A plan at this number of scans after its start.
 pub type Part<'a> = (&'a StandardPlan, u64);
 
 /// The rest of a master's plan, as its slave sees it.
@@ -34,7 +35,7 @@ pub struct Lead<'a, Plan> {
     pub plan: &'a Plan,
     /// Scans since its start.
     pub elapsed: u64,
-    /// What its derivatives are multiplied by to be those of the slave.
+    /// The factor from its derivatives to those of the slave.
     pub factor: f64,
 }
 
@@ -58,7 +59,7 @@ struct Walk<I> {
     left: f64,
     /// Velocity from the end of the plan on (u/s).
     goal: f64,
-    /// What its derivatives are multiplied by: those of a plan seen through a gear, else 1.
+    /// The factor of its derivatives: that of a gear, or 1.
     factor: f64,
 }
 
@@ -79,7 +80,7 @@ impl<I: Iterator<Item = Segment>> Walk<I> {
         walk.turn();
         let mut skip = elapsed as f64 * cycle;
         for _ in 0..MAX_SWITCHES {
-            // A switch that is over but for rounding is over.
+            // A switch that is over except for rounding is over.
             if skip < walk.left - GRAIN * cycle {
                 break;
             }
@@ -139,12 +140,12 @@ fn stands((plan, elapsed): Part<'_>) -> bool {
 }
 
 /// Whether the sum of two plans keeps `limits` from now until both have ended, and does not turn outside
-/// `range` (u), given in the sum of their positions.
+/// `range` (u), which applies to the sum of their positions.
 ///
-/// A sum that starts or ends outside `range` is not held against it: whoever asks has decided on both ends. One that
-/// starts outside and comes in stays in. Limits hold to 1e-9 of each, positions to 1e-9 of the range's numbers. Bounded by
-/// [`MAX_SWITCHES`] pieces with at most two roots each; a curve through points, which fits only what stands, by 64 for each
-/// of its stretches.
+/// A sum may start or end outside `range`: the caller has decided on both ends. One that starts outside
+/// and comes in must stay in. Limits are kept to 1e-9 of each, positions to 1e-9 of the range's numbers.
+/// Bounded by [`MAX_SWITCHES`] pieces with at most two roots each. A curve through points fits only a
+/// standing plan, and is bounded by 64 pieces for each of its stretches.
 pub(crate) fn fits(
     first: Part<'_>,
     second: Part<'_>,
@@ -153,7 +154,7 @@ pub(crate) fn fits(
     cycle: f64,
 ) -> bool {
     if let (StandardPlan::Profile(profile), true) = (first.0, is_curve(first)) {
-        // What a curve leaves to another motion is not looked for.
+        // The room that a curve leaves to another motion is not computed.
         let at = second.0.at(second.1).position;
         return stands(second)
             && profile.keeps(first.1, limits, range.map(|(min, max)| (min - at, max - at)));
@@ -179,7 +180,8 @@ pub(crate) fn fits(
     false
 }
 
-/// The sum of at most three plans, followed piece by piece: those of masters, and what a slave moves beside.
+/// The sum of at most three plans, followed piece by piece: those of the masters, and the slave's motion
+/// beside them.
 struct Behind<I> {
     walks: [Option<Walk<I>>; 3],
 }
@@ -233,12 +235,14 @@ impl<'a> Lead<'a, StandardPlan> {
     }
 }
 
-/// Whether the rest of the masters' plans and what a slave moves beside keep `limits` together from now on. On a curve through
-/// points that is not known, and so it does not fit.
+/// Whether the rest of the masters' plans and the slave's motion beside them together keep `limits` from
+/// now on. A curve through points is not known, so it does not fit.
 ///
-/// What jumps where `limits` bound its derivative does not fit; `now` is what was published of all for this instant.
+/// A jump of a derivative does not fit if `limits` bound the next one; `now` is the sum published for
+/// this instant.
 ///
-/// Limits hold to 1e-9 of each. Bounded by [`MAX_SWITCHES_BEHIND`] pieces with at most two roots each.
+/// Limits are kept to 1e-9 of each. Bounded by [`MAX_SWITCHES_BEHIND`] pieces with at most two roots
+/// each.
 pub(crate) fn fits_behind(
     leads: &Leads<'_, StandardPlan>,
     now: &Setpoint,
@@ -268,8 +272,9 @@ pub(crate) fn fits_behind(
     false
 }
 
-/// The lowest and the highest velocity of the rest of the masters' plans and of what a slave moves beside, together. `None` on a
-/// curve through points. Bounded by [`MAX_SWITCHES_BEHIND`] pieces with at most two roots each.
+/// The lowest and the highest velocity of the rest of the masters' plans together with the slave's motion
+/// beside them. `None` on a curve through points. Bounded by [`MAX_SWITCHES_BEHIND`] pieces with at most
+/// two roots each.
 pub(crate) fn velocities_behind(
     leads: &Leads<'_, StandardPlan>,
     beside: Part<'_>,
@@ -298,17 +303,17 @@ pub(crate) fn velocities_behind(
     None
 }
 
-/// Whether nothing jumps from one state to the next whose derivative is bounded.
+/// Whether no derivative with a bounded derivative jumps from one state to the next.
 fn is_continuous(last: &Setpoint, next: &Setpoint, limits: &Limits, cycle: f64) -> bool {
     let keeps =
         |last: f64, next: f64, bound: f64| !bound.is_finite() || (next - last).abs() <= JUMP * bound * cycle;
-    // In a scan no jerk comes further than the snap takes it.
+    // In a scan no jerk changes by more than the snap permits.
     let jerk = limits.jerk.min(limits.snap * cycle);
     keeps(last.acceleration, next.acceleration, jerk) && keeps(last.jerk, next.jerk, limits.snap)
 }
 
-/// The next stretch in which the masters' plans together have a constant velocity: in how many scans it begins and ends, the
-/// largest number if it has no end. `None` on a curve through points.
+/// The next stretch in which the masters' plans together have a constant velocity: the scans until it
+/// begins and until it ends, the largest number if it has no end. `None` on a curve through points.
 ///
 /// Bounded by [`MAX_SWITCHES_BEHIND`] pieces.
 pub(crate) fn stretch(leads: &Leads<'_, StandardPlan>, cycle: f64) -> Option<(u64, u64)> {
@@ -328,7 +333,7 @@ pub(crate) fn stretch(leads: &Leads<'_, StandardPlan>, cycle: f64) -> Option<(u6
         if !left.is_finite() {
             return Some((begin.min(all), u64::MAX));
         }
-        // The scan before the one in which it ends is the last that is all in it.
+        // The scan before the one in which it ends is the last that is wholly in it.
         let end = ((time + left) / cycle * (1.0 + GRAIN)) as u64;
         if is_even && end > begin {
             return Some((begin, end));
@@ -339,7 +344,7 @@ pub(crate) fn stretch(leads: &Leads<'_, StandardPlan>, cycle: f64) -> Option<(u6
     None
 }
 
-/// Where a sum may turn.
+/// The range in which a sum may turn.
 struct Room {
     /// The range, with the end of the motion inside, and rounding (u).
     min: f64,
@@ -369,7 +374,7 @@ impl Room {
         }
     }
 
-    /// The motion comes by `position`; whether it may turn there.
+    /// The motion passes `position`; whether it may turn there.
     fn takes(&mut self, position: f64) -> bool {
         let is_inside = |min: f64, max: f64| min <= position && position <= max;
         if is_inside(self.min, self.max) {
@@ -403,10 +408,10 @@ fn piece_fits(state: &Setpoint, length: f64, limits: &Limits, room: Option<&mut 
     fits
 }
 
-/// What the rest of a plan leaves of `limits`: the limits less its largest magnitudes, 0 where it leaves
-/// nothing. Acceleration and deceleration are less the larger of the two.
+/// The part of `limits` that the rest of a plan leaves: the limits less its largest magnitudes, 0 if it
+/// leaves nothing. Acceleration and deceleration are reduced by the larger of the two.
 ///
-/// A motion within it keeps `limits` together with the plan whatever their times. Bounded by
+/// A motion within it keeps `limits` together with the plan, whatever their times. Bounded by
 /// [`MAX_SWITCHES`] pieces.
 pub(crate) fn room(part: Part<'_>, limits: &Limits, cycle: f64) -> Limits {
     let Some(peak) = peaks(part, f64::INFINITY, cycle) else {
@@ -435,8 +440,8 @@ pub(crate) fn room(part: Part<'_>, limits: &Limits, cycle: f64) -> Limits {
     }
 }
 
-/// The largest magnitudes of the derivatives of a plan for so long a `time` (s) from now on; `None` on a curve through points. Bounded
-/// by [`MAX_SWITCHES`] pieces.
+/// The largest magnitudes of the derivatives of a plan for the next `time` (s); `None` on a curve through
+/// points. Bounded by [`MAX_SWITCHES`] pieces.
 pub(crate) fn peaks(part: Part<'_>, time: f64, cycle: f64) -> Option<Setpoint> {
     if is_curve(part) {
         return None;
@@ -488,8 +493,8 @@ pub(crate) fn next_switch((plan, elapsed): Part<'_>, cycle: f64) -> u64 {
     elapsed.saturating_add(u64::from(scans.max(1)))
 }
 
-/// How far (u) the rest of a plan moves up and how far down, up to its goal: the sums over the stretches between
-/// its turns. Bounded by [`MAX_SWITCHES`] pieces with at most two roots each.
+/// The ways (u) of the rest of a plan upwards and downwards, up to its goal: the sums over the stretches
+/// between its turns. Bounded by [`MAX_SWITCHES`] pieces with at most two roots each.
 pub(crate) fn ways(part: Part<'_>, cycle: f64) -> (f64, f64) {
     if let StandardPlan::Profile(profile) = part.0 {
         return profile.ways(part.1);
@@ -501,7 +506,7 @@ pub(crate) fn ways(part: Part<'_>, cycle: f64) -> (f64, f64) {
             break;
         }
         if walk.left > GRAIN * cycle {
-            // From 0, where positions are finest.
+            // From 0, where positions have the finest resolution.
             let start = Setpoint {
                 position: 0.0,
                 ..walk.state
@@ -602,7 +607,7 @@ mod tests {
             .fold(0.0, f64::max);
         let within = |max: f64| fits((&base, 0), (&added, 0), &LIMITS, Some((-1.0, max)), CYCLE);
         assert!(within(highest + 0.01) && !within(highest - 0.01), "{highest}");
-        // Both ends are the caller's business.
+        // Both ends are decided by the caller.
         let (base, added) = (plan(0.0, 30.0, 10.0), plan(0.0, 60.0, 60.0));
         assert!(fits((&base, 0), (&added, 0), &LIMITS, Some((1.0, 2.0)), CYCLE));
     }

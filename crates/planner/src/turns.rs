@@ -1,14 +1,14 @@
-//! Whole turns taken off a position without rounding.
+//! Takes whole turns off a position without rounding.
 //!
-//! What stands here: sums and products with their rounding errors, and the split of a position into whole
-//! lengths and a rest. The two exact transformations are Knuth's sum and Dekker's product (T. J. Dekker, "A
-//! floating-point technique for extending the available precision", 1971, equations 4.14 and 5.12); they need
-//! nothing but rounded `+ - *`.
+//! This module has sums and products with their rounding errors, and splits a position into whole lengths
+//! and a rest. The two exact transformations are Knuth's sum and Dekker's product (T. J. Dekker, "A
+//! floating-point technique for extending the available precision", 1971, equations 4.14 and 5.12). They
+//! need only rounded `+ - *`.
 
 /// 2^27 + 1 cuts 53 bits into two halves whose products are exact.
 const SPLITTER: f64 = 134_217_729.0;
 
-/// `a + b` as the rounded sum and what rounding took away.
+/// `a + b` as the rounded sum and its rounding error.
 pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let b_part = sum - a;
@@ -16,7 +16,7 @@ pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - a_part) + (b - b_part))
 }
 
-/// `a * b` as the rounded product and what rounding took away; exact while neither over- nor underflows.
+/// `a * b` as the rounded product and its rounding error; exact while neither over- nor underflows.
 pub fn two_product(a: f64, b: f64) -> (f64, f64) {
     let halves = |x: f64| {
         let big = SPLITTER * x;
@@ -31,8 +31,8 @@ pub fn two_product(a: f64, b: f64) -> (f64, f64) {
 
 /// `position` (u) as whole `length`s (u, above 0) and a rest in [0, `length`).
 ///
-/// The rest is exact but for positions less than a length below 0, where it is rounded once; one that rounds
-/// to the length is the 0 of the next. Positions beyond 2^53 lengths have no rest: it is 0.
+/// The rest is exact, except for positions less than a length below 0, where it is rounded once; if it
+/// rounds to the length it is the 0 of the next one. Positions beyond 2^53 lengths have the rest 0.
 #[inline]
 pub fn split(position: f64, length: f64) -> (i64, f64) {
     if position >= 0.0 && position < length {

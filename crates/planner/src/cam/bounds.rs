@@ -1,4 +1,4 @@
-//! What the derivatives of a cam are bounded by, and what that leaves to its master.
+//! The bounds of the derivatives of a cam, and the motion of the master that they permit.
 
 use super::{Cam, CamPiece};
 use crate::math::{cbrt, floor, sqrt};
@@ -6,25 +6,25 @@ use crate::profile::check::{cut, halved, hull};
 use crate::profile::curve::Slopes;
 use crate::{Limits, Setpoint};
 
-/// Halvings of a piece on the way to its bounds.
+/// Halvings of a piece to find its bounds.
 const DEPTH: usize = 6;
 
-/// Most parts of a piece that are looked at for one of its derivatives.
+/// Most parts of a piece that are examined for one of its derivatives.
 const PARTS: u32 = 2 << DEPTH;
 
-/// A bound may be this much above the largest value.
+/// A bound may exceed the largest value by this factor.
 const CLOSE: f64 = 1.01;
 
 /// Rounding of a bound, relative to it.
 const ROUNDING: f64 = 1e-9;
 
-/// Most pieces of a cam whose parts are looked at one by one.
+/// Most pieces of a cam whose parts are examined one by one.
 const PASSED: usize = 4;
 
-/// How often limits of a shadow are halved at most.
+/// Most halvings of the limits of a shadow.
 const HALVINGS: u32 = 40;
 
-/// What the first four derivatives of a cam are bounded by, each at most one per cent above its largest magnitude.
+/// Bounds of the first four derivatives of a cam, each at most one per cent above its largest magnitude.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CamBounds {
     /// Slope (y/u).
@@ -37,7 +37,7 @@ pub struct CamBounds {
     pub fourth: f64,
 }
 
-/// What is left to look at: parts and how often they were halved.
+/// Parts that are left to examine, and how often each was halved.
 struct Parts<const N: usize> {
     waiting: [([f64; N], usize); DEPTH + 2],
     count: usize,
@@ -62,8 +62,9 @@ fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The largest magnitude of a curve of these control points, or up to one per cent more: a part whose control points are close
-/// enough to a value of the curve is not halved. Cost: at most [`PARTS`] parts, of a smooth piece some ten.
+/// The largest magnitude of a curve with these control points, or up to one per cent more. A part whose
+/// control points are close enough to a value of the curve is not halved. Cost: at most [`PARTS`] parts;
+/// about ten for a smooth piece.
 fn bound<const N: usize>(points: [f64; N]) -> f64 {
     let mut parts = Parts {
         waiting: [([0.0; N], 0); DEPTH + 2],
@@ -91,7 +92,7 @@ fn bound<const N: usize>(points: [f64; N]) -> f64 {
 }
 
 impl CamPiece {
-    /// What its derivatives are bounded by, from its control points.
+    /// The bounds of its derivatives, from its control points.
     pub(super) fn bounded(&self) -> CamBounds {
         let (first, second, third, fourth) = self.curve().derivatives();
         CamBounds {
@@ -134,7 +135,7 @@ fn part<const N: usize>(points: [f64; N], (from, to): (f64, f64)) -> [f64; N] {
 }
 
 impl CamPiece {
-    /// What its derivatives are bounded by between two shares of it: by control points of that part.
+    /// The bounds of its derivatives between two shares of it, from the control points of that part.
     fn bounded_between(&self, shares: (f64, f64)) -> CamBounds {
         fn most<const N: usize>(points: [f64; N], shares: (f64, f64)) -> f64 {
             let (low, high) = hull(&part(points, shares));
@@ -151,7 +152,7 @@ impl CamPiece {
 }
 
 impl Cam<'_> {
-    /// What its derivatives are bounded by from `low` to `high`, neither taken back into one period.
+    /// The bounds of its derivatives from `low` to `high`, neither reduced to one period.
     pub(super) fn bounds_between(&self, low: f64, high: f64) -> CamBounds {
         let head = self.head;
         let length = head.end - head.begin;
@@ -174,7 +175,7 @@ impl Cam<'_> {
         self.bounds_within(low, head.end).or_larger(&rest)
     }
 
-    /// The same inside one period; nothing where `high` is below `low`.
+    /// The same inside one period; zero if `high` is below `low`.
     fn bounds_within(&self, low: f64, high: f64) -> CamBounds {
         if !(low <= high) {
             return CamBounds::default();
@@ -212,7 +213,8 @@ impl CamBounds {
         }
     }
 
-    /// Behind scalings: lengths of the slave times `slave`, those of the master times `master`, neither 0.
+    /// The bounds behind scalings: lengths of the slave times `slave`, those of the master times
+    /// `master`, neither 0.
     #[must_use]
     pub fn scaled(&self, master: f64, slave: f64) -> Self {
         let (per, by) = (1.0 / master.abs(), slave.abs());
@@ -224,10 +226,10 @@ impl CamBounds {
         }
     }
 
-    /// The highest velocity of a master without acceleration (u/s) with which the slave keeps `limits`; infinite for a cam that
-    /// does not move the slave.
+    /// The highest constant velocity of a master (u/s) with which the slave keeps `limits`; infinite for
+    /// a cam that does not move the slave.
     pub fn highest_velocity(&self, limits: &Limits) -> f64 {
-        // Infinite where the derivative is 0, which is what is meant; 0 by 0 does not come up, as no limit is 0.
+        // Infinite if the derivative is 0, as intended. 0 by 0 does not occur, because no limit is 0.
         let [by_velocity, by_acceleration, by_jerk, by_snap] = [
             limits.velocity / self.first,
             sqrt(limits.lower_acceleration() / self.second),
@@ -242,13 +244,13 @@ impl CamBounds {
         [self.first, self.second, self.third]
     }
 
-    /// The slave rests, however its master moves.
+    /// Whether the slave stands, however its master moves.
     pub fn is_level(&self) -> bool {
         self.first == 0.0
     }
 
-    /// The most that the slave can have where the derivatives of its master are at most those of `master` (its position means
-    /// nothing).
+    /// The largest motion of the slave if the derivatives of its master are at most those of `master`
+    /// (its position is not used).
     pub fn most(&self, master: &Setpoint) -> Setpoint {
         let [v, a, j, s] = [
             master.velocity.abs(),
@@ -274,11 +276,12 @@ impl CamBounds {
         }
     }
 
-    /// Limits of a master of the slave's own, behind which the slave keeps `limits` wherever that is on the cam: as fast as `wanted`
-    /// (u/s), or 0.98 of the highest velocity if that is less, and what then is left to the other three while it is no
-    /// faster than it is at `present` (u/s).
+    /// Limits of a master of the slave's own, behind which the slave keeps `limits` anywhere on the cam.
+    /// The velocity is `wanted` (u/s), or 0.98 of the highest velocity if that is less. The other three
+    /// are what is left while the velocity is at most that at `present` (u/s).
     ///
-    /// `None` if nothing is left: at rest with nothing wanted, or already at the highest velocity. Cost: at most 40 halvings.
+    /// `None` if nothing is left: at rest with nothing wanted, or already at the highest velocity. Cost:
+    /// at most 40 halvings.
     pub fn shadow(&self, limits: &Limits, wanted: f64, present: f64) -> Option<Limits> {
         let most = self.highest_velocity(limits);
         let velocity = (0.98 * most).min(wanted);
@@ -323,7 +326,7 @@ impl CamBounds {
                     break;
                 }
                 jerk *= 0.5;
-                // What the acceleration takes does not shrink with the jerk.
+                // The part that the acceleration takes does not shrink with the jerk.
                 if halving & 1 == 1 {
                     acceleration *= 0.5;
                 }
@@ -358,7 +361,7 @@ impl CamBounds {
     }
 }
 
-/// The cube root of what may be infinite.
+/// The cube root of a number that may be infinite.
 fn root_of_third(x: f64) -> f64 {
     if x.is_finite() { cbrt(x) } else { x }
 }

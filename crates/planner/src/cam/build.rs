@@ -1,4 +1,4 @@
-//! Rows into pieces, some in each call, so that no scan has all the work of a long table.
+//! Makes pieces from rows, some in each call, so that no scan has all the work of a long table.
 
 use super::bounds::CamBounds;
 use super::corners::{CamSmooth, is_jump};
@@ -15,14 +15,14 @@ pub struct CamBuild {
     head: CamHead,
     count: usize,
     next: usize,
-    /// The derivatives where the first piece begins and the last one made ends.
+    /// The derivatives at the begin of the first piece and at the end of the last one made.
     first: Slopes,
     last: Slopes,
     jumps: Jumps,
 }
 
 impl CamBuild {
-    /// A cam of `count` rows, of which none is looked at yet.
+    /// A cam of `count` rows, none of which is checked yet.
     ///
     /// # Errors
     /// [`CamCause::Count`].
@@ -58,10 +58,12 @@ impl CamBuild {
         self.next == 0
     }
 
-    /// Makes the next pieces, at most `most`, of the rows that `row` gives by number, from 0, into `pieces`, one fewer than there
-    /// are rows. The rows must stay the same from call to call. Returns the cam when it is complete.
+    /// Makes the next pieces, at most `most`, into `pieces`, which has one place less than there are
+    /// rows. `row` returns a row by its number, from 0; the rows must stay the same from call to call.
+    /// Returns the cam when it is complete.
     ///
-    /// Cost: for each piece some 1,000 operations; where derivatives are estimated, some ten looks at rows more.
+    /// Cost: for each piece some 1,000 operations; if derivatives are estimated, some ten reads of rows
+    /// in addition.
     ///
     /// # Errors
     /// The first [`CamFault`].
@@ -78,7 +80,8 @@ impl CamBuild {
         };
         let pieces_in_all = self.count.saturating_sub(1);
         let end = self.next.saturating_add(most).min(pieces_in_all);
-        // The rows that these pieces are made of: two on each side, and all of the other end of a period.
+        // The rows that these pieces are made from: two on each side, and all of the other end of a
+        // period.
         let near = self.next.saturating_sub(2)..end.saturating_add(3).min(self.count);
         let around = [
             0,
@@ -173,7 +176,7 @@ impl CamBuild {
         }
         self.head.smooth_inside = self.smooth();
         if !self.head.periodic {
-            // Before its first row and behind its last the slave rests.
+            // Before its first row and behind its last the slave stands.
             self.note_jumps(1, LEVEL, first);
             self.note_jumps(self.count, last, LEVEL);
         }
@@ -195,7 +198,7 @@ impl CamBuild {
     }
 }
 
-/// What is wrong with row `index`, from 0, or the next.
+/// The fault of row `index`, from 0, or of the next.
 fn check(row: &dyn Fn(usize) -> Option<CamRow>, index: usize) -> Option<CamFault> {
     let finite = |number: usize, row: &CamRow| {
         let all = [row.master, row.slave, row.slope, row.curvature, row.third];

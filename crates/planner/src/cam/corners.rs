@@ -1,22 +1,22 @@
-//! Where a derivative of a cam jumps: a slave that may not let it jump comes to rest there.
+//! The rows where a derivative of a cam jumps. A slave that may not let it jump comes to rest there.
 
 use super::{Cam, CamPiece};
 use crate::math::{ceil, floor};
 use crate::profile::check::hull;
 use crate::profile::curve::Slopes;
 
-/// How much of the largest value of a derivative in the cam is no jump of it.
+/// A difference up to this part of the largest value of a derivative in the cam is no jump.
 const SAME: f64 = 1e-9;
 
-/// A place is at a row if it is this near to it, relative to the numbers of both.
+/// A place counts as at a row within this distance, relative to the numbers of both.
 const THERE: f64 = 1e-12;
 
-/// How smooth a cam is.
+/// The smoothness of a cam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CamSmooth {
-    /// The highest order up to which all derivatives go on without a jump: 0 for corners, at most 3.
+    /// The highest order up to which all derivatives are continuous: 0 for corners, at most 3.
     pub continuity: u8,
-    /// The largest jump of the derivative that is the first to jump: at which row, from 1, and by how much.
+    /// The largest jump of the first derivative that jumps: its row, from 1, and its size.
     pub jump: (usize, f64),
 }
 
@@ -28,12 +28,12 @@ impl CamSmooth {
     };
 }
 
-/// Whether so much is a jump of a derivative with this largest value in the cam.
+/// Whether a difference of this size is a jump of a derivative with this largest value in the cam.
 pub(super) fn is_jump(size: f64, largest: f64) -> bool {
     !(size <= SAME * largest)
 }
 
-/// The derivatives where a piece begins or ends, and how far rounding of its control points takes each.
+/// The derivatives at an end of a piece, and the rounding error of each from its control points.
 #[derive(Clone, Copy, Default)]
 struct End {
     slopes: Slopes,
@@ -55,8 +55,8 @@ impl CamPiece {
 }
 
 impl Cam<'_> {
-    /// The first of the first `order` derivatives that jumps at row `index`, from 0: its order less 1. The last row of a cam with
-    /// periods is its first one.
+    /// The lowest of the first `order` derivatives that jumps at row `index`, from 0: its order less 1.
+    /// The last row of a cam with periods is its first one.
     pub fn jumps_at(&self, index: usize, order: usize) -> Option<usize> {
         let last = self.pieces.len();
         let before = match index.checked_sub(1) {
@@ -81,11 +81,11 @@ impl Cam<'_> {
             })
     }
 
-    /// The next row on the way of the master from `x` (u, not taken back into one period), at most `reach` (u) further, at which
-    /// one of the first `order` derivatives jumps: where it lies, and which derivative, as [`Cam::jumps_at`] says. A row that `x` is at,
-    /// but for rounding, is behind it.
+    /// The next row on the master's way from `x` (u, not reduced to one period), within `reach` (u), at
+    /// which one of the first `order` derivatives jumps. Returns its place, and the derivative as
+    /// [`Cam::jumps_at`] does. A row at `x`, except for rounding, is behind it.
     ///
-    /// Cost: a look at each row on that way, at most one for each row of the cam.
+    /// Cost: a check of each row on that way, at most one for each row of the cam.
     pub fn next_corner(&self, x: f64, forwards: bool, reach: f64, order: usize) -> Option<(f64, usize)> {
         let head = self.head;
         let length = head.end - head.begin;

@@ -1,20 +1,19 @@
-//! Where a cam lies between two axes: the place of the slave as a pure function of that of its master.
+//! The place of a cam between two axes: the slave's place as a pure function of the master's place.
 //!
-//! Periods are counted in integers from the place of the master alone, so nothing adds up: a master that comes back to a place
-//! brings the slave back to the same bits.
+//! Periods are counted in integers from the master's place alone, so no error accumulates: a master that
+//! returns to a place returns the slave to the same bits.
 
 use super::{Cam, CamBounds};
 use crate::gear::{Double, add, divided, in_first_turn, plus};
 use crate::turns::{two_product, two_sum};
 use crate::{Anchor, Place, Setpoint};
 
-/// How a cam lies between a master and its slave.
+/// The placement of a cam between a master and its slave.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CamLaw {
-    /// Lengths of the master's side of the cam are this much longer at the master, those of the slave's side at the slave;
-    /// neither is 0.
+    /// Factor of lengths on the master's side of the cam; not 0.
     pub master_scaling: f64,
-    /// Of the slave's side.
+    /// Factor of lengths on the slave's side; not 0.
     pub slave_scaling: f64,
     /// The place of the cam's master side (u) at the master's place in the anchor.
     pub origin: f64,
@@ -40,7 +39,8 @@ pub struct CamAt {
 }
 
 impl CamLaw {
-    /// The master's place on its side of the cam (u), as far from the first row as the sum of two numbers says.
+    /// The master's place on its side of the cam (u), relative to the first row, as exact as the sum of
+    /// two numbers.
     fn way(&self, cam: &Cam<'_>, anchor: &Anchor, master: Place) -> Double {
         let from = &anchor.master;
         let turns = master.turns.wrapping_sub(from.turns);
@@ -63,12 +63,13 @@ impl CamLaw {
         }
     }
 
-    /// The master's place on its side of the cam (u), not taken back into one period.
+    /// The master's place on its side of the cam (u), not reduced to one period.
     pub fn unwound(&self, cam: &Cam<'_>, anchor: &Anchor, master: Place) -> f64 {
         plus(self.way(cam, anchor, master), cam.head.begin).0
     }
 
-    /// Where the slave is for a `master` that is there and moves as `moving` says; `near` is the piece to look at first.
+    /// The slave's place and motion for a `master` at its place with the motion `moving`; `near` is the
+    /// piece to try first.
     ///
     /// Cost: some 300 operations, and a search of at most 9 steps for a piece that is not next to `near`.
     pub fn at(&self, cam: &Cam<'_>, anchor: &Anchor, master: Place, moving: &Setpoint, near: u16) -> CamAt {
@@ -141,7 +142,8 @@ impl CamLaw {
         }
     }
 
-    /// The chain rule: how the slave moves on a curve of these derivatives behind a master that moves so.
+    /// The chain rule: the motion of the slave on a curve with these derivatives, behind a master with
+    /// this motion.
     fn moved(&self, curve: &Setpoint, master: &Setpoint) -> Setpoint {
         let per = 1.0 / self.master_scaling;
         let first = self.slave_scaling * curve.velocity * per;
@@ -157,7 +159,7 @@ impl CamLaw {
         } = *master;
         Setpoint {
             position: 0.0,
-            // Adding 0 takes the sign from -0.
+            // Adding 0 changes -0 to 0.
             velocity: first * v + 0.0,
             acceleration: second * v * v + first * a + 0.0,
             jerk: third * v * v * v + 3.0 * second * v * a + first * j + 0.0,
@@ -169,17 +171,18 @@ impl CamLaw {
         }
     }
 
-    /// What the derivatives of the slave by its master are bounded by from `low` to `high` on the master's side of the cam, neither
-    /// taken back into one period ([`CamLaw::unwound`]).
+    /// The bounds of the slave's derivatives by its master from `low` to `high` on the master's side of
+    /// the cam, neither reduced to one period ([`CamLaw::unwound`]).
     ///
-    /// Cost: a look at each piece between them, at most 4; where there are more, those of the whole cam are taken.
+    /// Cost: a check of each piece between them, at most 4; if there are more, the bounds of the whole
+    /// cam are used.
     pub fn bounds_between(&self, cam: &Cam<'_>, low: f64, high: f64) -> CamBounds {
         cam.bounds_between(low, high)
             .scaled(self.master_scaling, self.slave_scaling)
     }
 }
 
-/// How often `length` is in `way`, and what is left, in [0, `length`).
+/// The number of times that `length` fits into `way`, and the rest, in [0, `length`).
 fn whole_and_rest(way: Double, length: Double) -> (i64, Double) {
     let rest = |whole: i64| {
         let (coarse, error) = two_product(whole as f64, length.0);
@@ -187,7 +190,7 @@ fn whole_and_rest(way: Double, length: Double) -> (i64, Double) {
     };
     let mut whole = (way.0 / length.0) as i64;
     let mut left = rest(whole);
-    // The quotient is cut towards 0, and off by one at most.
+    // The quotient is truncated towards 0, so it is off by one at most.
     for _ in 0..2 {
         if left.0 < 0.0 {
             whole = whole.wrapping_sub(1);

@@ -1,14 +1,14 @@
-//! Cams: where a slave is for each place of its master, as curves of degree 7 from point to point.
+//! Cams: the slave's place for each place of its master, as curves of degree 7 from point to point.
 //!
-//! What stands here: rows into pieces ([`CamBuild`]), what they are bounded by and how smooth they are, the value and four
-//! derivatives at any place of the master, and where a cam lies between two axes ([`CamLaw`]). What does not: how a slave comes
-//! onto the curve, and who keeps the pieces.
+//! This module makes pieces from rows ([`CamBuild`]), finds their bounds and their smoothness, evaluates
+//! the value and four derivatives at any place of the master, and places a cam between two axes
+//! ([`CamLaw`]). It does not bring a slave onto the curve, and does not store the pieces.
 //!
 //! | file | subject |
 //! | --- | --- |
 //! | `build` | rows into pieces, some in each call |
 //! | `rows` | the derivatives that a row leaves open |
-//! | `bounds` | what a piece is bounded by, and what that leaves to the master |
+//! | `bounds` | the bounds of a piece, and the motion of the master that they permit |
 //! | `corners` | where a derivative jumps |
 //! | `law` | the place of the slave for a place of the master: periods, scalings, the chain rule |
 //!
@@ -64,17 +64,17 @@ pub struct CamRow {
     pub curvature: f64,
     /// Third derivative (y/u^3).
     pub third: f64,
-    /// How it goes on to the next row; of the last row it says nothing.
+    /// The curve to the next row; not used for the last row.
     pub shape: CamShape,
 }
 
 /// A piece of a cam, from one row to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CamPiece {
-    /// Where it begins: of the master (u), of the slave (y).
+    /// Its begin: of the master (u), of the slave (y).
     begin: f64,
     from: f64,
-    /// How long it is (u), and its control points, counted from where it begins (y).
+    /// Its length (u), and its control points relative to its begin (y).
     width: f64,
     points: [f64; 8],
     bounds: CamBounds,
@@ -89,13 +89,13 @@ impl CamPiece {
         }
     }
 
-    /// What its derivatives are bounded by.
+    /// The bounds of its derivatives.
     pub const fn bounds(&self) -> &CamBounds {
         &self.bounds
     }
 }
 
-/// What is known of a cam as a whole.
+/// The properties of a cam as a whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CamHead {
     /// First and last place of the master (u).
@@ -106,13 +106,13 @@ pub struct CamHead {
     pub from: f64,
     /// In the last one.
     pub to: f64,
-    /// The lowest and the highest place of the slave (y), within a thousandth of the way between them.
+    /// The lowest and the highest place of the slave (y), within a thousandth of the range.
     pub range: (f64, f64),
-    /// It goes on behind its last row as at its first.
+    /// Whether the cam repeats: behind its last row it continues at its first.
     pub periodic: bool,
     /// What its derivatives are bounded by.
     pub bounds: CamBounds,
-    /// How smooth it is, with the rest before its first row and behind its last where it has no periods.
+    /// Its smoothness, including the rest before its first row and behind its last if it has no periods.
     pub smooth: CamSmooth,
     /// The same without that rest: from its first row to its last.
     pub smooth_inside: CamSmooth,
@@ -134,7 +134,7 @@ impl Default for CamHead {
     }
 }
 
-/// What of the rows of a cam is no good.
+/// The faults of the rows of a cam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CamCause {
     /// Fewer than two rows, or more than [`CAM_ROWS`].
@@ -145,7 +145,7 @@ pub enum CamCause {
     Order,
 }
 
-/// Why the rows of a cam are no good.
+/// The reason why the rows of a cam are refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CamFault {
     /// What it is.
@@ -154,11 +154,11 @@ pub struct CamFault {
     pub row: usize,
     /// The value.
     pub value: f64,
-    /// What it must be above, or may be at most; NaN if there is nothing to name.
+    /// The bound that the value must be above, or may not exceed; NaN if there is none to name.
     pub limit: f64,
 }
 
-/// A cam: what is known of it, and its pieces.
+/// A cam: its properties, and its pieces.
 #[derive(Clone, Copy, Debug)]
 pub struct Cam<'a> {
     /// As a whole.
@@ -168,9 +168,10 @@ pub struct Cam<'a> {
 }
 
 impl<'a> Cam<'a> {
-    /// The piece `place` (u) lies in, of which the first and the last have no outer end; `near` is where to look first.
+    /// The piece that contains `place` (u); the first and the last have no outer end. `near` is the piece
+    /// to try first.
     ///
-    /// Cost: three looks for a piece next to `near`, at most 9 more for any other.
+    /// Cost: three comparisons for a piece next to `near`, at most 9 more for any other.
     pub fn find(&self, place: f64, near: u16) -> u16 {
         let near = usize::from(near);
         let begins_before = |index: usize| self.pieces.get(index).is_some_and(|piece| piece.begin <= place);
@@ -200,7 +201,7 @@ impl<'a> Cam<'a> {
         u16::try_from(index).unwrap_or_default()
     }
 
-    /// Where the piece of that number begins and ends (u); the last one for a larger number.
+    /// Begin and end (u) of the piece of that number; the last one for a larger number.
     pub fn ends_of(&self, index: u16) -> (f64, f64) {
         let last = self.pieces.len().saturating_sub(1);
         let piece = self.pieces.get(usize::from(index).min(last));
@@ -215,10 +216,11 @@ impl<'a> Cam<'a> {
         self.pieces.get(usize::from(index))
     }
 
-    /// Where the slave is at `place` (u) and four derivatives by the master, as position to snap, in the piece of that number.
-    /// The place is the sum of two numbers, the second far smaller.
+    /// The slave's place at `place` (u) and four derivatives by the master, as position to snap, in the
+    /// piece of that number. The place is the sum of two numbers, the second far smaller.
     ///
-    /// Returns the place of the slave as where the piece begins and the way from there. Cost: some 80 operations.
+    /// Returns the slave's place as the begin of the piece and the way from there. Cost: some 80
+    /// operations.
     pub(crate) fn at(&self, place: (f64, f64), index: u16) -> (f64, Setpoint) {
         let Some(piece) = self.piece(index) else {
             return (self.head.from, Setpoint::default());

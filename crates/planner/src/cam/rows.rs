@@ -7,7 +7,7 @@ use crate::profile::nodes::{Knot, STENCIL, taylor};
 /// Level up to the third derivative.
 pub(super) const LEVEL: Slopes = [0.0; 3];
 
-/// The rows of a cam, reached by number: from 0, and around the period of a cam that has one.
+/// The rows of a cam by number: from 0, and around the period of a cam that has one.
 pub(super) struct Rows<'a> {
     pub row: &'a dyn Fn(usize) -> Option<CamRow>,
     pub count: usize,
@@ -27,7 +27,7 @@ impl Rows<'_> {
         }
     }
 
-    /// The same where rows say it by themselves; none for a piece whose derivatives are estimated.
+    /// The same if the rows give them; none for a piece whose derivatives are estimated.
     fn given(&self, index: usize) -> Option<(Slopes, Slopes)> {
         let (from, to) = (self.at(index), self.at(index + 1));
         let (width, way) = (to.master - from.master, to.slave - from.slave);
@@ -50,8 +50,9 @@ impl Rows<'_> {
         }
     }
 
-    /// The derivatives at row `index`, between pieces whose derivatives are estimated: those that a neighbour of another shape
-    /// has there, level at the ends of a cam without periods, else estimated.
+    /// The derivatives at row `index`, between pieces whose derivatives are estimated. They are those
+    /// that a neighbour of another shape has there, level at the ends of a cam without periods, and
+    /// otherwise estimated.
     fn slopes_at(&self, index: usize) -> Slopes {
         if let Some(slopes) = self.held(index) {
             return slopes;
@@ -98,7 +99,7 @@ impl Rows<'_> {
     fn knot(&self, place: isize) -> Knot {
         let last = self.count.saturating_sub(1) as isize;
         let (mut within, mut periods) = (place, 0.0);
-        // Three neighbours at most are looked at, so few periods are passed.
+        // At most three neighbours are used, so few periods are passed.
         for _ in 0..STENCIL {
             if !self.periodic {
                 within = within.min(last).max(0);

@@ -19,7 +19,7 @@ pub struct Euler {
     pub acceleration: i128,
     /// Jerk.
     pub jerk: i128,
-    /// What is fed into the chain from this sample to the next: -1, 0 or 1 times the amplitude.
+    /// The input of the chain from this sample to the next: -1, 0 or 1 times the amplitude.
     pub input: i128,
 }
 

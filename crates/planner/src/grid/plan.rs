@@ -15,7 +15,7 @@ pub struct GridPlan {
     pub(super) start: f64,
     pub(super) target: f64,
     pub(super) cycle: f64,
-    /// What the whole-number derivatives 0 to m of the profile are multiplied by (docs/planner.md, eq. 25).
+    /// The factors of the whole-number derivatives 0 to m of the profile (docs/planner.md, eq. 25).
     pub(super) scale: [f64; 5],
     /// The m box lengths of order m, shortest first, then zeros.
     pub(super) boxes: [u32; 4],
@@ -46,8 +46,8 @@ pub struct Counts {
 impl GridPlan {
     /// Plans from rest at `start` to rest at `target` (u) with sample time `cycle` (s).
     ///
-    /// Which bounds are absent (infinite) sets the order; see [`Limits::order`]. Where acceleration and
-    /// deceleration differ the lower one holds for both. Cost: see [`GridPlan::new_counted`].
+    /// The bounds that are absent (infinite) set the order; see [`Limits::order`]. If acceleration and
+    /// deceleration differ, the lower one applies to both. Cost: see [`GridPlan::new_counted`].
     ///
     /// # Errors
     /// - [`PlanError::InvalidInput`]: `cycle` or a bound is not positive, `start` or `target` is not finite,
@@ -95,7 +95,7 @@ impl GridPlan {
     ) -> Result<Self, PlanError> {
         let distance = checked_distance(start, target, limits, cycle)?;
         let order = limits.order();
-        // Built in one go: fields written one by one and then copied would wait for their stores.
+        // Built in one expression: fields written one by one and then copied would wait for their stores.
         let plan = |boxes, scans, scale, wide, cruise| Self {
             start,
             target,
@@ -186,8 +186,8 @@ impl GridPlan {
         product(self.order, self.boxes)
     }
 
-    /// The published planner's segment durations; none for [`Method::Overlapped`], whose cruise may be
-    /// shorter than nothing, and none when there is nothing to move.
+    /// The published planner's segment durations. None for [`Method::Overlapped`], whose cruise may have
+    /// a negative length, and none if there is nothing to move.
     pub fn counts(&self) -> Option<Counts> {
         if self.method == Method::Overlapped || self.scans == 0 {
             return None;
@@ -227,7 +227,7 @@ fn product(order: Order, boxes: [u32; 4]) -> u128 {
     }
 }
 
-/// The boxes by one method, none if they are too long to count, and the work it took.
+/// The boxes by one method, none if they are too long to count, and the work of the search.
 pub(super) fn choose(
     method: Method,
     problem: &Problem,

@@ -1,4 +1,4 @@
-//! From limits and a distance to four whole numbers: the only rounding of planning.
+//! From limits and a distance to four whole numbers. This is the only rounding of planning.
 
 use crate::{Field, Limits, Order, PlanError, math};
 
@@ -9,7 +9,7 @@ const ONE_LESS_SLACK: f64 = 1.0 - 1.0 / (1_u64 << 40) as f64;
 /// Most scans a plan can count: 2^31 - 1.
 pub(super) const LONGEST: u64 = (1 << 31) - 1;
 
-/// Box lengths n1..n4 in scans; the boxes an order does without are 0 (docs/planner.md, eq. 4).
+/// Box lengths n1..n4 in scans; boxes that an order does not have are 0 (docs/planner.md, eq. 4).
 pub(super) type Boxes = [u32; 4];
 
 /// A rest-to-rest problem on the grid: find the boxes of the least sum whose products reach the thresholds.
@@ -40,7 +40,7 @@ impl Problem {
     /// [`PlanError::TooLong`] names the first bound that alone needs more than 2^31 scans.
     pub fn new(distance: f64, limits: &Limits, cycle: f64) -> Result<Self, PlanError> {
         let ratios = ratios(distance, limits.lower_acceleration(), limits, cycle);
-        // No plan that can be counted reaches more (docs/planner.md, eq. 8).
+        // No countable plan reaches more (docs/planner.md, eq. 8).
         let most = [31, 62, 93, 116].map(|bits| (1_u128 << bits) as f64);
         for ((ratio, most), bound) in ratios.iter().zip(most).zip(bounds(limits)) {
             if *ratio > most {
@@ -59,10 +59,11 @@ impl Problem {
         })
     }
 
-    /// The least n4 that reaches all thresholds with the other boxes given, where a box that is not there is 0.
+    /// The least n4 that reaches all thresholds with the other boxes given; a missing box is 0.
     pub fn least_n4(&self, n1: u64, n2: u64, n3: u64) -> u64 {
         let [n1, n2, n3] = [n1, n2, n3].map(|n| u128::from(n.max(1)));
-        // The compiler does not know that no product is 0; a division that cannot panic has to say so.
+        // The compiler does not know that no product is 0, so a division that cannot panic must be
+        // written as such.
         let least_times = |threshold: f64, others: u128| (threshold as u128).div_ceil(others.max(1));
         let least = (self.k4 as u128)
             .max(least_times(self.k3, n3))
@@ -71,7 +72,7 @@ impl Problem {
         u64::try_from(least).unwrap_or(u64::MAX)
     }
 
-    /// Whether whole box lengths below 2^32 reach all thresholds; boxes that are not there are 0.
+    /// Whether whole box lengths below 2^32 reach all thresholds; missing boxes are 0.
     pub fn reached_by(&self, boxes: [f64; 4]) -> bool {
         let [n1, n2, n3, n4] = boxes;
         if n4 < self.k4 {
@@ -89,8 +90,8 @@ impl Problem {
         p3 >= self.k3 as u64 && p2 >= self.k2 as u128 && u128::from(n1) * p2 >= self.k1 as u128
     }
 
-    /// The refusal of a move no bound alone makes too long, but all together do: names the bound that alone
-    /// would take the most scans.
+    /// The refusal of a move that no bound alone makes too long, but all together do. It names the bound
+    /// that alone would take the most scans.
     pub fn too_long(&self, limits: &Limits) -> PlanError {
         // Alone they take K4, 2 sqrt(K3), cbrt(32 K2) and (512 K1)^(1/4) scans; the twelfth powers compare
         // the same way without roots.

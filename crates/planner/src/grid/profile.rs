@@ -82,14 +82,16 @@ impl Iterator for Segments {
     }
 }
 
-/// The part of a plan at constant velocity, in closed form (docs/planner.md, eq. 21a): most scans of a long move
-/// are such ones.
+/// The part of a plan at constant velocity, in closed form (docs/planner.md, eq. 21a). Most scans of a
+/// long move are in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cruise {
-    /// How far from both ends the velocity is constant (scans): the sum of all boxes but the longest. More than
-    /// any plan has if it never is, or if the sums need more than 64 bits.
+    /// Distance from both ends beyond which the velocity is constant (scans): the sum of all boxes but
+    /// the longest. If the velocity is never constant, or the sums need more than 64 bits, it is more
+    /// than any plan has.
     after: u32,
-    /// What the position sum grows by in half a scan: m!/2 times the product of all boxes but the longest.
+    /// The growth of the position sum in half a scan: m!/2 times the product of all boxes but the
+    /// longest.
     half_step: i64,
     /// Velocity (u/s).
     velocity: f64,
@@ -103,7 +105,7 @@ impl Cruise {
         velocity: 0.0,
     };
 
-    /// That of a plan with these boxes and factors, whose sums fit 64 bits.
+    /// The cruise of a plan with these boxes and factors, whose sums fit 64 bits.
     pub fn new(order: Order, boxes: [u32; 4], scale: &[f64; 5]) -> Self {
         let [a, b, c, _] = boxes;
         let [p, q, r] = [a, b, c].map(i64::from);
@@ -125,7 +127,7 @@ impl Cruise {
 /// The factors of the derivatives, and whether the position sums need more than 64 bits
 /// (docs/planner.md, eq. 25).
 pub(super) fn scale(order: Order, product: u128, distance: f64, cycle: f64) -> ([f64; 5], bool) {
-    // A conversion of 128 bits is slow and seldom needed.
+    // A conversion of 128 bits is slow and rarely needed.
     let p = match u64::try_from(product) {
         Ok(product) => product as f64,
         Err(_) => product as f64,
@@ -201,7 +203,7 @@ impl GridPlan {
         let [_, f1, f2, f3, f4] = self.scale.map(f64::abs);
         match self.order {
             Order::Four => {
-                // What the overlap cuts off the velocity pulse at both of its ends.
+                // The part of the velocity pulse that the overlap cuts off at both of its ends.
                 let overlap = (a + b + c - d).max(0);
                 let velocity = 24 * a * b * c - overlap * overlap * overlap;
                 Peaks {
@@ -312,7 +314,7 @@ pub(super) fn sums(order: Order, wide: bool, instants: &[i64; 8], near: i64, thr
         (Order::Four, true) => derivatives::<i128, 8>(instants, near, through),
         (Order::Three, false) => derivatives::<i64, 4>(instants, near, through),
         (Order::Three, true) => derivatives::<i128, 4>(instants, near, through),
-        // Two boxes of less than 2^31 scans in all: the sums fit 64 bits always.
+        // Two boxes of less than 2^31 scans in all: the sums always fit 64 bits.
         (Order::Two, _) => derivatives::<i64, 2>(instants, near, through),
     }
 }
@@ -343,8 +345,8 @@ pub(super) fn backwards(target: f64, sums: &[f64; 5], scale: &[f64; 5]) -> Setpo
     }
 }
 
-/// The whole numbers the sums are taken in, as wrapping arithmetic: partial sums may overflow, the result
-/// is right whenever it fits.
+/// The whole numbers in which the sums are computed, with wrapping arithmetic: partial sums may overflow,
+/// but the result is right whenever it fits.
 trait Whole: Copy {
     /// The number as a wrapping one.
     fn of(value: i64) -> Self;

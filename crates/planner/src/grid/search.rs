@@ -5,10 +5,10 @@ use super::problem::{Boxes, LONGEST, Problem};
 use crate::Order;
 use crate::math::{self, max, min, sqrt};
 
-/// Most rows (values of n1) a search may visit before it settles for the best found.
+/// Most rows (values of n1) a search may visit before it returns the best found.
 pub const MAX_ROWS: u32 = 1024;
 
-/// Most pairs (n1, n2) a search may try before it settles for the best found.
+/// Most pairs (n1, n2) a search may try before it returns the best found.
 pub const MAX_CANDIDATES: u32 = 2048;
 
 /// Share by which the budget of the real bound is raised, so that rounding can only add candidates, never lose one.
@@ -17,10 +17,10 @@ const MARGIN: f64 = 1e-12;
 /// Newton steps of a cubic root: the start is within 13 %, and four steps end at the last place.
 const NEWTON_STEPS: u32 = 4;
 
-/// How much work a search took.
+/// The work of a search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
-    /// Values of n1 looked at.
+    /// Values of n1 that were tried.
     pub rows: u32,
     /// Pairs (n1, n2) solved for n3 and n4.
     pub candidates: u32,
@@ -42,12 +42,12 @@ pub enum Family {
 /// Box lengths are whole numbers held as `f64`, exact below 2^53, so that bounds and candidates share them.
 struct Search<'a> {
     problem: &'a Problem,
-    /// How much of n1 the gap between n3 and n4 holds beside n2: 1, or 0 where pulses may overlap.
+    /// The part of n1 in the gap between n3 and n4, in addition to n2: 1, or 0 if pulses may overlap.
     share: f64,
     best: [f64; 4],
     /// Sum of `best`; one more than the longest plan until there is one.
     scans: f64,
-    /// What a better sum may not exceed, [`MARGIN`] added.
+    /// The largest sum that is better than the best, plus [`MARGIN`].
     budget: f64,
     work: Work,
 }
@@ -118,7 +118,7 @@ impl Search<'_> {
         Row { n1, m2, n2 }
     }
 
-    /// Searches the row that has nothing to be pruned by.
+    /// Searches the first row; there is nothing to prune it by.
     fn first_row(&mut self, row: &Row) {
         self.work.rows = 1;
         let n2 = math::ceil(row.n2);
@@ -184,8 +184,8 @@ impl Search<'_> {
         self.share * n1 + n2
     }
 
-    // The roots below are taken one by one, each only if it is smaller than the last: which bounds decide
-    // seldom changes from move to move, so the processor need not wait for roots that don't.
+    // The roots below are taken one by one, each only if it is smaller than the last. The same bounds
+    // usually decide from move to move, so the processor need not wait for roots that are not needed.
 
     /// The real n1 >= 1 at which the bound is least, rounded up (docs/planner.md, eq. 17).
     fn best_n1(&self) -> f64 {
@@ -250,7 +250,7 @@ impl Search<'_> {
             }
         }
         let n4 = n4_of(n3);
-        // One less with the same n4 may do too; nothing else can be shorter.
+        // One less with the same n4 may also be enough; nothing else can be shorter.
         if n3 > least_n3 && problem.reached_by([n1, n2, n3 - 1.0, n4]) {
             n3 -= 1.0;
         }
@@ -267,7 +267,7 @@ impl Search<'_> {
 ///
 /// Asks for a root of at least max(p, q).
 fn cubic_root(p: f64, q: f64, m: f64) -> f64 {
-    // With t = n + mean there is no square left: t^3 - slope t = rest. That makes the steps short.
+    // With t = n + mean the square vanishes: t^3 - slope t = rest. That makes the steps short.
     let (mean, pq, half) = ((p + q) / 3.0, p * q, 0.5 * m);
     let slope = 3.0 * mean * mean - pq;
     let rest = half + mean * (pq - 2.0 * mean * mean);

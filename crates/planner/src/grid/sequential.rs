@@ -4,7 +4,7 @@
 use super::problem::{Boxes, LONGEST, Problem, Ratio};
 use crate::{Limits, Order};
 
-/// Which quantity sits exactly at its bound after a step, and so sets the amplitude of the next.
+/// The quantity that is exactly at its bound after a step, and so sets the amplitude of the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Held {
     /// The distance is covered.
@@ -17,7 +17,7 @@ enum Held {
     Jerk,
 }
 
-/// The steps with their ratios of bounds at hand.
+/// The steps, with their ratios of bounds.
 struct Steps<'a> {
     problem: &'a Problem,
     limits: &'a Limits,
@@ -49,8 +49,8 @@ pub(super) fn plan(problem: &Problem, distance: f64, limits: &Limits, cycle: f64
     let n2 = nd + nj;
     let m = nd + n2;
     let n3 = m + steps.acceleration_time(m, held);
-    // The last step is n4 >= K4. Where two ratios are both reached only within the slack their product can
-    // miss it; the thresholds of the products then ask for one scan more.
+    // The last step is n4 >= K4. If two ratios are reached only within the slack, their product can miss
+    // its threshold; the thresholds of the products then require one scan more.
     let n4 = (m + n3).max(problem.least_n4(nd, n2, n3));
     let lengths = [nd, n2, n3, n4];
     if lengths.iter().any(|n| *n > LONGEST) {
@@ -201,8 +201,8 @@ impl Steps<'_> {
     }
 }
 
-/// The smallest whole number from `from` on for which `holds`, which must stay true once true; the longest
-/// count + 1 if there is none. 32 steps of bisection.
+/// The smallest whole number from `from` on for which `holds` is TRUE; it must stay TRUE once it is. The
+/// longest count + 1 if there is none. 32 steps of bisection.
 fn least(from: u64, holds: impl Fn(u128) -> bool) -> u64 {
     let (mut low, mut high) = (from, LONGEST + 1);
     for _ in 0..32 {

@@ -1,4 +1,4 @@
-//! Profiles as five papers have them, corrected: what each of them plans, by the steps it gives.
+//! Profiles of five papers, corrected: each is planned by the steps of its paper.
 //!
 //! - [`SCurve`]: rest to rest in least time under bounds on velocity, acceleration and jerk
 //!   (Blejan and Blejan 2020).
@@ -6,11 +6,11 @@
 //! - [`ShortPath`]: from one velocity to another along a path of any length (Bui et al. 2021).
 //! - [`Tracking`]: to a target that moves while the axis does (Zhang).
 //!
-//! The fifth, of Pietrusewicz et al. 2019, is [`Method::Sequential`](crate::Method::Sequential) on the grid.
-//! What the papers print wrongly, and every number they publish beside ours, stands in `docs/papers.md`; the
+//! The fifth, of Pietrusewicz et al. 2019, is [`Method::Sequential`](crate::Method::Sequential) on the
+//! grid. The errors in the papers, and every published number beside ours, are in `docs/papers.md`; the
 //! code cites its equations as (P1) and on.
 //!
-//! Everything here is a plain value in continuous time: closed forms, or one bracketed root.
+//! All results are plain values in continuous time: closed forms, or one bracketed root.
 
 mod profile;
 mod s_curve;
@@ -28,11 +28,11 @@ pub use tracking::{Tracking, peaks};
 
 use crate::{Field, Limits, PlanError};
 
-/// What a request may miss the least duration by, relative to it, and still have it.
+/// A request that misses the least duration by this much, relative to it, is still accepted.
 const SLACK: f64 = 1e-12;
 
-/// The least count of scans of `cycle` (s) that covers `duration` (s), but for 1e-9 of it; none if that is
-/// more than 2^31 - 1.
+/// The least count of scans of `cycle` (s) that covers `duration` (s), except for 1e-9 of it; none if
+/// that is more than 2^31 - 1.
 pub fn scans(duration: f64, cycle: f64) -> Option<u32> {
     crate::ramp::scans(duration, cycle)
 }
@@ -51,7 +51,7 @@ fn distance(start: f64, target: f64) -> Result<f64, PlanError> {
     }
 }
 
-/// Refuses bounds that a method needs and does not get, and those it could not keep.
+/// Refuses missing bounds that a method needs, and bounds that it could not keep.
 fn check_limits(limits: &Limits, needed: &[Field], unknown: &[Field]) -> Result<(), PlanError> {
     limits.check()?;
     let bounds = [

@@ -7,11 +7,11 @@ use crate::{Field, Order, Peaks, PlanError, Segment, Setpoint};
 /// Most segments of a profile here: three to speed up, a cruise, three to slow down.
 pub const MAX_SEGMENTS: usize = 7;
 
-/// What an acceleration that is held at zero may be off by, relative to the largest one before, and how
-/// short a span may be, relative to the time before, that is none.
+/// Rounding error of an acceleration that is held at zero, relative to the largest one before. A span
+/// shorter than this, relative to the time before, counts as none.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// How far beside its end a profile may come to lie by rounding, relative to what was added up on the way.
+/// The largest rounding error at the end of a profile, relative to the sum along the way.
 const LANDING: f64 = 1e-9;
 
 /// A stretch of constant jerk (order 3) or acceleration (order 2).
@@ -46,8 +46,9 @@ impl Profile {
         }
     }
 
-    /// Lays `spans` of (seconds, jerk or at order 2 acceleration) from `start` on; they must end at `target`
-    /// (u) with `end_velocity` (u/s), up to rounding, which the last piece takes up.
+    /// Places `spans` of (seconds, jerk; or at order 2 acceleration) one after the other from `start`.
+    /// They must end at `target` (u) with `end_velocity` (u/s), up to rounding, which the last piece
+    /// corrects.
     ///
     /// # Errors
     /// [`PlanError::InvalidInput`] names the target if the move is beyond the range of `f64`.
@@ -73,11 +74,11 @@ impl Profile {
         let mut largest: f64 = 0.0;
         for (duration, input) in spans {
             if !(duration > ROUNDING * begin) {
-                // What rounding left of a length is no span.
+                // A length that is only rounding is no span.
                 continue;
             }
             state = with_input(&state, order, input);
-            // What rounding left of the acceleration would be integrated over a long cruise.
+            // An acceleration that is only rounding would be integrated over a long cruise.
             largest = largest.max(state.acceleration.abs());
             if input == 0.0 && state.acceleration.abs() <= ROUNDING * largest {
                 state.acceleration = 0.0;
@@ -102,8 +103,8 @@ impl Profile {
         }
     }
 
-    /// Whether the pieces, which lead to `last`, end where they should but for rounding. They do unless
-    /// something overflowed or vanished on the way.
+    /// Whether the pieces, which lead to `last`, end at the right state except for rounding. They do
+    /// unless something overflowed or vanished on the way.
     fn ends_near(&self, last: &Setpoint) -> bool {
         let velocity = self.peaks().velocity;
         let length = self.start.position.abs() + self.end.position.abs() + velocity * self.duration();
@@ -130,7 +131,7 @@ impl Profile {
         Self::lay(Order::Three, &Setpoint::at_rest(start), spans, target, 0.0)
     }
 
-    /// Nothing to do: at rest at `position` (u).
+    /// A plan without motion: at rest at `position` (u).
     pub(super) fn nothing(order: Order, position: f64) -> Self {
         let rest = Setpoint::at_rest(position);
         Self {
@@ -147,7 +148,7 @@ impl Profile {
         self.last().map_or(0.0, |piece| piece.end)
     }
 
-    /// The state at the end: exactly the target and the end velocity, nothing above it.
+    /// The state at the end: exactly the target and the end velocity; higher derivatives are 0.
     pub const fn end(&self) -> Setpoint {
         self.end
     }
@@ -164,8 +165,8 @@ impl Profile {
 
     /// The set-point `time` (s) after the start; at most [`MAX_SEGMENTS`] comparisons.
     ///
-    /// Up to 0 it is the start, from [`Profile::duration`] on the target, left with the end velocity. In
-    /// between a derivative that jumps has the value in force just before the instant.
+    /// Up to 0 it is the start; from [`Profile::duration`] on it is the target, left with the end
+    /// velocity. In between, a derivative that jumps has its value just before the instant.
     pub fn at(&self, time: f64) -> Setpoint {
         if time >= self.duration() {
             return Setpoint {
@@ -178,14 +179,14 @@ impl Profile {
         }
         let mut pieces = self.pieces.iter().take(self.len).enumerate();
         match pieces.find(|(_, piece)| time <= piece.end) {
-            // The last piece is laid backwards from the end, so that it runs into it from one side.
+            // The last piece is evaluated backwards from the end, so that it approaches it from one side.
             Some((index, piece)) if index + 1 == self.len => moved(&self.last_state(piece), time - piece.end),
             Some((_, piece)) => moved(&piece.first, time - piece.begin),
             None => self.end,
         }
     }
 
-    /// The state at the end of the last piece, before what jumps there jumps.
+    /// The state at the end of the last piece, before the jumps there.
     fn last_state(&self, piece: &Piece) -> Setpoint {
         match self.order {
             Order::Two => Setpoint {
@@ -243,7 +244,7 @@ pub struct Times {
 
 /// `state` with `input` as the derivative that `order` holds constant.
 fn with_input(state: &Setpoint, order: Order, input: f64) -> Setpoint {
-    // Adding 0.0 takes the sign off zero.
+    // Adding 0.0 removes the sign of zero.
     let input = input + 0.0;
     match order {
         Order::Two => Setpoint {

@@ -9,7 +9,7 @@ use crate::math::{cbrt, sqrt};
 use crate::ramp::path::moved;
 use crate::{Field, Limits, Order, PlanError, Setpoint};
 
-/// Which bounds a move reaches.
+/// The bounds that a move reaches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SCurveCase {
     /// A long move with a low velocity bound: acceleration has no plateau, velocity has one.
@@ -51,7 +51,8 @@ pub struct SCurve {
 impl SCurve {
     /// Plans from rest at `start` to rest at `target` (u). Closed form.
     ///
-    /// Where acceleration and deceleration differ the lower one holds for both: the paper knows one.
+    /// If acceleration and deceleration differ, the lower one applies to both, because the paper has only
+    /// one.
     ///
     /// # Errors
     /// [`PlanError::InvalidInput`] for a position that is not finite, a bound that is not positive, a missing
@@ -69,7 +70,8 @@ impl SCurve {
         Ok(Self { case, times, profile })
     }
 
-    /// Which bounds the move reaches. On the border of two cases either may be told; the times agree.
+    /// The bounds that the move reaches. On the border of two cases either may be returned; the times
+    /// agree.
     pub const fn case(&self) -> SCurveCase {
         self.case
     }
@@ -89,7 +91,7 @@ impl SCurve {
 fn times(s: f64, limits: &Limits) -> (SCurveCase, Times) {
     use SCurveCase::{A, B, C1, C2, D1, D2};
     let (v, a, j) = (limits.velocity, limits.lower_acceleration(), limits.jerk);
-    // Where acceleration just touches its bound, and where velocity does.
+    // The ways at which acceleration just reaches its bound, and at which velocity does.
     let v_a = a * a / j;
     let s_a = 2.0 * v_a * (a / j);
     let s_v = if v < v_a {
@@ -140,10 +142,10 @@ fn times(s: f64, limits: &Limits) -> (SCurveCase, Times) {
     (case, times)
 }
 
-/// The second view of a move: the state carried from call to call, as the paper's section 4 has it.
+/// The second form of a move: the state carried from call to call, as in the paper's section 4.
 ///
-/// Each step starts from the state of the step before. That is exact only if a step ends wherever the jerk
-/// changes, so a step is split there; the paper does not split, and lands beside the target.
+/// Each step starts from the state of the last step. That is exact only if a step ends wherever the jerk
+/// changes, so a step is split there. The paper does not split, and misses the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stepper<'a> {
     profile: &'a Profile,
@@ -161,7 +163,7 @@ impl<'a> Stepper<'a> {
         }
     }
 
-    /// The state `dt` (s, not negative) later; at most one part a segment.
+    /// The state `dt` (s, not negative) later; at most one part for each segment.
     pub fn step(&mut self, dt: f64) -> Setpoint {
         let until = self.time + dt;
         for (switch, segment) in self.profile.switches().zip(self.profile.segments()) {

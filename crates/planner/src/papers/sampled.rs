@@ -1,11 +1,11 @@
-//! A profile of a paper at scan ends: what an axis needs of one.
+//! A profile of a paper at scan ends, in the form that an axis needs.
 
 use super::{Profile, SCurve, ShortPath, ShortPathPolicy, Trapezoid};
 use crate::{Field, Limits, PlanError, Setpoint};
 
-/// A [`Profile`] asked for by scan count.
+/// A [`Profile`] evaluated by scan count.
 ///
-/// The profile keeps its limits in continuous time, so its samples do (docs/planner.md, eq. 24).
+/// The profile keeps its limits in continuous time, and so do its samples (docs/planner.md, eq. 24).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampledPlan {
     profile: Profile,

@@ -1,7 +1,7 @@
 //! From one velocity to another along a path of any length.
 //!
 //! Bui, Le and Doan, "An algorithm for planning S-curve motion profile considering arbitrary short path
-//! length", with the corrections of `docs/papers.md`. One function of the peak velocity takes the place of the
+//! length", with the corrections of `docs/papers.md`. One function of the peak velocity replaces the
 //! paper's table of conditions.
 
 use super::{Profile, SLACK, check_limits, distance, invalid};
@@ -9,21 +9,22 @@ use crate::kernel::falling_root;
 use crate::math::{cbrt, sqrt};
 use crate::{Field, Limits, Order, PlanError, Setpoint};
 
-/// What a bound on a root is widened by, so that rounding does not shut the root out.
+/// A bound on a root is widened by this factor, so that rounding does not exclude the root.
 const NOT_SHORT: f64 = 1.0 + 1e-9;
 
-/// What to do where the way is too short to get from the start velocity to the end velocity (type 8B).
+/// The behaviour if the way is too short to get from the start velocity to the end velocity (type 8B).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShortPathPolicy {
-    /// As the paper: end with the start velocity.
+    /// As in the paper: end with the start velocity.
     Paper,
-    /// End with the velocity a single ramp reaches: on the way up the highest, on the way down the lowest
-    /// above the one asked for. To end at rest is refused where the way is too short for it.
+    /// End with the velocity that a single ramp reaches: upwards the highest, downwards the lowest above
+    /// the one asked for. A move to rest is refused if the way is too short for it.
     #[default]
     Nearest,
 }
 
-/// The paper's types: which of the two ramps have a plateau of acceleration, and whether there is a cruise.
+/// The paper's types: which of the two ramps have a plateau of acceleration, and whether there is a
+/// cruise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShortPathType {
     /// Both ramps have a plateau; cruise at the feed rate.
@@ -75,9 +76,9 @@ pub struct ShortPath {
 impl ShortPath {
     /// Plans from `start` (u) with `start_velocity` to `target` (u) with `end_velocity` (u/s).
     ///
-    /// `limits.velocity` is the feed rate. Both velocities point towards the target; where there is no way
-    /// to go they say what that is. The limit on acceleration holds for the ramp up, the one on deceleration
-    /// for the ramp down. Bounded work: one root of at most
+    /// `limits.velocity` is the feed rate. Both velocities point towards the target; on a way of length 0
+    /// they define the direction. The limit on acceleration applies to the ramp up, the one on
+    /// deceleration to the ramp down. Bounded work: one root of at most
     /// [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps.
     ///
     /// # Errors
@@ -207,7 +208,7 @@ struct Ramp {
     pulse: f64,
     /// Length of the plateau of acceleration (s).
     plateau: f64,
-    /// Whether there is such a plateau, be it of no length.
+    /// Whether there is such a plateau, even of length 0.
     ladder: bool,
 }
 
@@ -244,7 +245,7 @@ struct Path<'a> {
     limits: &'a Limits,
 }
 
-/// What was found: a ramp up, a cruise, a ramp down.
+/// The result: a ramp up, a cruise, a ramp down.
 #[derive(Clone, Copy)]
 struct Shape {
     kind: ShortPathType,
@@ -283,9 +284,10 @@ impl Path<'_> {
         Ramp::new(change, self.limits.deceleration, self.limits.jerk)
     }
 
-    /// The two ramps over a peak that lies `excess` above the larger one of the velocities.
+    /// The two ramps over a peak that is `excess` above the larger one of the velocities.
     ///
-    /// From the excess, not from the peak: of a small one beside a large velocity no digit is lost.
+    /// Computed from the excess and not from the peak, so that a small excess over a large velocity keeps
+    /// its digits.
     fn ramps(&self, excess: f64) -> (Ramp, Ramp) {
         let rise = excess + (self.to - self.from).max(0.0);
         let fall = excess + (self.from - self.to).max(0.0);
@@ -382,8 +384,8 @@ impl Path<'_> {
         }
     }
 
-    /// A bound on how much a ramp up from `base` can change the velocity within `length`: what it could
-    /// without a bound on acceleration, at constant and at growing velocity, and what without one on jerk
+    /// A bound on the change of velocity by a ramp up from `base` within `length`: the change without a
+    /// bound on acceleration, at constant and at growing velocity, and the change without a bound on jerk
     /// (P12).
     fn most_rise(&self, length: f64, base: f64, acceleration: f64) -> f64 {
         let jerk = self.limits.jerk;
@@ -392,7 +394,7 @@ impl Path<'_> {
         let far = cbrt(jerk * length * length);
         let energy = 2.0 * acceleration * length;
         let steady = energy / (sqrt(base * base + energy) + base);
-        // `near` and `steady` are no numbers where both `length` and `base` are 0; `min` skips them.
+        // `near` and `steady` are NaN if both `length` and `base` are 0; `min` skips them.
         far.min(near).min(steady) * NOT_SHORT
     }
 

@@ -9,7 +9,7 @@ use super::{Profile, SLACK, check_limits, distance, invalid};
 use crate::math::{cbrt, sqrt};
 use crate::{Field, Limits, Order, PlanError, Setpoint};
 
-/// A move from rest to rest in a given time at order 3; its shape is given by two shares.
+/// A move from rest to rest in a given time at order 3. Two shares define its shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timed {
     times: Times,
@@ -19,9 +19,9 @@ pub struct Timed {
 impl Timed {
     /// Plans from rest at `start` to rest at `target` (u) in `duration` (s). Closed form (P4).
     ///
-    /// `gamma` is the share of the duration in which the move speeds up, and that in which it slows down;
-    /// `phi` the share of these in which the jerk acts at each of their ends. Both lie in (0, 1/2]. The
-    /// bounds of `limits` are only checked; an absent one is infinite. A move of no length takes no time.
+    /// `gamma` is the share of the duration for speeding up, and also that for slowing down. `phi` is the
+    /// share of these in which the jerk acts at each of their ends. Both are in (0, 1/2]. The bounds of
+    /// `limits` are only checked; an absent one is infinite. A move of no length takes no time.
     ///
     /// # Errors
     /// [`PlanError::InvalidInput`] for a position that is not finite, a bound, share or duration that is not
@@ -136,13 +136,13 @@ impl Trapezoid {
     }
 
     /// Plans from rest at `start` to rest at `target` (u) in `duration` (s) with the plateau
-    /// `limits.velocity`; the acceleration results, the same up and down (P7). Closed form.
+    /// `limits.velocity`. The acceleration is the result, the same up and down (P7). Closed form.
     ///
     /// # Errors
-    /// As [`Trapezoid::new`], but acceleration and deceleration may be absent; and [`PlanError::OutOfRange`]
-    /// for a velocity the move does not reach in this time or under these limits, and for a duration that is
-    /// too short for the limits. Without a limit on acceleration a duration too short for the velocity has no
-    /// nearest one: the least is not reached.
+    /// The errors of [`Trapezoid::new`], but acceleration and deceleration may be absent. In addition
+    /// [`PlanError::OutOfRange`] for a velocity that the move does not reach in this time or under these
+    /// limits, and for a duration that is too short for the limits. Without a limit on acceleration, a
+    /// duration too short for the velocity has no nearest value, because the least one is not reached.
     pub fn timed(start: f64, target: f64, duration: f64, limits: &Limits) -> Result<Self, PlanError> {
         let distance = distance(start, target)?;
         check_limits(

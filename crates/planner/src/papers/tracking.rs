@@ -1,4 +1,4 @@
-//! To a target that moves while the axis does.
+//! To a target that moves while the axis moves.
 //!
 //! Zhang, "An investigation of the implementation of S-curve motion profiling model in robotics
 //! applications": the essay evaluates the profile of the new target on the old clock, so that position and
@@ -8,10 +8,10 @@
 use crate::ramp::path::{moved, zeros};
 use crate::{Limits, OnlinePlan, Order, Peaks, PlanError, Segment, Setpoint};
 
-/// An axis that follows a target: the running plan and how far it has come.
+/// An axis that follows a target: the running plan and the elapsed scans.
 ///
-/// The order is that of the limits ([`Limits::order`]); what the start and the limits must be, and how each
-/// plan is found, is as in [`OnlinePlan::new`].
+/// The order is that of the limits ([`Limits::order`]). The conditions for start and limits, and the
+/// search for each plan, are those of [`OnlinePlan::new`].
 #[derive(Clone, Copy, Debug)]
 pub struct Tracking {
     limits: Limits,
@@ -34,13 +34,13 @@ impl Tracking {
         })
     }
 
-    /// Takes the target that holds from now on; says whether that made a new plan.
+    /// Takes the target that applies from now on; returns whether that made a new plan.
     ///
-    /// The same target again changes nothing: a plan made anew would end an instant later or earlier by
+    /// The same target again changes nothing: a new plan would end an instant later or earlier because of
     /// rounding.
     ///
     /// # Errors
-    /// As [`OnlinePlan::new`]; the old target then still holds.
+    /// As [`OnlinePlan::new`]; the old target is kept.
     pub fn retarget(&mut self, target: f64) -> Result<bool, PlanError> {
         if target == self.plan.target() {
             return Ok(false);
@@ -50,7 +50,7 @@ impl Tracking {
         Ok(true)
     }
 
-    /// Goes on by `scans`, and gives the set-point there.
+    /// Advances by `scans`, and returns the set-point there.
     pub fn advance(&mut self, scans: u32) -> Setpoint {
         self.scans += u64::from(scans);
         self.now()
@@ -71,7 +71,7 @@ impl Tracking {
         &self.plan
     }
 
-    /// What of the running plan has been executed: its segments, cut off now, and the wait at its end.
+    /// The executed part of the running plan: its segments up to now, and the wait at its end.
     pub fn executed(&self) -> impl Iterator<Item = Segment> {
         let elapsed = self.scans as f64 * self.cycle;
         let mut left = elapsed;
@@ -91,8 +91,8 @@ impl Tracking {
     }
 }
 
-/// The largest magnitudes along `segments` of `order`, in closed form: at the ends of each, and where jerk
-/// and acceleration pass zero in it. Infinite where the order leaves jumps.
+/// The largest magnitudes along `segments` of `order`, in closed form: at the ends of each, and at zeros
+/// of jerk and acceleration inside. Infinite for derivatives that jump at this order.
 pub fn peaks(order: Order, segments: impl IntoIterator<Item = Segment>) -> Peaks {
     let mut peaks = Peaks::default();
     for segment in segments {

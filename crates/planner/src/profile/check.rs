@@ -1,20 +1,21 @@
-//! Whether a stretch keeps the limits, and how far it moves: by control points, and halves where they leave it open.
+//! Whether a stretch keeps the limits, and how far it moves. Control points decide; if they do not, the
+//! stretch is halved.
 
 use super::ProfileCause;
 use super::curve::Curve;
 use crate::Limits;
 
-/// Halvings of a stretch on the way to an answer.
+/// Halvings of a stretch before it is decided.
 const DEPTH: u32 = 12;
 
-/// Most pieces of a stretch that are looked at.
+/// Most pieces of a stretch that are checked.
 const PIECES: u32 = 64;
 
 /// Rounding, relative to a limit.
 const ROUNDING: f64 = 1e-9;
 
-/// A stretch or a part of one by control points of the position and of each derivative. Each is halved by itself: the
-/// derivatives of a short part of a curve are lost in the rounding of its positions.
+/// A stretch or a part of one, as control points of the position and of each derivative. Each is halved
+/// separately: the derivatives of a short part of a curve are lost in the rounding of its positions.
 #[derive(Clone, Copy)]
 struct Piece {
     from: f64,
@@ -38,7 +39,7 @@ impl Piece {
         }
     }
 
-    /// Whether no number of it is too large to count with.
+    /// Whether all its numbers are finite.
     fn is_finite(&self) -> bool {
         let lower = self.position.iter().chain(&self.velocity);
         let all = lower
@@ -75,7 +76,8 @@ pub(crate) fn halved<const N: usize>(points: [f64; N]) -> ([f64; N], [f64; N]) {
     cut(points, |left, right| 0.5 * (left + right))
 }
 
-/// The control points of the two parts of a curve: `between` says where between two values the cut lies (de Casteljau).
+/// The control points of the two parts of a curve. `between` gives the value at the cut between two
+/// values (de Casteljau).
 pub(crate) fn cut<const N: usize>(
     points: [f64; N],
     between: impl Fn(f64, f64) -> f64,
@@ -94,7 +96,7 @@ pub(crate) fn cut<const N: usize>(
     (before, after)
 }
 
-/// Pieces yet to be looked at: where halves are halved again, their other halves wait.
+/// Pieces that are still to be checked: while one half is halved again, the other half waits.
 struct Pieces {
     waiting: [Option<(Piece, u32)>; DEPTH as usize + 1],
     count: usize,
@@ -161,7 +163,7 @@ fn broken(
     }
 }
 
-/// What a piece may break, as far as its control points tell.
+/// The limit that a piece may break, as far as its control points show.
 fn first_broken(
     piece: &Piece,
     limits: &Limits,
@@ -171,7 +173,7 @@ fn first_broken(
     if let Some((min, max)) = range {
         let (least, most) = hull(&piece.position);
         let places = (least + piece.from, most + piece.from);
-        // A stretch that begins outside may come in, as a move may.
+        // A stretch that begins outside may come in, like a move.
         let bounds = (min.min(piece.from), max.max(piece.from));
         if let Some(found) = broken(ProfileCause::Position, places, bounds) {
             return Some(found);
@@ -184,7 +186,7 @@ fn first_broken(
         .or_else(|| broken(ProfileCause::Snap, hull(&piece.snap), both(limits.snap)))
 }
 
-/// Acceleration and deceleration: which of them holds in which direction is a matter of the velocity.
+/// Acceleration and deceleration: the sign of the velocity decides which applies in which direction.
 fn broken_rate(speeds: (f64, f64), rates: (f64, f64), limits: &Limits) -> Option<(ProfileCause, f64, f64)> {
     let (faster, slower) = (limits.acceleration, limits.deceleration);
     let (least, most) = speeds;
@@ -215,11 +217,11 @@ fn broken_rate(speeds: (f64, f64), rates: (f64, f64), limits: &Limits) -> Option
 
 /// Whether a stretch keeps `limits` and stays inside `range` (u, counted as its positions are).
 ///
-/// A curve is nearer to its control points the shorter it is, four times with each half; after [`DEPTH`] of them what
-/// they still leave open counts as broken. Bounded by [`PIECES`].
+/// A curve is nearer to its control points the shorter it is, four times with each half. What is
+/// undecided after [`DEPTH`] halvings counts as broken. Bounded by [`PIECES`].
 ///
 /// # Errors
-/// What it breaks, the value and the limit.
+/// The limit it breaks, the value and the limit.
 pub(super) fn check(
     curve: &Curve,
     limits: &Limits,
@@ -229,7 +231,7 @@ pub(super) fn check(
     if !Piece::of(curve).is_finite() {
         return Err((ProfileCause::Velocity, f64::INFINITY, limits.velocity));
     }
-    // Each piece that is not halved ends a branch, so there are at most one more than halvings.
+    // Each piece that is not halved ends a branch, so there is at most one more than halvings.
     for _ in 0..=2 * PIECES {
         let Some((piece, depth, further)) = pieces.next() else {
             break;
@@ -243,10 +245,10 @@ pub(super) fn check(
     Ok(())
 }
 
-/// Instants of a stretch at which a value that breaks a limit is looked for.
+/// Instants of a stretch that are searched for a value that breaks a limit.
 const LOOKS: u32 = 32;
 
-/// The value furthest out that `cause` speaks of, for whoever is to mend it; `found` if it is none of the curve.
+/// The value furthest out that `cause` refers to, for the message; `found` if the curve has none.
 #[cold]
 pub(super) fn peak(curve: &Curve, cause: ProfileCause, found: f64) -> f64 {
     let mut peak = found;
@@ -259,7 +261,7 @@ pub(super) fn peak(curve: &Curve, cause: ProfileCause, found: f64) -> f64 {
             ProfileCause::Snap => state.snap,
             _ => found,
         };
-        // On the same side, so that it is the same limit.
+        // On the same side, so that it breaks the same limit.
         if value / found > peak / found {
             peak = value;
         }
@@ -267,7 +269,7 @@ pub(super) fn peak(curve: &Curve, cause: ProfileCause, found: f64) -> f64 {
     peak
 }
 
-/// How far (u) a stretch moves up and how far down. Pieces in which it may turn count by their ends.
+/// The ways (u) of a stretch upwards and downwards. Pieces in which it may turn count by their ends.
 pub(super) fn ways(curve: &Curve) -> (f64, f64) {
     let mut pieces = Pieces::of(curve);
     let (mut up, mut down) = (0.0, 0.0);

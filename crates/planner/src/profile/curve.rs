@@ -3,11 +3,11 @@
 use super::Node;
 use crate::Setpoint;
 
-/// What a curve meets at an end: the first three derivatives.
+/// The first three derivatives of a curve at an end.
 pub(crate) type Slopes = [f64; 3];
 
-/// A stretch as its control points: a curve stays between the smallest and the largest of them, and so does each
-/// derivative between those of its own.
+/// A stretch as its control points. A curve stays between the smallest and the largest of them, and so
+/// does each derivative between its own.
 #[derive(Clone, Copy, Debug)]
 pub struct Curve {
     /// Duration (s).
@@ -70,7 +70,7 @@ impl Curve {
         Setpoint::of(state)
     }
 
-    /// What is left of it `time` (s) after its begin.
+    /// The rest of it `time` (s) after its begin.
     pub fn after(&self, time: f64) -> Self {
         let (after, [begin, ..]) = self.cut(time / self.time);
         Self {
@@ -118,7 +118,7 @@ impl Curve {
     }
 }
 
-/// Between each point and the next, at the share `share`; the last is of no meaning.
+/// Between each point and the next, at the share `share`; the last one is not used.
 fn lerped(row: [f64; 8], share: f64) -> [f64; 8] {
     let [a, b, c, d, e, f, g, h] = row;
     let lerp = |from: f64, to: f64| from + share * (to - from);

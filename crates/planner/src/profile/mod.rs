@@ -1,9 +1,10 @@
 //! Profiles: curves through points of position, velocity or acceleration over time.
 //!
-//! A profile is one plan of fixed size. Its nodes carry time, position and three derivatives; between two nodes it is the
-//! polynomial of degree 7 that meets both, so position, velocity, acceleration and jerk are continuous everywhere, from
-//! the state it starts in to its end. What the points leave open is estimated from their neighbours (`nodes`), then
-//! the whole curve is checked against the limits before anything moves (`check`). docs/profiles.md tells it for users.
+//! A profile is one plan of fixed size. Its nodes have time, position and three derivatives; between two
+//! nodes it is the polynomial of degree 7 that meets both. So position, velocity, acceleration and jerk
+//! are continuous everywhere, from the start state to the end. Values that the points leave open are
+//! estimated from their neighbours (`nodes`). Then the whole curve is checked against the limits before
+//! anything moves (`check`). docs/profiles.md describes it for users.
 
 pub(crate) mod check;
 pub(crate) mod curve;
@@ -19,7 +20,7 @@ pub const PROFILE_POINTS: usize = 40;
 /// The start, the points, and one where an acceleration has faded out; fewer points leave room for more of those.
 const NODES: usize = PROFILE_POINTS + 2;
 
-/// How far, relative to itself, a first value at no time may be from the start.
+/// The largest difference, relative to itself, of a first value at time 0 from the start.
 const SAME: f64 = 1e-9;
 
 /// What a profile prescribes.
@@ -40,11 +41,12 @@ pub struct ProfilePoint {
     pub time: f64,
     /// Value there: u, u/s or u/s^2.
     pub value: f64,
-    /// The curve is level there: all derivatives of the value are 0, and no side knows the other.
+    /// The curve is level there: all derivatives of the value are 0, and the curve on one side does not
+    /// depend on the points of the other.
     pub level: bool,
 }
 
-/// What of a profile is no good.
+/// The faults of a profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProfileCause {
     /// There is no point, none after the start, or more than [`PROFILE_POINTS`].
@@ -71,16 +73,17 @@ pub enum ProfileCause {
     Snap,
 }
 
-/// Why a profile was refused.
+/// The reason why a profile was refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfileFault {
     /// What it is.
     pub cause: ProfileCause,
-    /// The point at or before which it is, from 1; behind the last one in what fades out.
+    /// The point at or before which the fault is, from 1; one more than the last point if it is in the
+    /// fade-out.
     pub point: usize,
     /// The value there, in the unit of the cause.
     pub value: f64,
-    /// What it may be at most, or should be; NaN if there is nothing to name.
+    /// The largest or the right value; NaN if there is none to name.
     pub limit: f64,
 }
 
@@ -107,8 +110,8 @@ pub struct ProfilePlan {
     count: u8,
 }
 
-/// The state to start from: where nothing bounds the snap, or nothing bounds the jerk either, what may jump need not go
-/// on as it was.
+/// The start state. If snap is unbounded, or jerk is unbounded too, the derivatives that may jump are set
+/// free.
 fn free_to_jump(kind: ProfileKind, start: &Setpoint, points: &[ProfilePoint], limits: &Limits) -> Setpoint {
     let mut free = *start;
     if limits.snap == f64::INFINITY {
@@ -125,14 +128,15 @@ fn free_to_jump(kind: ProfileKind, start: &Setpoint, points: &[ProfilePoint], li
 }
 
 impl ProfilePlan {
-    /// The profile through `points` from `start`, within `limits` and, where given, a range of positions (u).
+    /// The profile through `points` from `start`, within `limits` and, if given, a range of positions
+    /// (u).
     ///
-    /// It starts in the state it finds, whatever that is: the first point is one after some time. A first point at no
-    /// time only says what the start should be. Where one curve to the first point would exceed a limit, jerk and
-    /// acceleration of the start fade out before it. Acceleration and deceleration hold by whether the speed grows or
-    /// falls. Limits hold to 1e-9 of each, and to what positions resolve: the snap on a stretch of way w in the time T is off by
-    /// up to 13,440 epsilon w / T^4, the jerk by 1,680 epsilon w / T^3. A curve that comes closer to a limit than a millionth
-    /// may be refused.
+    /// It starts in the given state: the first point comes after some time. A first point at time 0 only
+    /// says what the start should be. If one curve to the first point would exceed a limit, jerk and
+    /// acceleration of the start fade out before it. Acceleration applies while the speed grows,
+    /// deceleration while it falls. Limits are kept to 1e-9 of each, and to the resolution of positions:
+    /// the snap on a stretch of way w in the time T is off by up to 13,440 epsilon w / T^4, the jerk by
+    /// 1,680 epsilon w / T^3. A curve that comes closer to a limit than a millionth may be refused.
     ///
     /// Cost: for each point some 100 operations, and for each of at most 129 pieces of the way to it 150; twice that for a
     /// start with an acceleration.
@@ -150,7 +154,7 @@ impl ProfilePlan {
         let start = free_to_jump(kind, start, points, limits);
         let through = |join| Self::through(kind, &start, points, (limits, range), cycle, join);
         match through(false) {
-            // One curve over a long time swings far out to lose an acceleration that the axis has at the start.
+            // One curve over a long time swings far out to remove an acceleration of the start.
             Err(fault) if start.acceleration != 0.0 || start.jerk != 0.0 => through(true).map_err(|_| fault),
             planned => planned,
         }
@@ -218,7 +222,7 @@ impl ProfilePlan {
         pairs.map(|(from, to)| Curve::between(from, to))
     }
 
-    /// Where the curve is pieced together: the time since the start (s), and the state there.
+    /// The nodes of the curve: the time since the start (s), and the state there.
     pub fn nodes(&self) -> impl Iterator<Item = (f64, Setpoint)> + '_ {
         let nodes = self.nodes.get(..usize::from(self.count)).unwrap_or_default();
         nodes.iter().map(|node| {
@@ -287,8 +291,8 @@ impl ProfilePlan {
         self.target += by;
     }
 
-    /// The motion with the end velocity alone, as a plan of its own with the same count of scans; none before
-    /// `scan` is at its end, or if it ends at rest.
+    /// The motion with the end velocity alone, as a plan of its own with the same count of scans; none if
+    /// `scan` is before its end, or if it ends at rest.
     pub(crate) fn cruise(&self, scan: u64) -> Option<RampPlan> {
         let end = self.end();
         if scan < u64::from(self.scans) || end.velocity == 0.0 {
@@ -315,7 +319,8 @@ impl ProfilePlan {
             })
     }
 
-    /// How far (u) the rest moves up and how far down, up to its goal; bounded by 64 pieces for each stretch.
+    /// The ways (u) of the rest upwards and downwards, up to its goal; bounded by 64 pieces for each
+    /// stretch.
     pub(crate) fn ways(&self, elapsed: u64) -> (f64, f64) {
         self.rest(elapsed).fold((0.0, 0.0), |(up, down), curve| {
             let (further_up, further_down) = check::ways(&curve);
@@ -323,8 +328,8 @@ impl ProfilePlan {
         })
     }
 
-    /// Whether the rest keeps `limits` and stays inside `range` (u), as [`ProfilePlan::new`] asks it of the whole; bounded
-    /// by 64 pieces for each stretch.
+    /// Whether the rest keeps `limits` and stays inside `range` (u), by the check of
+    /// [`ProfilePlan::new`]; bounded by 64 pieces for each stretch.
     pub(crate) fn keeps(&self, elapsed: u64, limits: &Limits, range: Option<(f64, f64)>) -> bool {
         let range = range.map(|(min, max)| (min - self.origin, max - self.origin));
         self.rest(elapsed)

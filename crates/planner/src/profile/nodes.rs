@@ -1,8 +1,8 @@
-//! From points to nodes: the derivatives that the points leave open, and what follows from them by integration.
+//! From points to nodes: estimates the derivatives that the points leave open, and integrates.
 //!
-//! Derivatives at a point are those of the polynomial through it and two neighbours on each side. The start, points
-//! where the curve is level, and the end count as many times as derivatives are known there (confluent divided
-//! differences), and no side of them knows the other.
+//! Derivatives at a point are those of the polynomial through it and two neighbours on each side. The
+//! start, points where the curve is level, and the end count as many times as derivatives are known there
+//! (confluent divided differences), and the curve on one side does not depend on the other.
 
 use super::{NODES, Node, PROFILE_POINTS, ProfileCause, ProfileFault, ProfileKind, ProfilePoint, SAME};
 use crate::math::sqrt;
@@ -11,14 +11,14 @@ use crate::{Limits, Setpoint};
 /// Neighbours and the point itself.
 pub(crate) const STENCIL: usize = 5;
 
-/// An acceleration fades out this much slower than it may: what rounding takes of that is far less.
+/// An acceleration fades out slower than it may by this factor; rounding takes far less.
 const MARGIN: f64 = 1.0 + 1e-6;
 
-/// Scans a stretch has to last: a shorter one is no time, in which anything could change, and not a number of which the
-/// fourth power still is one.
+/// The least length of a stretch in scans. In a shorter one nothing could change, and the fourth power of
+/// its time would be lost.
 const SHORTEST: f64 = 1e-9;
 
-/// A value with its derivatives, all of them known or, between anchors, yet to be estimated.
+/// A value with its derivatives: all of them known, or, between anchors, still to be estimated.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Knot {
     pub time: f64,
@@ -47,7 +47,8 @@ impl ProfileKind {
     }
 }
 
-/// Fills in the nodes; with `join` the start loses its jerk and acceleration first, if it can. Returns how many there are, and how many of them come before the first that is a point.
+/// Fills in the nodes; with `join` the start first loses its jerk and acceleration, if it can. Returns
+/// the number of nodes, and how many of them come before the first one that is a point.
 pub(super) fn fill(
     nodes: &mut [Node; NODES],
     kind: ProfileKind,
@@ -109,10 +110,10 @@ pub(super) fn fill(
     Ok((count, 1 + joined.map_or(0, |(_, nodes_used)| nodes_used)))
 }
 
-/// Where the jerk and then the acceleration of `begin` have faded out, if that leaves at least as much time again up to the
-/// first point, at `first` (s), and there is room for it.
+/// The nodes where the jerk and then the acceleration of `begin` have faded out. This needs as much time
+/// again up to the first point, at `first` (s), and room for the nodes.
 ///
-/// The jerk goes with the whole snap, the acceleration then as at the end of a profile of accelerations.
+/// The jerk fades with the whole snap, the acceleration then as at the end of a profile of accelerations.
 fn joined(
     begin: &Node,
     kind: ProfileKind,
@@ -143,7 +144,7 @@ fn joined(
     lies_ahead.then_some(([without_jerk, without_either], 2))
 }
 
-/// Where the curve begins, and the points after it, each more than `shortest` (s) after the one before.
+/// The begin of the curve, and the points after it, each more than `shortest` (s) after the one before.
 fn knots_of(
     knots: &mut [Knot; NODES],
     kind: ProfileKind,
@@ -214,7 +215,7 @@ fn estimated(knots: &[Knot; NODES], count: usize, index: usize, kind: ProfileKin
     if knot.anchor || index + 1 >= count {
         return knot;
     }
-    // Two neighbours before and two behind; an anchor stands for all that is beyond it.
+    // Two neighbours before and two behind; an anchor replaces all that is beyond it.
     let neighbour = |mut place: usize, step: isize| {
         let mut found = [knot; 2];
         for slot in &mut found {
@@ -249,7 +250,7 @@ pub(crate) fn taylor(knots: [Knot; STENCIL], time: f64) -> [f64; 4] {
         let values = table.iter().zip(table.iter().skip(1));
         for ((slot, (from, to)), (left, right)) in next.iter_mut().zip(spans).zip(values) {
             *slot = if from.time == to.time {
-                // A span of no time is between an anchor and itself, twice at most.
+                // A span of time 0 is between an anchor and itself, twice at most.
                 from.value.get(1).copied().unwrap_or_default()
             } else {
                 (right - left) / (to.time - from.time)
@@ -272,7 +273,7 @@ pub(crate) fn taylor(knots: [Knot; STENCIL], time: f64) -> [f64; 4] {
     series
 }
 
-/// The node at `knot`, which a stretch from `before` ends at.
+/// The node at `knot`, at which a stretch from `before` ends.
 fn after(before: &Node, knot: &Knot, kind: ProfileKind) -> Node {
     let time = knot.time - before.time;
     let [value, first, second, third] = knot.value;
@@ -314,8 +315,9 @@ fn after(before: &Node, knot: &Knot, kind: ProfileKind) -> Node {
     }
 }
 
-/// Where the acceleration of `end` has faded to 0, no sooner than jerk and snap allow: on the way, a polynomial of
-/// degree 3, they are at most 3 a / 2 T and 6 a / T^2, and not within a scan. Without bounds on both it is gone at once.
+/// The node where the acceleration of `end` has faded to 0, no sooner than jerk and snap allow. On the
+/// way, a polynomial of degree 3, they are at most 3 a / 2 T and 6 a / T^2, and it takes more than a
+/// scan. Without bounds on both it is 0 at once.
 fn faded(end: &Node, limits: &Limits, cycle: f64) -> Node {
     let size = end.acceleration.abs();
     let by_jerk = 1.5 * size / limits.jerk;

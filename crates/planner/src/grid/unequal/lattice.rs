@@ -5,13 +5,14 @@ use super::super::problem::{ratios, threshold};
 use crate::math::{self, max, sqrt};
 use crate::{Limits, Order};
 
-/// Most rows (values of n1) the ramps of one search may visit together before it settles for the best found.
+/// Most rows (values of n1) that the ramps of one search may visit together before it returns the best
+/// found.
 pub const MAX_RAMP_ROWS: u32 = 8192;
 
 /// Share by which a real bound is lowered, so that rounding can only add candidates, never lose one.
 pub(super) const LESS_MARGIN: f64 = 1.0 - 1e-12;
 
-/// Box lengths n1, n2, n3 of a ramp in scans; those an order does without are 0.
+/// Box lengths n1, n2, n3 of a ramp in scans; missing boxes are 0.
 pub(super) type Ramp = [f64; 3];
 
 /// The scans of a ramp.
@@ -19,7 +20,8 @@ pub(super) fn sum([n1, n2, n3]: Ramp) -> f64 {
     n1 + n2 + n3
 }
 
-/// The thresholds of a move whose rates differ (docs/planner.md, eq. 29): whole numbers, held as `f64`.
+/// The thresholds of a move with two different rates (docs/planner.md, eq. 29): whole numbers, stored as
+/// `f64`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Thresholds {
     pub order: Order,
@@ -35,7 +37,7 @@ pub(super) struct Thresholds {
     k1: f64,
 }
 
-/// A value of n1 with what follows from it: the real n2 that makes the shortest ramp, and the sum of that.
+/// A value of n1 with its results: the real n2 of the shortest ramp, and its sum.
 #[derive(Clone, Copy)]
 struct Row {
     n1: f64,
@@ -170,7 +172,7 @@ impl Slice<'_> {
         let n2 = math::ceil(row.n2);
         let mut best = [n1, n2, self.least_n3(n1, n2)];
         for n2 in [n2 - 1.0, n2 + 1.0] {
-            // Not even with the least n3 the family allows: most often so.
+            // Not even with the least n3 that the family allows; this is the usual case.
             if n2 >= max(n1, 1.0) && n1 + n2 + (n1 + n2) < sum(best) {
                 let other = [n1, n2, self.least_n3(n1, n2)];
                 if sum(other) < sum(best) {

@@ -22,7 +22,7 @@ use search::Found;
 struct Half {
     /// The m - 1 box lengths, shortest first, then zeros.
     boxes: [u32; 3],
-    /// What its whole-number derivatives 0 to m are multiplied by (docs/planner.md, eq. 36).
+    /// The factors of its whole-number derivatives 0 to m (docs/planner.md, eq. 36).
     scale: [f64; 5],
     /// Whether the position sums need more than 64 bits.
     wide: bool,
@@ -30,9 +30,9 @@ struct Half {
 
 /// A rest-to-rest plan that speeds up with one rate and slows down with another: a plain value.
 ///
-/// Two ramps of up to three boxes each, and a cruise between them that may be shorter than nothing. As with
-/// [`GridPlan`](super::GridPlan) every output is computed from the scan count alone, and the last set-point is the target to
-/// the bit.
+/// It has two ramps of up to three boxes each, and a cruise between them, which may have a negative
+/// length. As for [`GridPlan`](super::GridPlan), every output is computed from the scan count alone, and
+/// the last set-point is the target to the bit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnequalPlan {
     start: f64,
@@ -58,9 +58,9 @@ impl UnequalPlan {
         self.target += by;
     }
 
-    /// Plans from rest at `start` to rest at `target` (u) with sample time `cycle` (s): the fewest scans in
-    /// `family`, where the speed grows with `limits.acceleration` at most and falls with
-    /// `limits.deceleration` at most. Never longer than [`GridPlan`](super::GridPlan) with the lower one of both.
+    /// Plans from rest at `start` to rest at `target` (u) with sample time `cycle` (s): the fewest scans
+    /// in `family`. The speed grows by at most `limits.acceleration` and falls by at most
+    /// `limits.deceleration`. Never longer than [`GridPlan`](super::GridPlan) with the lower one of both.
     ///
     /// Cost: see [`UnequalPlan::new_counted`].
     ///
@@ -111,7 +111,7 @@ impl UnequalPlan {
             return Ok((plan, UnequalWork::default()));
         }
         let length = distance.abs();
-        // What is too long here is so with any rates (docs/planner.md, eq. 8).
+        // A move that is too long here is too long with any rates (docs/planner.md, eq. 8).
         let one_rate = Problem::new(length, limits, cycle)?;
         let (mut found, work) = search::fewest(&Thresholds::new(length, limits, cycle), family);
         if work.capped {

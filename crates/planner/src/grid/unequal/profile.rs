@@ -70,7 +70,7 @@ impl UnequalPlan {
         }
     }
 
-    /// What the overlap of the ramps cuts off the velocity between them (u/s) (docs/planner.md, eq. 38).
+    /// The velocity that the overlap of the ramps cuts off between them (u/s) (docs/planner.md, eq. 38).
     fn cut_off(&self) -> f64 {
         let overlap = (self.up.scans() - self.begin_of_down()) as f64;
         if overlap <= 0.0 {
@@ -152,7 +152,7 @@ impl UnequalPlan {
         for (slot, instant) in instants.iter_mut().zip(up.chain(down)) {
             *slot = instant;
         }
-        // Only the end of the ramp up and the begin of the ramp down can be the other way round.
+        // Only the end of the ramp up and the begin of the ramp down can be in the other order.
         if let Some([end_of_up, begin_of_down]) = instants.get_mut(each.max(1) - 1..=each)
             && end_of_up > begin_of_down
         {

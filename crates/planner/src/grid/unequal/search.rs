@@ -6,7 +6,7 @@ use super::lattice::{LESS_MARGIN, MAX_RAMP_ROWS, Ramp, Thresholds, sum};
 use crate::Order;
 use crate::math::{ceil, floor, max, min, sqrt};
 
-/// Steps of the estimate the search starts from: four digits are enough.
+/// Steps of the first estimate: four digits are enough.
 const ESTIMATE_STEPS: u32 = 6;
 
 /// How much work a search took.
@@ -14,7 +14,7 @@ const ESTIMATE_STEPS: u32 = 6;
 pub struct UnequalWork {
     /// Scan counts tried.
     pub counts: u32,
-    /// Times both ramps were solved.
+    /// Number of times both ramps were solved.
     pub solves: u32,
     /// Values of n1 looked at, over all ramps.
     pub rows: u32,
@@ -37,7 +37,7 @@ impl Found {
     }
 }
 
-/// One search: what is asked, and the work so far.
+/// One search: its problem, and the work so far.
 struct Search<'a> {
     thresholds: &'a Thresholds,
     overlap: bool,
@@ -58,20 +58,22 @@ pub(super) fn fewest(thresholds: &Thresholds, family: Family) -> (Option<Found>,
 }
 
 impl Search<'_> {
-    /// Whatever fits into N scans fits into N + 1, so the least N is between a count that is too short and one
-    /// that is not: gallops from an estimate, then halves the gap. At most 2 * 31 counts.
+    /// Ramps that fit into N scans also fit into N + 1, so the least N is between a count that is too
+    /// short and one that is not. The search gallops from an estimate, then halves the gap. At most 2 *
+    /// 31 counts.
     fn run(&mut self) -> Option<Found> {
         let estimate = min(self.estimate()?, LONGEST as f64);
         let mut best = self.fits(estimate, 0.0);
         if best.is_none() && self.work.capped {
-            // Near the least count of a long move the sum is raised scan by scan; with some more it is there at once.
+            // Near the least count of a long move the sum is raised scan by scan; a start with some more
+            // scans is there at once.
             self.work.rows = 0;
             let roomy = estimate + ceil(2.0 * sqrt(estimate));
             best = self.fits(min(roomy, LONGEST as f64), 0.0);
         }
         let mut short = if best.is_some() { 0.0 } else { estimate };
         let mut step = 1.0;
-        // Down while it fits, with longer and longer steps; or up until it does.
+        // Downwards while it fits, in growing steps; or upwards until it fits.
         while best.is_none_or(|best| best.scans - step > short) {
             match best {
                 Some(known) => match self.fits(known.scans - step, known.ramps()) {
@@ -105,8 +107,8 @@ impl Search<'_> {
         Some(best)
     }
 
-    /// About how many scans it takes: where velocity decides, or where M and the ramps meet, less what they
-    /// may overlap.
+    /// An estimate of the scans: either velocity decides, or M and the ramps meet, less their possible
+    /// overlap.
     fn estimate(&mut self) -> Option<f64> {
         let mut m = self.thresholds.k4;
         let mut scans = m;
@@ -128,13 +130,14 @@ impl Search<'_> {
         Some(scans)
     }
 
-    /// Whether some ramps fit into `scans`: those of the least sum, which is at least `least_sum`.
+    /// Whether some ramps fit into `scans`: the ramps of the least sum, which is at least `least_sum`.
     ///
-    /// The more scans the ramps take, the higher is the velocity between them and the more they must take; so
-    /// the sum can be raised step by step to the least that is enough (docs/planner.md, eq. 34).
+    /// The more scans the ramps take, the higher is the velocity between them, and the more scans they
+    /// need. So the sum can be raised step by step to the least that is enough (docs/planner.md, eq. 34).
     fn fits(&mut self, scans: f64, least_sum: f64) -> Option<Found> {
         self.work.counts += 1;
-        // Where the sum starts that is raised: the least one for which n3 alone would do (docs/planner.md, after eq. 34).
+        // The start of the sum that is raised: the least one for which n3 alone would be enough
+        // (docs/planner.md, after eq. 34).
         let both = self.thresholds.up + self.thresholds.down;
         let square = scans * scans - both * LESS_MARGIN;
         if square < 0.0 {
@@ -153,7 +156,7 @@ impl Search<'_> {
             known = Some(found);
             let needed = found.ramps();
             if needed <= ramps {
-                // What is left over goes to the longer one, where the acceleration is the lower.
+                // The remaining scans go to the longer ramp, whose acceleration is lower.
                 let [up, down] = [&mut found.up, &mut found.down];
                 let [.., n3] = if sum(*up) >= sum(*down) { up } else { down };
                 *n3 += ramps - needed;
@@ -163,8 +166,8 @@ impl Search<'_> {
         }
     }
 
-    /// The shortest ramps at `m` that may overlap by `overlap` scans; none at the cap. `known` are those of a
-    /// larger `m` or a smaller overlap: what still holds of them is still the shortest.
+    /// The shortest ramps at `m` that may overlap by `overlap` scans; none at the cap. `known` are those
+    /// of a larger `m` or a smaller overlap: if one is still valid it is still the shortest.
     fn solve(&mut self, m: f64, overlap: f64, known: Option<Found>) -> Option<Found> {
         self.work.solves += 1;
         let (up, down) = (self.thresholds.up, self.thresholds.down);
