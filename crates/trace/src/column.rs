@@ -3,7 +3,7 @@
 use crate::header::Direction;
 use crate::number;
 
-/// What the cells of a column are.
+/// The type of the cells of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// TRUE or FALSE.
@@ -17,8 +17,8 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The kind of an IEC type. Types that are neither elementary numbers nor BOOL (enums, `AXIS_REF`,
-    /// structures) are told by name.
+    /// The kind of an IEC type. Types other than elementary numbers and BOOL (enums, `AXIS_REF`,
+    /// structures) are shown by name.
     #[must_use]
     pub fn of_iec_type(iec_type: &str) -> Self {
         match iec_type {
@@ -31,7 +31,7 @@ impl Kind {
     }
 }
 
-/// What a column tells of.
+/// What a column describes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// The state of an axis.
@@ -49,7 +49,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// The role of a pin that points this way.
+    /// The role of a pin with this direction.
     #[must_use]
     pub const fn of_direction(direction: Direction) -> Self {
         match direction {
@@ -69,13 +69,13 @@ pub struct Column {
     pub kind: Kind,
     /// What it tells of.
     pub role: Role,
-    /// It is a TIME (ns), which may tick in every scan.
+    /// Whether it is a TIME (ns), which may change in every scan.
     pub is_time: bool,
-    /// The text of the value it has by itself, where that is known: of an input or output pin. Unless it is
-    /// [named](Self::named) events tell it only once it has another one, and a column that has it in all rows is no part of a
-    /// golden.
+    /// The text of its default value, if known: for an input or output pin. Unless the column is
+    /// [named](Self::named), events show it only once it has another value, and a golden leaves it out if
+    /// it has the default in all rows.
     pub default: Option<String>,
-    /// It is an input pin that the script names: with a constant, a wire or a step. Then every row counts.
+    /// Whether the script names this input pin: with a constant, a wire or a step. Then every row counts.
     pub named: bool,
 }
 
@@ -86,12 +86,12 @@ impl Column {
         self.name.split_once('.').map_or("", |(subject, _)| subject)
     }
 
-    /// The value of [`Column::default`]; none either if its text is no value of the column's kind.
+    /// The value of [`Column::default`]; also none if its text is not a value of the column's kind.
     pub(crate) fn default_cell(&self) -> Option<Cell<'_>> {
         Cell::read(self.kind, self.default.as_deref()?)
     }
 
-    /// As [`Column::default_cell`], where the default goes without saying.
+    /// As [`Column::default_cell`], if the default is not shown.
     pub(crate) fn unsaid(&self) -> Option<Cell<'_>> {
         self.default_cell().filter(|_| !self.named)
     }
@@ -146,7 +146,7 @@ impl<'a> Cell<'a> {
     }
 }
 
-/// The bits under which a trace holds a number: without the sign of zero and the payload of NaN.
+/// The bits with which a trace stores a number: without the sign of zero and the payload of NaN.
 pub(crate) const fn canonical_bits(value: f64) -> u64 {
     if value.is_nan() {
         0x7ff8_0000_0000_0000

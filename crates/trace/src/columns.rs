@@ -7,8 +7,8 @@ use crate::subjects::counted;
 use crate::trace::Trace;
 
 impl Trace {
-    /// The same run with the columns at these places only, in this order; what is outside is skipped. All of them count
-    /// from then on, whatever they hold.
+    /// The same run with only the columns at these places, in this order; places outside are skipped. All
+    /// of them count from then on, whatever their values are.
     pub(crate) fn only(&self, places: &[usize]) -> Self {
         let kept = places.iter().filter_map(|&at| self.columns().get(at).cloned());
         let kept = kept.map(|column| Column {
@@ -29,14 +29,14 @@ impl Trace {
         only
     }
 
-    /// The columns that count: what a golden keeps of a run.
+    /// The run with only the columns that count: the part that a golden keeps.
     pub(crate) fn only_counted(&self) -> Self {
         self.only(&counted(self))
     }
 
-    /// This run of which only the columns that counted were kept, with those that `run` has besides, at their defaults,
-    /// and with what `run` says of defaults. Columns of subjects that it does not have stay away, unless they count in
-    /// neither.
+    /// The inverse for a run stored with only its counting columns: adds the columns that `run` has
+    /// besides, at their defaults, and the defaults that `run` gives. Columns of subjects that it does
+    /// not have are not added, unless they count in neither.
     pub(crate) fn completed_as(self, run: &Self) -> Self {
         let own = self.columns().iter().map(|column| {
             let other = run.column(&column.name).and_then(|at| run.columns().get(at));
@@ -68,7 +68,8 @@ impl Trace {
         whole.reserve(self.scans());
         for scan in 0..self.scans() {
             let defaults = added.iter().filter_map(|column| column.default_cell());
-            // Each cell is of its column: its own, or a default that was read as one of that kind.
+            // Each cell belongs to its column: it is its own, or a default that was read as a value of
+            // that kind.
             let _taken = whole.push_cells(self.row(scan).chain(defaults));
         }
         for note in self.notes() {

@@ -9,17 +9,17 @@ use crate::exact::ordered;
 use crate::number::{cell_text, time_literal};
 use crate::trace::Trace;
 
-/// Signals that the text of a difference names at most.
+/// Most signals that the text of a difference names.
 const SIGNALS_SHOWN: usize = 20;
 
-/// More representable numbers than this between two values are told by the values.
+/// If more representable numbers than this lie between two values, the text shows the values instead.
 const ULPS_TOLD: u64 = 1_000_000;
 
 /// Events shown before the first difference, and after it on either side.
 const EVENTS_SHOWN: usize = 4;
 
-/// How far a real number may be from the expected one and still pass: by `absolute` plus `relative` times the magnitude
-/// of the expected one.
+/// The largest difference of a real number from the expected one: `absolute` plus `relative` times the
+/// magnitude of the expected one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// In the unit of the signal; finite and not negative.
@@ -29,8 +29,8 @@ pub struct Tolerance {
 }
 
 impl Default for Tolerance {
-    /// 1e-6 and 1e-9: what no machine notices where the unit is the millimetre or the degree. Reordered arithmetic
-    /// stays far below, another plan does not.
+    /// 1e-6 and 1e-9: no machine notices this if the unit is the millimetre or the degree. Reordered
+    /// arithmetic stays far below, another plan does not.
     fn default() -> Self {
         Self {
             absolute: 1e-6,
@@ -40,7 +40,7 @@ impl Default for Tolerance {
 }
 
 impl Tolerance {
-    /// How far from `expected` a value may be.
+    /// The largest difference of a value from `expected`.
     #[must_use]
     pub fn allowed(self, expected: f64) -> f64 {
         self.absolute + self.relative * expected.abs()
@@ -57,14 +57,15 @@ impl Tolerance {
     }
 }
 
-/// How exactly a trace must be as another one.
+/// How exactly a trace must agree with another one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Yardstick {
     /// To the bit, and with the same columns.
     #[default]
     Exact,
-    /// Booleans, states, names and whole numbers in every scan, hence all events; real numbers within a tolerance.
-    /// Columns that only the actual trace has, as a later version may, do not count.
+    /// Booleans, states, names and whole numbers must agree in every scan, and so all events; real
+    /// numbers within a tolerance. Columns that only the actual trace has, for example from a later
+    /// version, do not count.
     Events(Tolerance),
 }
 
@@ -79,7 +80,7 @@ pub struct Difference {
     pub only_expected: Vec<String>,
     /// Columns that only the actual trace has.
     pub only_actual: Vec<String>,
-    /// The first scan in which a column of both differs; `None` if the rows that both have are equal.
+    /// The first scan in which a column of both differs; `None` if the common rows are equal.
     pub first: Option<ScanDifference>,
 }
 
@@ -90,7 +91,7 @@ pub struct ScanDifference {
     pub scan: usize,
     /// Its time (ns) by the cycle of the actual trace.
     pub time_ns: u64,
-    /// What differs in it, in the column order of the expected trace; never empty.
+    /// The signals that differ in it, in the column order of the expected trace; never empty.
     pub signals: Vec<SignalDifference>,
     /// The last few events before it, which both traces have.
     pub before: Vec<Event>,
@@ -109,9 +110,9 @@ pub struct SignalDifference {
     pub expected: String,
     /// What was found.
     pub actual: String,
-    /// How many representable numbers lie between the two, for finite numbers.
+    /// The number of representable numbers between the two, if both are finite.
     pub ulps: Option<u64>,
-    /// How far apart they were allowed to be, where a tolerance was given and both are finite numbers.
+    /// The permitted difference, if a tolerance was given and both are finite numbers.
     pub allowed: Option<f64>,
 }
 
@@ -153,16 +154,16 @@ pub(crate) fn pairs(expected: &Trace, actual: &Trace) -> Vec<(usize, usize)> {
         .collect()
 }
 
-/// How far a trace is from one that it passes for.
+/// How close a trace is to one that it agrees with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Closeness {
-    /// So many values are not equal to the bit.
+    /// The number of values that are not equal to the bit.
     pub values: usize,
-    /// The signal that is furthest from what was expected, measured by what it may be.
+    /// The signal with the largest difference, relative to its tolerance.
     pub signal: String,
-    /// The scan in which it is.
+    /// The scan of that difference.
     pub scan: usize,
-    /// How far (unit of the signal).
+    /// The difference (unit of the signal).
     pub apart: f64,
 }
 
@@ -182,7 +183,7 @@ impl fmt::Display for Closeness {
     }
 }
 
-/// How far the real numbers of a trace are from the expected ones; `None` if none differs.
+/// The differences of the real numbers of a trace from the expected ones; `None` if there are none.
 #[must_use]
 pub fn closeness(expected: &Trace, actual: &Trace, tolerance: Tolerance) -> Option<Closeness> {
     let mut values = 0;
@@ -238,7 +239,7 @@ fn first_difference(
         .collect();
     let from_here = |trace| {
         let events = row_events(trace).into_iter();
-        // A block that only one trace has would hide what became of the others.
+        // The events of a block that only one trace has would hide those of the others.
         let events =
             events.filter(|event| event.subject == VARIABLES || shared.contains(event.subject.as_str()));
         events
@@ -300,7 +301,7 @@ fn differs(
     })
 }
 
-/// A trace read without its header may hold a column under another kind: then the meaning counts.
+/// A trace read without its header may store a column under another kind: then the meaning counts.
 pub(crate) fn equal(a: Cell<'_>, b: Cell<'_>) -> bool {
     match (a, b) {
         (Cell::Integer(whole), Cell::Real(real)) | (Cell::Real(real), Cell::Integer(whole)) => {

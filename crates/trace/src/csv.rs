@@ -1,7 +1,7 @@
 //! Traces as comma-separated values (or in another [`Dialect`]): a line of column names, then one line a scan.
 //!
-//! Written by hand rather than with a library: names and numbers need no quotes, so what is left is a
-//! split at delimiters that can tell the character position of a bad cell.
+//! Written by hand and without a library: names and numbers need no quotes, so only a split at delimiters
+//! is left, which can report the character position of a bad cell.
 
 use std::borrow::Cow;
 use std::io::{self, Write};
@@ -13,17 +13,17 @@ use crate::number::{self, cell_text};
 use crate::read::{Field, Line, Loaded, ReadError, assemble};
 use crate::trace::Trace;
 
-/// How cells are told apart and numbers are written. The format itself has commas and decimal points; other
-/// programs want others.
+/// How cells are separated and numbers are written. The format itself uses commas and decimal points;
+/// other programs need others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dialect {
-    /// What stands between cells, one of [`DELIMITERS`].
+    /// The separator of cells, one of [`DELIMITERS`].
     pub delimiter: char,
     /// Numbers have a decimal comma.
     pub decimal_comma: bool,
 }
 
-/// What may stand between cells.
+/// The separators that cells may have.
 pub const DELIMITERS: [char; 4] = [',', ';', '\t', '|'];
 
 impl Default for Dialect {
@@ -35,7 +35,8 @@ impl Default for Dialect {
     }
 }
 
-/// Writes the rows. The header belongs into the file of [`meta_path`], as [`Trace::header_json`] gives it.
+/// Writes the rows. The header belongs in the file of [`meta_path`], in the form of
+/// [`Trace::header_json`].
 ///
 /// # Errors
 /// Those of `out`.
@@ -92,13 +93,13 @@ pub fn meta_path(csv: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
-/// Reads a trace, with the text of its meta file if there is one. A byte order mark, CRLF and other delimiters are
-/// taken; where commas do not delimit, numbers may have decimal commas.
-/// Without a header the kinds of columns are told from their texts.
+/// Reads a trace, with the text of its meta file if there is one. A byte order mark, CRLF and other
+/// delimiters are accepted. If the delimiter is not the comma, numbers may have decimal commas. Without a
+/// header the kinds of columns are found from their texts.
 ///
 /// # Errors
-/// Text that is no trace, is cut short, or does not agree with the header; with the line, and the column
-/// where one can be named. Errors in the meta file are told apart by their message.
+/// Text that is no trace, is cut short, or does not agree with the header. The error has the line, and
+/// the column if one can be named. Errors in the meta file have messages of their own.
 pub fn read(text: &str, meta: Option<&str>) -> Result<Loaded, ReadError> {
     let header = meta
         .map(Header::with_notes)
@@ -120,7 +121,7 @@ pub fn read(text: &str, meta: Option<&str>) -> Result<Loaded, ReadError> {
         .map(|field| field.text.into_owned())
         .collect();
     if !rows.is_empty() && !rows.ends_with('\n') {
-        // The last number may have lost digits, and no other check would see it.
+        // The last number may have lost digits, and no other check would notice.
         let last = text.lines().count();
         return Err(ReadError::at(
             last,
@@ -146,7 +147,7 @@ pub fn read(text: &str, meta: Option<&str>) -> Result<Loaded, ReadError> {
     })
 }
 
-/// A number with a decimal comma becomes one with a point; every other text stays.
+/// Changes the decimal comma of a number to a point; any other text is not changed.
 fn take_decimal_comma(field: &mut Field<'_>) {
     let is_number = |text: &str| number::parse(text).is_some();
     if field.text.contains(',') && !field.text.contains('.') {
@@ -157,7 +158,8 @@ fn take_decimal_comma(field: &mut Field<'_>) {
     }
 }
 
-/// A cell that holds a delimiter or a quote stands in quotes, its quotes doubled. No cell holds a line break.
+/// A cell with a delimiter or a quote is put in quotes, and its quotes are doubled. No cell has a line
+/// break.
 fn quoted(text: &str, delimiter: char) -> Cow<'_, str> {
     if text.contains([delimiter, '"']) {
         Cow::Owned(format!("\"{}\"", text.replace('"', "\"\"")))

@@ -1,10 +1,10 @@
-//! The digest of all exact bits of a trace, equal on every processor: what `run` prints. Goldens are judged by subject
-//! instead ([`subjects`](mod@crate::subjects)), those of version 1 by this.
+//! The digest of all exact bits of a trace, equal on every processor; `run` prints it. Goldens are judged
+//! by subject instead ([`subjects`](mod@crate::subjects)), goldens of version 1 by this one.
 //!
 //! FNV-1a with 64 bits, over the rows in scan order and in each row over the columns in file order. A
-//! number counts as its eight bytes, least significant first; a BOOL or a name as its text in CSV and a
-//! zero byte, so that neither the order in which names turned up nor the machine's byte order matters.
-//! Names of columns, the header and the notes do not count.
+//! number counts as its eight bytes, least significant first. A BOOL or a name counts as its text in CSV
+//! and a zero byte. So neither the order in which names first occur nor the byte order of the machine
+//! matters. Names of columns, the header and the notes do not count.
 
 use crate::column::Kind;
 use crate::trace::Trace;
@@ -29,15 +29,15 @@ impl Fnv1a {
         }
     }
 
-    /// Takes in the bytes of a word, the least significant one first. Bytes of 0 only multiply, and numbers that people write begin
-    /// with some.
+    /// Adds the bytes of a word, the least significant one first. A byte of 0 only multiplies, and common
+    /// numbers begin with some.
     fn write_word(&mut self, word: u64) {
         let zeros = (word.trailing_zeros() / 8) as usize;
         self.0 = self.0.wrapping_mul(POWERS.get(zeros).copied().unwrap_or(0));
         self.write(word.to_le_bytes().get(zeros..).unwrap_or_default());
     }
 
-    /// Takes in a text that is prepared.
+    /// Adds a prepared text.
     fn write_prepared(&mut self, text: &Prepared) {
         let [low, ..] = self.0.to_le_bytes();
         let added = text.added.get(usize::from(low)).copied().unwrap_or(0);
@@ -64,8 +64,9 @@ const POWERS: [u64; 9] = {
     powers
 };
 
-/// A text as one step of the digest. A byte changes the lowest byte of the digest alone before all is multiplied, so what a text adds
-/// to the digest times a power of the prime follows from its lowest byte.
+/// A text as one step of the digest. A byte changes only the lowest byte of the digest before the
+/// multiplication. So the term that a text adds to the digest times a power of the prime depends only on
+/// the digest's lowest byte.
 #[derive(Clone, Debug)]
 struct Prepared {
     power: u64,
@@ -97,7 +98,7 @@ impl Prepared {
 static TRUE: Prepared = Prepared::new(b"TRUE\0");
 static FALSE: Prepared = Prepared::new(b"FALSE\0");
 
-/// Names that are prepared, those that turn up first; more take no memory.
+/// Most names that are prepared: the first ones that occur. The limit bounds the memory.
 const NAMES_PREPARED: usize = 64;
 
 impl Default for Fnv1a {
@@ -122,7 +123,7 @@ pub fn whole(trace: &Trace) -> u64 {
     whole.finish()
 }
 
-/// The digest of every bit of a trace that grows, and may forget what was looked at.
+/// The digest of every bit of a trace that grows, and may forget rows that were read.
 #[derive(Clone, Debug, Default)]
 pub struct Whole {
     /// Scans taken in.
@@ -132,7 +133,7 @@ pub struct Whole {
 }
 
 impl Whole {
-    /// Takes in the rows that the trace has got since the last call.
+    /// Adds the rows that the trace has got since the last call.
     pub fn look(&mut self, trace: &Trace) {
         let with_end = |text: &str| [text.as_bytes(), &[0]].concat();
         let new = trace.names().iter().take(NAMES_PREPARED).skip(self.names.len());

@@ -1,9 +1,9 @@
-//! What happened: one line per scan and subject in which something changed.
+//! Events: one line per scan and subject in which something changed.
 //!
 //! Booleans, states, names and whole numbers make an event whenever they change. Reals and times may
-//! change in every scan, so outputs of these kinds make none; inputs are told at rising edges of their
-//! block, where they are taken, and when they change after having stood still. A pin that the script does not
-//! name is told only once it has another value than its default.
+//! change in every scan, so outputs of these kinds make none. Inputs of these kinds are shown at rising
+//! edges of their block, where they are taken, and when they change after a scan without change. A pin
+//! that the script does not name is shown only once its value differs from its default.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::column::{Cell, Column, Kind, Role};
 use crate::number::{cell_text, time_literal};
 use crate::trace::{Note, Trace};
 
-/// What the script's input variables are called together.
+/// The common name of the script's input variables.
 pub(crate) const VARIABLES: &str = "inputs";
 
 /// What happened to one axis or instance in one scan.
@@ -25,14 +25,14 @@ pub struct Event {
     pub text: String,
 }
 
-/// All events in the order of cause and effect: by scan, and in a scan the input variables, the
-/// instances in call order, the axes in script order; notes follow the line of their subject.
+/// All events in the order of cause and effect: by scan; in a scan the input variables, the instances in
+/// call order, the axes in script order. Notes follow the line of their subject.
 #[must_use]
 pub fn events(trace: &Trace) -> Vec<Event> {
     with_notes(trace, trace.notes())
 }
 
-/// The events that the rows alone tell: what a trace has that was read from a file.
+/// The events of the rows alone, for a trace that was read from a file.
 pub(crate) fn row_events(trace: &Trace) -> Vec<Event> {
     with_notes(trace, &[])
 }
@@ -47,7 +47,7 @@ fn with_notes(trace: &Trace, of_trace: &[Note]) -> Vec<Event> {
     for scan in 0..trace.scans() {
         log.scan(trace, scan, notes.remove(&scan).unwrap_or_default(), &mut events);
     }
-    // Notes of scans that the trace does not hold: better late than lost.
+    // Notes of scans that the trace does not have come last, rather than being lost.
     events.extend(notes.into_values().flatten().map(note_event));
     events
 }
@@ -55,26 +55,25 @@ fn with_notes(trace: &Trace, of_trace: &[Note]) -> Vec<Event> {
 /// The events of one trace, which may grow.
 #[derive(Clone, Debug, Default)]
 pub struct EventLog {
-    /// Scans and notes whose events were taken.
+    /// Number of scans and notes whose events were taken.
     scans: usize,
     notes: usize,
-    /// Per column the value that was told last, as the trace holds it.
+    /// For each column, the last value shown, as the trace stores it.
     told: Vec<Option<u64>>,
-    /// The columns by subject, once the first row was looked at.
+    /// The columns by subject, from the first row on.
     groups: Option<Vec<Group>>,
 }
 
 impl EventLog {
-    /// The events of the rows and notes that the trace has got since the last call; of the rows before two at least are still
-    /// held. Cost: proportional to these rows
-    /// times columns.
+    /// The events of the rows and notes that the trace has got since the last call. At least two of the
+    /// rows before must still be held. Cost: proportional to these rows times columns.
     pub fn take(&mut self, trace: &Trace) -> Vec<Event> {
         let mut events = Vec::new();
         let taken = self.notes.saturating_sub(trace.notes_forgotten());
         let mut notes = trace.notes().get(taken..).unwrap_or_default();
         while self.scans < trace.scans() {
             let scan = self.scans;
-            // Notes come in the order of scans; one that comes late is told with the next row.
+            // Notes come in scan order; a late one is shown with the next row.
             let (now, later) = notes.split_at(notes.partition_point(|note| note.scan <= scan));
             self.scan(trace, scan, now.iter().collect(), &mut events);
             (self.scans, self.notes, notes) = (scan + 1, self.notes + now.len(), later);
@@ -120,7 +119,7 @@ pub(crate) fn lines(events: &[Event]) -> String {
     events.iter().map(|event| widths.line(event)).collect()
 }
 
-/// How wide the columns of lines are that tell events.
+/// The widths of the columns of event lines.
 #[derive(Clone, Copy, Debug)]
 pub struct Widths {
     scan: usize,
@@ -128,7 +127,7 @@ pub struct Widths {
 }
 
 impl Widths {
-    /// For the events of a run of so many scans, before they are known.
+    /// For the events of a run of `scans` scans, before they are known.
     #[must_use]
     pub fn of_run(trace: &Trace, scans: u64) -> Self {
         let subjects = groups(trace.columns());
@@ -166,7 +165,7 @@ pub(crate) struct Group {
     pub(crate) columns: Vec<usize>,
 }
 
-/// The subjects in the order in which their events of a scan are told.
+/// The subjects in the order in which their events of a scan are shown.
 pub(crate) fn groups(columns: &[Column]) -> Vec<Group> {
     let mut groups: Vec<(u8, Group)> = Vec::new();
     let mut places: BTreeMap<(u8, &str), usize> = BTreeMap::new();
@@ -192,8 +191,8 @@ pub(crate) fn groups(columns: &[Column]) -> Vec<Group> {
     groups.into_iter().map(|(_, group)| group).collect()
 }
 
-/// What changed in a group in a scan: Booleans first, then values in column order. `told` holds per column the
-/// value that was told last.
+/// The changes in a group in a scan: Booleans first, then values in column order. `told` has for each
+/// column the last value shown.
 fn changes(trace: &Trace, group: &Group, scan: usize, told: &mut [Option<u64>]) -> String {
     // Most subjects do nothing in most scans.
     if !trace.moves(scan, &group.columns) {
@@ -247,9 +246,9 @@ fn transition(before: Option<Cell<'_>>, now: Cell<'_>) -> Option<String> {
     }
 }
 
-/// Whether an input that a block takes is to be told: not if it was told before, nor if it has its own default and never
-/// had anything else. Of one that the script names zero, which takes the default of the axis, is not told
-/// either, but for the pins that say where to go.
+/// Whether an input that a block takes is shown. It is not if its value was shown before, or if it has
+/// its default and never had another value. For an input that the script names, 0 takes the default of
+/// the axis and is not shown either; pins that give a target are always shown.
 fn is_news(column: &Column, now: Cell<'_>, told: Option<Cell<'_>>) -> bool {
     match told {
         Some(told) => !same(told, now),
@@ -264,15 +263,15 @@ fn is_change(trace: &Trace, at: usize, column: &Column, scan: usize) -> bool {
     let Some(now) = back(0) else { return false };
     let jitters = column.kind == Kind::Real || column.is_time;
     match (back(1), column.role) {
-        // The note of the coupling tells it.
+        // The note of the coupling shows it.
         (_, Role::AxisValue) if column.signal().starts_with("Master") => false,
         (Some(before), Role::Input | Role::Variable) if jitters => {
             let stood = back(2).is_none_or(|cell| same(cell, before));
             stood && !same(before, now)
         }
         (Some(before), _) => !jitters && before != now,
-        // Variables and whole numbers start from zero or their default, names from whatever they are. The other inputs of
-        // a block are told when it takes them.
+        // Variables and whole numbers start from zero or their default, names from any value. The other
+        // inputs of a block are shown when the block takes them.
         (None, role) => {
             (!jitters || role == Role::Variable) && !is_default(column, now) && column.kind != Kind::Name
         }
@@ -287,7 +286,7 @@ fn assignment(column: &Column, cell: Cell<'_>) -> String {
     format!("{}={text}", column.signal())
 }
 
-/// Whether a value goes without saying; zero where there is no such value.
+/// Whether a value is its default and not shown; zero if there is no default.
 fn is_default(column: &Column, cell: Cell<'_>) -> bool {
     match column.unsaid() {
         Some(default) => same(cell, default),

@@ -1,4 +1,4 @@
-//! How far an axis went, and how much of its limits it used.
+//! The extremes of an axis, and the part of its limits that it used.
 
 use std::fmt::Write;
 
@@ -12,7 +12,7 @@ use crate::trace::Trace;
 pub struct Extreme {
     /// The axis.
     pub axis: String,
-    /// What it is: `least position`, `greatest position`, or a magnitude: `velocity`, `acceleration`,
+    /// The quantity: `least position`, `greatest position`, or a magnitude: `velocity`, `acceleration`,
     /// `deceleration`, `jerk`, `snap`.
     pub quantity: &'static str,
     /// Its value (u, u/s .. u/s^4); NaN if one occurred.
@@ -23,8 +23,8 @@ pub struct Extreme {
     pub limit: Option<f64>,
 }
 
-/// The extremes of every axis in order. `deceleration` is told apart from `acceleration` where their
-/// limits differ. Signals that the trace lacks are left out.
+/// The extremes of every axis in order. `deceleration` is separate from `acceleration` if their limits
+/// differ. Missing signals are left out.
 #[must_use]
 pub fn extremes(trace: &Trace) -> Vec<Extreme> {
     let mut found = Extremes::new(trace);
@@ -40,7 +40,7 @@ pub fn extremes_text(trace: &Trace) -> String {
     found.text()
 }
 
-/// The extremes of a trace that grows, and may forget what was looked at.
+/// The extremes of a trace that grows, and may forget rows that were read.
 #[derive(Clone, Debug)]
 pub struct Extremes {
     /// Scans looked at.
@@ -49,7 +49,7 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    /// Those of no rows yet.
+    /// The extremes before the first row.
     #[must_use]
     pub fn new(trace: &Trace) -> Self {
         let axes = trace.header().axes.iter();
@@ -59,7 +59,7 @@ impl Extremes {
         }
     }
 
-    /// Looks at the rows that the trace has got since the last call.
+    /// Reads the rows that the trace has got since the last call.
     pub fn look(&mut self, trace: &Trace) {
         for (scan, row) in (self.scans..).zip(trace.words_from(self.scans)) {
             for axis in &mut self.axes {
@@ -126,13 +126,13 @@ pub(crate) fn axis_title(axis: &Axis) -> String {
 #[derive(Clone, Debug)]
 struct OfAxis {
     axis: Axis,
-    /// Columns of position, velocity, acceleration, jerk and snap, where they are numbers.
+    /// Columns of position, velocity, acceleration, jerk and snap, if they are numbers.
     columns: [Option<usize>; 5],
     least: Peak,
     greatest: Peak,
     velocity: Peak,
     acceleration: Peak,
-    /// While the speed falls, where that has a limit of its own.
+    /// While the speed falls, if that has a limit of its own.
     deceleration: Peak,
     jerk: Peak,
     snap: Peak,
@@ -223,7 +223,7 @@ fn by_sense(velocity: f64, acceleration: f64) -> [f64; 2] {
     if slows { [0.0, size] } else { [size, 0.0] }
 }
 
-/// The greatest value and where it first stands. A NaN is greater than all: it must not stay unseen.
+/// The greatest value and its first scan. A NaN is greater than all, so that it is not overlooked.
 #[derive(Clone, Copy, Debug, Default)]
 struct Peak(Option<(f64, usize)>);
 

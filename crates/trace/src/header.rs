@@ -1,4 +1,4 @@
-//! What a run was made of: the header that goes before the rows, and the columns that follow from it.
+//! The description of a run: the header before the rows, and the columns that follow from it.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,8 +7,8 @@ use crate::read::ReadError;
 use crate::trace::Note;
 
 /// The columns of every axis after its name, in the order of the file. `State` is a name, the others are
-/// numbers: the set-point at the end of the scan, and the position the drive reported at its start.
-/// Later versions append, they do not reorder.
+/// numbers: the set-point at the end of the scan, and the position the drive reported at its start. Later
+/// versions append columns and do not reorder them.
 pub const AXIS_SIGNALS: [&str; 7] = [
     "State",
     "Position",
@@ -19,24 +19,25 @@ pub const AXIS_SIGNALS: [&str; 7] = [
     "ActualPosition",
 ];
 
-/// The columns behind those, of every axis that stands at a `Slave` pin ([`Axis::slave`]): the master's name, how far the
-/// set-point is off the law (u), and by how much the master is seen further on (u of the master). Empty and 0 while it
-/// follows none.
+/// Further columns of every axis at a `Slave` pin ([`Axis::slave`]): the master's name, the distance of
+/// the set-point from the law (u), and the phase shift of the master (u of the master). Empty and 0 while
+/// it follows none.
 pub const SLAVE_SIGNALS: [&str; 3] = ["Master", "Deviation", "Phase"];
 
-/// The columns behind those, of every axis that stands at the `Slave` pin of MC_CombineAxes ([`Axis::combined`]): the name of the
-/// second master, and by how much that is seen further on (u of that master).
+/// Further columns of every axis at the `Slave` pin of MC_CombineAxes ([`Axis::combined`]): the name of
+/// the second master, and its phase shift (u of that master).
 pub const COMBINED_SIGNALS: [&str; 2] = ["Master2", "Phase2"];
 
-/// The column behind those, of every axis at a `Slave` pin that MC_MoveSuperimposed may move ([`Axis::superimposed`]): what is
-/// superimposed on its law (u).
+/// A further column of every axis at a `Slave` pin that MC_MoveSuperimposed may move
+/// ([`Axis::superimposed`]): the distance superimposed on its law (u).
 pub const SUPERIMPOSED_SIGNALS: [&str; 1] = ["Superimposed"];
 
-/// The column behind those, of every axis at the `Slave` pin of MC_CamIn ([`Axis::on_cam`]): the place of the master (u of the master)
-/// at which the slave is on the curve; in sync that of its master, 0 while it is not on the curve.
+/// A further column of every axis at the `Slave` pin of MC_CamIn ([`Axis::on_cam`]): the place of the
+/// master (u of the master) at which the slave is on the curve. In sync it is the place of its master; it
+/// is 0 while the slave is not on the curve.
 pub const CAM_SIGNALS: [&str; 1] = ["Shadow"];
 
-/// A run in a few words: everything but its rows.
+/// The description of a run: everything but its rows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// Version of the runtime that made the trace.
@@ -62,37 +63,40 @@ pub struct Header {
     /// The claims with their verdicts; empty until they are judged.
     #[serde(default)]
     pub claims: Vec<Claim>,
-    /// How the cams lay that axes were on, in the order of their first rows; at most [`CAMS_MAX`].
+    /// The positions of the cams that axes were on, in the order of their first rows; at most
+    /// [`CAMS_MAX`].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cams: Vec<Cam>,
 }
 
-/// Most entries of [`Header::cams`]; how later ones lay is not kept.
+/// Most entries of [`Header::cams`]; later ones are not kept.
 pub const CAMS_MAX: usize = 64;
 
-/// A cam as it lay between two axes, for who draws it.
+/// A cam with its place between two axes, for pictures.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cam {
-    /// The slave, by its place in [`Header::axes`].
+    /// The slave, by its index in [`Header::axes`].
     pub slave: usize,
     /// The master, likewise.
     pub master: usize,
-    /// The first and the last row it lay so.
+    /// The first and the last row in which the cam was at this place.
     pub scans: [usize; 2],
-    /// Place of the master at the first row of the table (u of the master), counted on from its position in the first of the scans.
+    /// Place of the master at the first row of the table (u of the master), relative to its position in
+    /// the first of the scans.
     pub begin: f64,
-    /// Way of the master from the first row to the last (u of the master); below 0 if it goes back for that.
+    /// Way of the master from the first row to the last (u of the master); negative if it moves
+    /// backwards.
     pub length: f64,
-    /// The table begins again behind its end.
+    /// Whether the table repeats.
     pub periodic: bool,
     /// Place of the slave at the first row (u).
     pub from: f64,
-    /// How far from there the slave is (u) at equal steps of the master, from the first row to the last, rounded to the
-    /// digits that 32 bits have.
+    /// The distances of the slave from there (u) at equal steps of the master, from the first row to the
+    /// last, rounded to 32-bit floats.
     pub points: Vec<f64>,
 }
 
-/// One axis as the run had it. Units are `u`, the label in `unit`.
+/// One axis of the run. Units are `u`; the label is in `unit`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
     /// Its name in the script.
@@ -103,25 +107,27 @@ pub struct Axis {
     /// Order of its profiles: 4 with a snap limit, 3 without, 2 without a jerk limit; 0 if not known.
     #[serde(default)]
     pub order: u8,
-    /// What it must stay within.
+    /// Its limits.
     #[serde(default)]
     pub limits: Limits,
-    /// Length of a turn (u) of an axis whose positions come round; absent on a linear one.
+    /// Length of a turn (u) of a modulo axis; absent on a linear one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modulo: Option<f64>,
-    /// How units become drive increments; absent if the drive speaks units.
+    /// The ratio of units to drive increments; absent if the drive uses units.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scaling: Option<Scaling>,
-    /// It stands at a `Slave` pin, and has the columns of [`SLAVE_SIGNALS`], too.
+    /// Whether it is at a `Slave` pin and also has the columns of [`SLAVE_SIGNALS`].
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub slave: bool,
-    /// It stands at the `Slave` pin of MC_CombineAxes, and has the columns of [`COMBINED_SIGNALS`], too.
+    /// Whether it is at the `Slave` pin of MC_CombineAxes and also has the columns of
+    /// [`COMBINED_SIGNALS`].
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub combined: bool,
-    /// It stands at a `Slave` pin and at the `Axis` pin of MC_MoveSuperimposed, and has the column of [`SUPERIMPOSED_SIGNALS`], too.
+    /// Whether it is at a `Slave` pin and at the `Axis` pin of MC_MoveSuperimposed, and also has the
+    /// column of [`SUPERIMPOSED_SIGNALS`].
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub superimposed: bool,
-    /// It stands at the `Slave` pin of MC_CamIn, and has the column of [`CAM_SIGNALS`], too.
+    /// Whether it is at the `Slave` pin of MC_CamIn and also has the column of [`CAM_SIGNALS`].
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub on_cam: bool,
 }
@@ -215,13 +221,14 @@ pub struct Pin {
     pub iec_type: String,
     /// Which way it points.
     pub direction: Direction,
-    /// Text of the value it has by itself, if that is known; see [`Column::default`].
+    /// Text of its default value, if that is known; see [`Column::default`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<String>,
     /// The script names it; see [`Column::named`].
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub named: bool,
-    /// The statements of the program that write it, in the order of its text; of a variable of a program in Structured Text.
+    /// The statements of the program that write it, in text order; for a variable of a program in
+    /// Structured Text.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub written: Vec<Written>,
 }
@@ -251,13 +258,13 @@ pub enum Direction {
 /// A claim of the script, judged.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Claim {
-    /// Where it stands in the script, for example `expect[2]`.
+    /// Its place in the script, for example `expect[2]`.
     pub path: String,
     /// What it says.
     pub text: String,
     /// Whether it held.
     pub verdict: ClaimVerdict,
-    /// The first and the last scan it speaks of; absent if that is not known or none of the run.
+    /// The first and the last scan it refers to; absent if that is not known or not in the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scans: Option<[usize; 2]>,
     /// The scan in which a claim that needs only one came true.
@@ -274,7 +281,7 @@ pub struct ClaimFailure {
     /// The first scan it shows in; absent if it is about the run as a whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scan: Option<usize>,
-    /// What was there and what was expected.
+    /// The actual and the expected value.
     pub text: String,
 }
 
@@ -337,8 +344,8 @@ impl Header {
             .chain(claims)
     }
 
-    /// The columns of the trace in file order, after `scan` and `time_ns`: the axes, the input
-    /// variables, the pins of the instances. This is the one place that knows the order.
+    /// The columns of the trace in file order, after `scan` and `time_ns`: the axes, the input variables,
+    /// the pins of the instances. No other code knows the order.
     #[must_use]
     pub fn columns(&self) -> Vec<Column> {
         let axes = self
@@ -366,20 +373,20 @@ impl Header {
         axes.chain(inputs).chain(pins).collect()
     }
 
-    /// The header as one line of JSON, beginning with the version of the format: the first line of a JSON
-    /// Lines trace, and the whole of the `.meta.json` file beside a CSV trace.
+    /// The header as one line of JSON, beginning with the version of the format. It is the first line of
+    /// a JSON Lines trace, and the whole `.meta.json` file beside a CSV trace.
     #[must_use]
     pub fn to_json(&self) -> String {
-        // Strings, integers and finite numbers only: a limit that is not finite is no limit, and serde_json
-        // writes it as null, which reads back as none.
+        // Strings, integers and finite numbers only. An infinite limit is no limit: serde_json writes it
+        // as null, which is read as none.
         let fields = serde_json::to_string(self).unwrap_or_default();
         format!("{{\"{VERSION_KEY}\":{VERSION},{}", fields.trim_start_matches('{'))
     }
 
-    /// Reads what [`Header::to_json`] wrote, of this version or with keys that a later one added.
+    /// Reads the text of [`Header::to_json`], of this version or with keys that a later one added.
     ///
     /// # Errors
-    /// Text that is no JSON, no trace header, or of another version of the format.
+    /// Text that is not JSON, not a trace header, or of another version of the format.
     pub fn from_json(text: &str) -> Result<Self, ReadError> {
         Self::with_notes(text).map(|(header, _)| header)
     }
@@ -389,7 +396,7 @@ impl Header {
         let json = self.to_json();
         match (notes, json.strip_suffix('}')) {
             ([_, ..], Some(open)) => {
-                // Strings and integers: there is nothing that JSON cannot hold.
+                // Strings and integers: JSON can hold all of them.
                 let notes = serde_json::to_string(notes).unwrap_or_default();
                 format!("{open},\"notes\":{notes}}}")
             }

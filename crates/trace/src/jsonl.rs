@@ -13,10 +13,11 @@ use crate::number::{cell_text, shortest};
 use crate::read::{Field, Line, Loaded, ReadError, assemble};
 use crate::trace::{Note, Trace};
 
-/// The key that marks the object behind the rows of a trace that was written while its run went on: its verdicts and notes.
+/// The key that marks the object behind the rows of a trace that was written during its run: its verdicts
+/// and notes.
 pub(crate) const END_KEY: &str = "standstill_trace_end";
 
-/// What stands behind the rows.
+/// The object behind the rows.
 #[derive(serde::Deserialize)]
 struct End {
     #[serde(default)]
@@ -28,7 +29,7 @@ struct End {
 }
 
 impl End {
-    /// The end of a text, and what stands before it; an empty one where there is none.
+    /// The end of a text, and the text before it; an empty end if there is none.
     fn split(text: &str) -> Result<(&str, Option<Self>), ReadError> {
         let whole = text.trim_end();
         let begin = whole.rfind('\n').map_or(0, |end| end + 1);
@@ -81,13 +82,13 @@ fn json_string(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }
 
-/// Reads a trace. Blank lines are skipped, and the header may be missing: kinds of columns are then told
+/// Reads a trace. Blank lines are skipped, and the header may be missing: kinds of columns are then found
 /// from their values.
 ///
 /// # Errors
-/// Lines that are no JSON objects, rows whose keys differ from those of the first row, a file that is cut
-/// short, or values that do not agree with the header; with the line, and the column where one can be
-/// named.
+/// Lines that are not JSON objects, rows whose keys differ from those of the first row, a file that is
+/// cut short, or values that do not agree with the header. The error has the line, and the column if one
+/// can be named.
 pub fn read(text: &str) -> Result<Loaded, ReadError> {
     let (text, end) = End::split(text.strip_prefix('\u{feff}').unwrap_or(text))?;
     let mut lines = text.lines().enumerate().map(|(at, line)| (at + 1, line));
@@ -138,7 +139,7 @@ fn clock_names() -> impl Iterator<Item = String> {
     ["scan", "time_ns"].into_iter().map(str::to_owned)
 }
 
-/// The members of one object in the order they stand, each value as the text a CSV cell would have.
+/// The members of one object in their order, each value as the text of a CSV cell.
 struct Row(Vec<(String, String)>);
 
 impl Row {
@@ -187,7 +188,7 @@ impl<'de> Deserialize<'de> for Row {
     }
 }
 
-/// Keeps the members in order: a map of serde_json would sort them, and the order is the order of columns.
+/// Keeps the order of the members, which is the order of columns: a map of serde_json would sort them.
 struct RowVisitor;
 
 impl<'de> Visitor<'de> for RowVisitor {
@@ -214,8 +215,8 @@ fn value_text(value: &serde_json::Value) -> String {
         serde_json::Value::Number(number) if number.is_f64() => {
             number.as_f64().map(shortest).unwrap_or_default()
         }
-        // No row holds null, lists or objects: their text is no number and no truth value either, so the
-        // column's kind refuses it, or it stands as a name.
+        // A row has no null, lists or objects. Their text is no number and no truth value, so the
+        // column's kind refuses it, or it is a name.
         other => other.to_string(),
     }
 }

@@ -1,7 +1,8 @@
 //! Text in HTML, SVG and XML.
 
-/// `text` as it stands in elements and in quoted attributes. What XML 1.0 cannot hold, such as control characters,
-/// becomes U+FFFD; of a carriage return or a tab a reader would make something else, so they are written as numbers.
+/// `text` for elements and for quoted attributes. Characters that XML 1.0 cannot have, such as control
+/// characters, become U+FFFD. Carriage returns and tabs are written as numbers, because a reader would
+/// change them.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for character in text.chars() {

@@ -9,12 +9,13 @@ pub fn shortest(value: f64) -> String {
     } else if value.is_infinite() {
         if value > 0.0 { "Infinity" } else { "-Infinity" }.to_owned()
     } else {
-        // Adding 0.0 takes the sign off zero and changes nothing else.
+        // Adding 0.0 removes the sign of zero and changes nothing else.
         format!("{:?}", value + 0.0)
     }
 }
 
-/// A number as [`shortest`] writes it. Takes nothing else: no `nan`, no `inf`, no blanks, no number too large for an f64.
+/// A number in the form of [`shortest`]. Nothing else is accepted: no `nan`, no `inf`, no blanks, no
+/// number too large for an f64.
 pub fn parse(text: &str) -> Option<f64> {
     match text {
         "NaN" => Some(f64::NAN),
@@ -30,7 +31,7 @@ pub fn parse(text: &str) -> Option<f64> {
     }
 }
 
-/// A number for people: six decimals, no -0.000000; too large or not finite as [`shortest`] does.
+/// A number for people: six decimals, no -0.000000; if too large or not finite as [`shortest`] does.
 pub fn fixed(value: f64) -> String {
     if !value.is_finite() || value.abs() >= 1e9 {
         return shortest(value);

@@ -1,4 +1,4 @@
-//! What pictures of a trace show: curves of axes, waves of Booleans.
+//! The contents of pictures of a trace: curves of axes, waves of Booleans.
 
 use crate::column::{Cell, Kind, Role};
 use crate::extremes::axis_title;

@@ -10,14 +10,14 @@ use crate::trace::Trace;
 /// Lines of a curve.
 const HEIGHT: usize = 10;
 
-/// A curve is never narrower than this (characters).
+/// The least width of a curve (characters).
 const WIDTH_MIN: usize = 20;
 
 /// A character of Braille is this many dots wide and high.
 const DOTS: (usize, usize) = (2, 4);
 
 /// Position and velocity of every axis as curves, and below them the Booleans that change, drawn high and
-/// low: `▔` TRUE, `▁` FALSE, `│` both within one character, so that no pulse vanishes. Lines are at most
+/// low: `▔` TRUE, `▁` FALSE, `│` both within one character, so that every pulse shows. Lines are at most
 /// `width` characters wide, if that leaves room for a curve.
 #[must_use]
 pub fn plot(trace: &Trace, width: usize) -> String {
@@ -108,7 +108,7 @@ fn height_of(curve: &Curve, value: f64) -> usize {
     (part * steps).round().clamp(0.0, steps) as usize
 }
 
-/// The scans that column `x` of `columns` stands for: at least one, and together all of them.
+/// The scans of column `x` of `columns`: at least one, and together all of them.
 fn share(scans: usize, x: usize, columns: usize) -> Range<usize> {
     let first = x * scans / columns;
     let end = (x + 1) * scans / columns;

@@ -1,19 +1,19 @@
-//! Foreign text on its way to a terminal, a log or a file for people.
+//! Foreign text for a terminal, a log or a file for people.
 //!
-//! Titles, units, names, what guests say and paths come from whoever wrote the script. A control character among them
-//! could paint over what stands on the screen, a line break could forge a line of its own, and an override of the
-//! direction of writing could show a text in another order than it is read in.
+//! Titles, units, names, texts of guests and paths come from the author of the script. A control
+//! character in them could overwrite the screen. A line break could forge a line. A bidirectional
+//! override could show a text in another order than it is read in.
 
 use std::borrow::Cow;
 
-/// `text` as one line on which every character can be seen: control characters, line and paragraph separators and those
-/// that turn the direction of writing become escapes such as `\u{1b}`.
+/// `text` as one line with only visible characters: control characters, line and paragraph separators,
+/// and those that change the direction of writing become escapes such as `\u{1b}`.
 #[must_use]
 pub fn printable(text: &str) -> Cow<'_, str> {
     escaped(text, is_hidden)
 }
 
-/// As [`printable`], of a text that may have lines.
+/// As [`printable`], for a text that may have lines.
 #[must_use]
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
     escaped(text, |character| character != '\n' && is_hidden(character))
@@ -34,7 +34,7 @@ fn escaped(text: &str, hidden: impl Fn(char) -> bool) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// Whether a character does something else than to show itself.
+/// Whether a character has another effect than to be shown.
 fn is_hidden(character: char) -> bool {
     character.is_control()
         || matches!(
@@ -46,7 +46,7 @@ fn is_hidden(character: char) -> bool {
         )
 }
 
-/// Makes a text [`printable`] where it stands.
+/// Makes a text [`printable`] in place.
 pub(crate) fn make_printable(text: &mut String) {
     if let Cow::Owned(seen) = printable(text) {
         *text = seen;

@@ -1,4 +1,4 @@
-//! What the readers of both forms share: from texts of cells to a trace.
+//! The common part of the readers of both forms: from texts of cells to a trace.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,22 +9,22 @@ use crate::number;
 use crate::printable::printable;
 use crate::trace::{Note, Trace};
 
-/// A trace that was read, and what the files did not tell.
+/// A trace that was read, and what its files lack.
 #[derive(Clone, Debug)]
 pub struct Loaded {
-    /// The trace; what is not known of its header is empty.
+    /// The trace; unknown parts of its header are empty.
     pub trace: Trace,
-    /// What is missing, one phrase each; empty if nothing is.
+    /// The missing parts, one phrase each; empty if there are none.
     pub lacks: Vec<String>,
 }
 
-/// Why a trace could not be read. Lines and columns count from 1, columns in characters.
+/// The reason why a trace could not be read. Lines and columns count from 1, columns in characters.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}{}: {message}", .column.map(|column| format!(", column {column}")).unwrap_or_default())]
 pub struct ReadError {
     /// The line.
     pub line: usize,
-    /// The column, where one can be named.
+    /// The column, if one can be named.
     pub column: Option<usize>,
     /// What is wrong.
     pub message: String,
@@ -35,7 +35,7 @@ impl ReadError {
         Self {
             line,
             column,
-            // Pieces of the file stand in it.
+            // It quotes pieces of the file.
             message: printable(&message.into()).into_owned(),
         }
     }
@@ -57,7 +57,7 @@ impl ReadError {
     }
 }
 
-/// The text of a cell and where it stands (column from 1, if known).
+/// The text of a cell and its place (column from 1, if known).
 pub struct Field<'t> {
     pub text: Cow<'t, str>,
     pub column: Option<usize>,
@@ -69,8 +69,8 @@ pub struct Line<'t> {
     pub fields: Vec<Field<'t>>,
 }
 
-/// Makes a trace of lines. `names` are all columns of the file; `lines` is run twice: first to find the
-/// kinds of columns that no header explains, then to read.
+/// Makes a trace of lines. `names` are all columns of the file. `lines` is run twice: first to find the
+/// kinds of columns without a header, then to read.
 pub fn assemble<'t, I>(
     names: &[String],
     header: Option<(Header, Vec<Note>)>,
@@ -149,7 +149,7 @@ fn check_names(names: &[String]) -> Result<(), ReadError> {
     }
 }
 
-/// The narrowest kind that holds every text of each column, and the time of scan 1.
+/// The narrowest kind for all texts of each column, and the time of scan 1.
 fn survey<'t>(
     width: usize,
     lines: impl Iterator<Item = Result<Line<'t>, ReadError>>,
@@ -183,7 +183,7 @@ fn kind_of_text(text: &str) -> Kind {
     }
 }
 
-/// Whole numbers are numbers; any other mixture is told by name.
+/// Whole numbers are numbers; any other mixture is read as names.
 fn wider(so_far: Option<Kind>, kind: Kind) -> Kind {
     match (so_far, kind) {
         (None, _) => kind,
@@ -253,7 +253,7 @@ fn push_line(trace: &mut Trace, line: &Line<'_>) -> Result<(), ReadError> {
         .map_err(|error| ReadError::at(line.number, None, error.to_string()))
 }
 
-/// Rows are consecutive from scan 0, so the two clock columns must hold what they would be written as.
+/// Rows are consecutive from scan 0, so the two clock columns must have the values that would be written.
 fn check_clock(line: &Line<'_>, at: usize, name: &str, expected: u64) -> Result<(), ReadError> {
     match line.fields.get(at) {
         Some(field) if field.text.parse() == Ok(expected) => Ok(()),

@@ -1,31 +1,33 @@
-//! A swing that dies out: its frequency and damping, from samples of it.
+//! A decaying oscillation: its frequency and damping, from samples.
 //!
-//! The samples are fitted by `exp(-d t) (a cos w t + b sin w t) + c + e t` with least squares. For given `w` and `d` the rest is
-//! linear, so only those two are searched: on a grid first, whose steps no peak can hide between, then by steps that halve. What
-//! is slower than the window, such as a loop that settles, is left to the straight line.
+//! The samples are fitted by `exp(-d t) (a cos w t + b sin w t) + c + e t` with least squares. For given
+//! `w` and `d` the rest is linear, so only those two are searched: first on a grid that is fine enough
+//! for every peak, then by steps that halve. Motion slower than the window, such as a loop that settles,
+//! is left to the straight line.
 //!
 //! The same bits on every processor: `+ - * / sqrt`, and the exponential and the sine of `libm` once for each try.
 
 use std::f64::consts::PI;
 use std::fmt;
 
-/// Samples that a fit is made on: longer windows are thinned to that by means over equal blocks, which change neither
-/// frequency nor damping.
+/// Most samples of a fit. Longer windows are reduced to this number by means over equal blocks, which
+/// change neither frequency nor damping.
 pub const SAMPLES: usize = 1024;
 
-/// Fewer samples than this are too few.
+/// The least number of samples.
 pub const SAMPLES_MIN: usize = 16;
 
 /// Periods a window must have, at least.
 pub const PERIODS_MIN: f64 = 2.0;
 
-/// The part of the swing that a fit must explain to count.
+/// The least part of the oscillation that a fit must explain.
 pub const EXPLAINED_MIN: f64 = 0.5;
 
-/// The largest damping ratio that counts as a swing, as a part of the turn: what dies out faster is a loop that settles.
+/// The largest damping ratio of an oscillation, as a part of the turn: a motion that decays faster is a
+/// loop that settles.
 pub const DAMPING_MAX: f64 = 0.5;
 
-/// The same for one that grows, because the loops of the drive feed it.
+/// The same for a growing oscillation, which the loops of the drive feed.
 pub const GROWTH_MAX: f64 = 0.1;
 
 /// Rates of decay on the grid, in one window.
@@ -37,21 +39,21 @@ const HALVINGS: u32 = 40;
 /// Moves between two halvings, at most.
 const MOVES: u32 = 40;
 
-/// The largest part of the samples, beside their level, that is rounding and no swing.
+/// The largest part of the samples, beside their level, that counts as rounding.
 const STILL: f64 = 1e-12;
 
-/// A swing that was found.
+/// An oscillation that was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RingDown {
     /// Its frequency without damping (Hz), above 0.
     pub frequency: f64,
-    /// How far off that may be (Hz), with a probability of 95 %, if what the fit leaves is noise.
+    /// Its uncertainty (Hz) with a probability of 95 %, if the rest of the fit is noise.
     pub frequency_within: f64,
     /// Its damping ratio, below 1; negative if it grows.
     pub damping: f64,
-    /// How far off that may be, in the same way.
+    /// Its uncertainty, in the same way.
     pub damping_within: f64,
-    /// How far it swings at the start of the window, in the unit of the samples.
+    /// Its amplitude at the start of the window, in the unit of the samples.
     pub swing: f64,
     /// The part of the sum of squares, beside a straight line, that it explains: at most 1.
     pub explained: f64,
@@ -62,11 +64,11 @@ pub struct RingDown {
 /// Why none was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoRingDown {
-    /// There are so few samples.
+    /// There are only this many samples.
     Short(usize),
-    /// A sample is no finite number: its place, from 0.
+    /// A sample is not a finite number: its index, from 0.
     Broken(usize),
-    /// Nothing moves but by rounding.
+    /// Nothing moves except by rounding.
     Still,
     /// The best fit explains no more than this.
     Unexplained(f64),
@@ -99,10 +101,10 @@ impl fmt::Display for NoRingDown {
     }
 }
 
-/// Finds the swing in samples that lie `step` (s, above 0) apart.
+/// Finds the oscillation in samples that are `step` (s, above 0) apart.
 ///
 /// # Errors
-/// Samples in which there is none; see [`NoRingDown`].
+/// Samples without an oscillation; see [`NoRingDown`].
 ///
 /// # Cost
 /// About 6,000 fits of at most [`SAMPLES`] samples for every factor of 4 that the window is longer than that.
@@ -113,13 +115,14 @@ pub fn identify(samples: &[f64], step: f64) -> Result<RingDown, NoRingDown> {
     if let Some(place) = samples.iter().position(|value| !value.is_finite()) {
         return Err(NoRingDown::Broken(place));
     }
-    // Fast swings are over soon, slow ones need the whole window: the same search on its first part, on more, on all.
+    // Fast oscillations decay soon, slow ones need the whole window: the same search on its first part,
+    // on more, on all.
     let mut best: Option<(f64, RingDown)> = None;
     let mut worst = NoRingDown::Still;
     let mut length = samples.len();
     loop {
         match in_window(samples.get(..length).unwrap_or(samples), step) {
-            // Of two windows the one in which more energy is explained.
+            // The window in which more energy is explained.
             Ok((energy, found)) => {
                 if best.is_none_or(|(most, _)| energy > most) {
                     best = Some((energy, found));
@@ -139,7 +142,7 @@ pub fn identify(samples: &[f64], step: f64) -> Result<RingDown, NoRingDown> {
     best.map(|(_, found)| found).ok_or(worst)
 }
 
-/// The same in one window; also the sum of squares (times s) that is explained.
+/// The same in one window; also the explained sum of squares (times s).
 fn in_window(samples: &[f64], step: f64) -> Result<(f64, RingDown), NoRingDown> {
     let block = samples.len().div_ceil(SAMPLES);
     let means: Vec<f64> = samples
@@ -162,7 +165,7 @@ fn in_window(samples: &[f64], step: f64) -> Result<(f64, RingDown), NoRingDown> 
         return Err(NoRingDown::Still);
     }
 
-    // Half a period in the window is the width of a peak; from one and a half periods on.
+    // A peak is half a period in the window wide; the search begins at one and a half periods.
     let width = 0.5 * PI / count;
     let lines = (0.95 * PI / width) as usize;
     let grid = (6..lines).flat_map(|line| {
@@ -194,7 +197,7 @@ fn in_window(samples: &[f64], step: f64) -> Result<(f64, RingDown), NoRingDown> 
         return Err(NoRingDown::Slow(periods));
     }
 
-    // Means over blocks are lower than what they are of.
+    // Means over blocks are lower than their samples.
     let whole: Vec<f64> = samples.iter().map(|value| (value - middle) / most).collect();
     let blocks = block as f64;
     let fit = Fit::of(
@@ -220,7 +223,7 @@ fn in_window(samples: &[f64], step: f64) -> Result<(f64, RingDown), NoRingDown> 
     Ok(((line - left) * most * most * step, found))
 }
 
-/// Turn (rad) and decay of a swing from one sample to the next.
+/// Turn (rad) and decay of an oscillation from one sample to the next.
 #[derive(Clone, Copy, Debug)]
 struct Try {
     turn: f64,
@@ -261,7 +264,7 @@ fn refined(samples: &[f64], (mut left, mut at): (f64, Try), turn: f64, decay: f6
     (left, at)
 }
 
-/// How far off turn and decay may be, 95 %: from how fast the sum of squares grows around the best.
+/// The uncertainty of turn and decay, 95 %: from the growth of the sum of squares around the best.
 fn within(samples: &[f64], at: Try, left: f64) -> (f64, f64) {
     let count = samples.len() as f64;
     let (turn, decay) = (0.01 / count, 0.01 / count);
@@ -282,7 +285,7 @@ fn within(samples: &[f64], at: Try, left: f64) -> (f64, f64) {
     (bound(of_decay), bound(of_turn))
 }
 
-/// The best swing of given turn and decay, beside a straight line.
+/// The best oscillation with given turn and decay, beside a straight line.
 struct Fit {
     cosine: f64,
     sine: f64,
@@ -296,7 +299,7 @@ impl Fit {
             let fade = libm::exp(-at.decay);
             (fade * libm::cos(at.turn), fade * libm::sin(at.turn))
         });
-        // Without a swing both are 0 all over.
+        // Without an oscillation both are 0 everywhere.
         let (mut c, mut s) = (if at.is_some() { 1.0 } else { 0.0 }, 0.0);
         let by = 2.0 / samples.len() as f64;
         let mut x = -1.0;
@@ -338,10 +341,10 @@ impl Fit {
     }
 }
 
-/// Solves symmetric equations, of which the upper half is given; what is 0 all over stays 0.
+/// Solves symmetric equations, given by the upper half; rows and columns of 0 stay 0.
 fn solved(mut matrix: [[f64; 4]; 4], mut right: [f64; 4]) -> [f64; 4] {
     for pivot in 0..4 {
-        // Below this a row says no more than those before it.
+        // Below this a row has no more information than those before it.
         if !(matrix[pivot][pivot] > 1e-13) {
             matrix[pivot] = [0.0; 4];
             right[pivot] = 0.0;

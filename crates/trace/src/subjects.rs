@@ -1,13 +1,15 @@
-//! Digests by subject, which goldens are judged by: an axis, a block instance, a program, the input variables, each by
-//! itself. They are meant to stay: what a later version adds changes no digest of what was there before.
+//! Digests by subject, which judge goldens: each axis, block instance and program has one, and the input
+//! variables have one. They are meant to stay: additions of a later version change no existing digest.
 //!
-//! A column is hashed by itself, over one word of 64 bits a scan: a number's bits, 0 or 1 for a BOOL, the hash of a name's
-//! text. A subject's digest is over the digests of its columns in the order of their names, so the order of columns and the
-//! numbers of pins do not count. A column that keeps its [default](crate::Column::default) in all rows, and that the script
-//! does not name, is left out: a pin that comes with a later version and that nobody uses is no part of any digest.
+//! A column is hashed by itself, over one word of 64 bits a scan: a number's bits, 0 or 1 for a BOOL, the
+//! hash of a name's text. A subject's digest is over the digests of its columns in the order of their
+//! names, so the order of columns and the numbers of pins do not count. A column that keeps its
+//! [default](crate::Column::default) in all rows, and that the script does not name, is left out. So a
+//! new pin that nobody uses is not part of any digest.
 //!
-//! Every step is a one-to-one map of the word and of what came before, so one changed word always changes the digest of its
-//! subject; several changes go unseen about once in 2^64 times. They find accidents, not attacks.
+//! Every step maps the word and the state before it one to one, so one changed word always changes the
+//! digest of its subject. Several changes are missed about once in 2^64 times. The digests find
+//! accidents, not attacks.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +17,7 @@ use crate::column::{Cell, Column, Kind, canonical_bits};
 use crate::events::groups;
 use crate::trace::Trace;
 
-/// A subject and the digest of what it did.
+/// A subject and its digest.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Subject {
     /// The axis, instance or program; `inputs` for the input variables.
@@ -31,8 +33,8 @@ struct Words(u64);
 impl Words {
     const START: Self = Self(0x9ae1_6a3b_2f90_404f);
 
-    /// An odd factor and a shift of more than half: both can be undone, so no two words lead to the same place. The shift
-    /// brings high bits down, where signs and exponents are.
+    /// An odd factor and a shift of more than half: both can be undone, so different words give different
+    /// states. The shift moves high bits down, where signs and exponents are.
     const fn with(self, word: u64) -> Self {
         let product = (self.0 ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         Self(product ^ (product >> 32))
@@ -62,7 +64,7 @@ fn word(cell: Cell<'_>) -> u64 {
     }
 }
 
-/// Where the hash of a column begins: its name within the subject, and its kind.
+/// The start of the hash of a column: its name within the subject, and its kind.
 fn start(column: &Column) -> Words {
     let kind = match column.kind {
         Kind::Bool => 0,
@@ -73,8 +75,8 @@ fn start(column: &Column) -> Words {
     Words::START.with(of_text(column.signal())).with(kind)
 }
 
-/// The digest of every column, and whether it counts: one that the script names or that has no default always does, another
-/// one if it ever left its default.
+/// The digest of every column, and whether it counts. A column that the script names, or without a
+/// default, always counts; another one counts if it ever left its default.
 fn of_columns(trace: &Trace) -> Vec<(u64, bool)> {
     struct State {
         hash: Words,
@@ -113,7 +115,7 @@ fn of_columns(trace: &Trace) -> Vec<(u64, bool)> {
         .collect()
 }
 
-/// The subjects of some columns, in the order in which events are told.
+/// The subjects of some columns, in the order of events.
 fn by_subject(trace: &Trace, digests: &[(u64, bool)]) -> Vec<Subject> {
     let of_group = |(name, columns): (String, Vec<usize>)| {
         let own = columns.iter().filter_map(|&at| {
@@ -134,8 +136,8 @@ fn by_subject(trace: &Trace, digests: &[(u64, bool)]) -> Vec<Subject> {
         .collect()
 }
 
-/// The subjects of a trace in the order in which events are told: the input variables, instances in call order, axes. One
-/// that has only columns at their defaults is not among them. Cost: one pass over the rows.
+/// The subjects of a trace in the order of events: the input variables, instances in call order, axes. A
+/// subject with only columns at their defaults is left out. Cost: one pass over the rows.
 #[must_use]
 pub fn subjects(trace: &Trace) -> Vec<Subject> {
     by_subject(trace, &of_columns(trace))
@@ -148,7 +150,8 @@ pub(crate) fn of_all_columns(trace: &Trace) -> Vec<Subject> {
     by_subject(trace, &digests)
 }
 
-/// The columns that count, by their places: all but those that keep their defaults in all rows and that no script names.
+/// The columns that count, by their indices: all except those that keep their defaults in all rows and
+/// that no script names.
 pub(crate) fn counted(trace: &Trace) -> Vec<usize> {
     let digests = of_columns(trace).into_iter().enumerate();
     digests
@@ -172,7 +175,7 @@ pub fn together(subjects: &[Subject]) -> u64 {
 mod tests {
     use super::*;
 
-    /// The published digests rest on these: a change of any is a change of all goldens.
+    /// The published digests depend on these: a change of any changes all goldens.
     #[test]
     fn the_hash_is_what_it_was() {
         let hashes = [

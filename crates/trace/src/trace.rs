@@ -1,4 +1,4 @@
-//! The rows of a run, held as bits.
+//! The rows of a run, stored as bits.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use crate::column::{Cell, Column, Kind, canonical_bits};
 use crate::header::{CAMS_MAX, Cam, Claim, Header};
 use crate::printable::{make_printable, printable};
 
-/// Something worth telling that is no column: an accepted plan, a refused or clamped command.
+/// An event that is no column: an accepted plan, a refused or clamped command.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Note {
     /// The scan it happened in.
@@ -19,10 +19,10 @@ pub struct Note {
     pub text: String,
 }
 
-/// Why a row was not taken.
+/// The reason why a row was refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RowError {
-    /// The row has another length than the columns.
+    /// The row and the columns have different lengths.
     #[error("a row of {found} cells where the trace has {expected} columns")]
     Length {
         /// Columns of the trace.
@@ -40,7 +40,7 @@ pub enum RowError {
         /// Kind of the cell.
         found: Kind,
     },
-    /// A name holds a line break or another control character, which no text form can carry.
+    /// A name has a line break or another control character, which no text form can have.
     #[error("column `{column}`: a name with a control character")]
     ControlCharacter {
         /// Name of the column.
@@ -48,10 +48,10 @@ pub enum RowError {
     },
 }
 
-/// A run: its header, one row a scan from scan 0 on, and its notes. Its texts are one line each and
-/// [`printable`](crate::printable), whatever they were made of.
+/// A run: its header, one row for each scan from scan 0, and its notes. All its texts are
+/// [`printable`](crate::printable) and one line each, whatever their source.
 ///
-/// A long run need not be held as a whole: [`Trace::forget`] lets go of rows that were looked at.
+/// A long run need not be held as a whole: [`Trace::forget`] drops rows that were read.
 #[derive(Clone, Debug)]
 pub struct Trace {
     header: Header,
@@ -59,7 +59,7 @@ pub struct Trace {
     by_name: BTreeMap<String, usize>,
     /// The scan of the first row that is held.
     first: usize,
-    /// Row after row, one word a cell; the column's kind says what the word means.
+    /// Row after row, one word a cell; the column's kind gives the meaning of the word.
     bits: Vec<u64>,
     names: Names,
     notes: Vec<Note>,
@@ -75,7 +75,7 @@ impl Trace {
         Self::with_columns(header, columns)
     }
 
-    /// An empty trace with those columns of the header, by their places there, that are kept.
+    /// An empty trace with only those columns of the header that are kept, given by their indices.
     #[must_use]
     pub fn with_some(header: Header, kept: impl Fn(usize) -> bool) -> Self {
         let columns = (0..).zip(header.columns());
@@ -87,7 +87,7 @@ impl Trace {
     /// An empty trace with columns of its own: for traces that were read without their header, or with
     /// columns that this version does not know.
     pub(crate) fn with_columns(mut header: Header, mut columns: Vec<Column>) -> Self {
-        // What comes from outside is made fit to be shown here, where every trace begins.
+        // Text from outside is made printable here, where every trace begins.
         header.texts_mut().for_each(make_printable);
         columns
             .iter_mut()
@@ -109,7 +109,7 @@ impl Trace {
         }
     }
 
-    /// What the run was made of.
+    /// The description of the run.
     #[must_use]
     pub const fn header(&self) -> &Header {
         &self.header
@@ -124,7 +124,8 @@ impl Trace {
         self.header.claims = claims;
     }
 
-    /// Enters how a cam lies from its first row on, and returns its place in the header; none if there is no room ([`CAMS_MAX`]).
+    /// Adds the place of a cam from its first row on, and returns its index in the header; none if there
+    /// is no room ([`CAMS_MAX`]).
     pub fn push_cam(&mut self, cam: Cam) -> Option<usize> {
         let place = self.header.cams.len();
         (place < CAMS_MAX).then(|| {
@@ -133,7 +134,7 @@ impl Trace {
         })
     }
 
-    /// The cam at this place of the header lay so up to the row of `scan`.
+    /// Says that the cam at this index of the header stayed at its place up to the row of `scan`.
     pub fn cam_lay_until(&mut self, place: usize, scan: usize) {
         if let Some(cam) = self.header.cams.get_mut(place) {
             let [_, last] = &mut cam.scans;
@@ -160,13 +161,13 @@ impl Trace {
         &self.columns
     }
 
-    /// Where the column of this name is, in the exact spelling; cost: logarithmic in the columns.
+    /// The index of the column of this name, in the exact spelling; cost: logarithmic in the columns.
     #[must_use]
     pub fn column(&self, name: &str) -> Option<usize> {
         self.by_name.get(name).copied()
     }
 
-    /// Number of rows: scans 0 to `scans() - 1`, those that were forgotten included.
+    /// Number of rows: scans 0 to `scans() - 1`, including those that were forgotten.
     #[must_use]
     pub fn scans(&self) -> usize {
         self.first + self.bits.len().checked_div(self.columns.len()).unwrap_or(0)
@@ -178,8 +179,8 @@ impl Trace {
         self.first
     }
 
-    /// Lets go of all rows but the last `kept`, and of their notes. What has to do with all rows, such as
-    /// [`Trace::cells`], has to do with those that are held from then on.
+    /// Drops all rows except the last `kept`, and their notes. Methods for all rows, such as
+    /// [`Trace::cells`], then return those that are held.
     pub fn forget(&mut self, kept: usize) {
         let first = self.scans().saturating_sub(kept).max(self.first);
         self.bits.drain(..(first - self.first) * self.columns.len());
@@ -189,7 +190,7 @@ impl Trace {
         self.notes_forgotten += old;
     }
 
-    /// How many notes were forgotten, which are those of the first scans.
+    /// The number of forgotten notes, which are those of the first scans.
     pub(crate) const fn notes_forgotten(&self) -> usize {
         self.notes_forgotten
     }
@@ -205,8 +206,8 @@ impl Trace {
         self.bits.reserve(scans.saturating_mul(self.columns.len()));
     }
 
-    /// Appends the row of the next scan. -0.0 becomes 0.0 and every NaN the same NaN: the text forms tell
-    /// neither apart, and which NaN an operation gives differs between processors.
+    /// Appends the row of the next scan. -0.0 becomes 0.0 and every NaN the same NaN: the text forms do
+    /// not distinguish them, and which NaN an operation gives differs between processors.
     ///
     /// # Errors
     /// A row of wrong length, a cell of a wrong kind, or a name with a control character; the trace is
@@ -215,8 +216,8 @@ impl Trace {
         self.push_cells(cells.iter().copied())
     }
 
-    /// As [`Trace::push_row`], of cells that nobody has to put into a list. It takes memory only where
-    /// [`Trace::reserve`] has made no room, and for names that were never there before.
+    /// As [`Trace::push_row`], for cells that need not be put into a list. It takes memory only if
+    /// [`Trace::reserve`] has made no room, and for new names.
     ///
     /// # Errors
     /// Those of [`Trace::push_row`].
@@ -256,10 +257,10 @@ impl Trace {
         })
     }
 
-    /// The word under which a row holds a cell of the column at this place; see [`Trace::push_words`].
+    /// The word with which a row stores a cell of the column at this index; see [`Trace::push_words`].
     ///
     /// # Errors
-    /// Those of [`Trace::push_row`]; of a place without a column, [`RowError::Length`].
+    /// Those of [`Trace::push_row`]; for an index without a column, [`RowError::Length`].
     pub fn word_of(&mut self, place: usize, cell: Cell<'_>) -> Result<u64, RowError> {
         let Some(column) = self.columns.get(place) else {
             return Err(RowError::Length {
@@ -270,8 +271,8 @@ impl Trace {
         word_of(&mut self.names, column, cell)
     }
 
-    /// As [`Trace::push_row`], of words that [`Trace::word_of`] gave for the columns in their order: for rows of which most cells
-    /// stay as they are.
+    /// As [`Trace::push_row`], for words that [`Trace::word_of`] returned for the columns in their order.
+    /// Use it for rows with few changed cells.
     ///
     /// # Errors
     /// A row of wrong length; the trace is then as it was before.
@@ -286,7 +287,7 @@ impl Trace {
         Ok(())
     }
 
-    /// The word above the next one, in the row before.
+    /// The word in the last row at the place of the next word.
     fn above(&self) -> Option<u64> {
         let at = self.bits.len().checked_sub(self.columns.len())?;
         self.bits.get(at).copied()
@@ -308,7 +309,7 @@ impl Trace {
         Some(self.decode(kind, self.word(scan, column)?))
     }
 
-    /// What holds the value of a column in a scan; `None` outside the trace.
+    /// The stored word of a column in a scan; `None` outside the trace.
     pub(crate) fn word(&self, scan: usize, column: usize) -> Option<u64> {
         let row = scan.checked_sub(self.first)?;
         self.bits
@@ -338,7 +339,7 @@ impl Trace {
             .flat_map(move |kind| words.clone().map(move |&word| self.decode(kind, word)))
     }
 
-    /// The numbers of a column of reals from scan 0 on; none if it is no such column.
+    /// The numbers of a column of reals from scan 0 on; none for another column.
     pub fn reals(&self, column: usize) -> impl Iterator<Item = f64> {
         self.cells(column).filter_map(|cell| match cell {
             Cell::Real(value) => Some(value),
@@ -346,7 +347,7 @@ impl Trace {
         })
     }
 
-    /// The header as [`Header::to_json`] gives it, and the notes in it: what goes before the rows of a file.
+    /// The header as [`Header::to_json`] writes it, with the notes: the text before the rows of a file.
     #[must_use]
     pub fn header_json(&self) -> String {
         self.header.json_with_notes(&self.notes)
@@ -362,13 +363,13 @@ impl Trace {
     pub fn push_note(&mut self, mut note: Note) {
         make_printable(&mut note.subject);
         make_printable(&mut note.text);
-        // Behind the last one of its scan; mostly that is the end.
+        // Behind the last note of its scan; usually that is the end.
         let place = self.notes.partition_point(|known| known.scan <= note.scan);
         self.notes.insert(place, note);
     }
 
-    /// A trace of rows that are there already, one word a cell as [`Trace::decode`] reads it; words of names are places in
-    /// `names`. `None` if the words are no whole rows, or a name is not there or cannot stand in a row.
+    /// A trace of given rows, one word a cell as [`Trace::decode`] reads it; words of names are indices
+    /// into `names`. `None` if the words are not whole rows, or a name is missing or cannot be in a row.
     pub(crate) fn with_rows(
         header: Header,
         columns: Vec<Column>,
@@ -397,7 +398,7 @@ impl Trace {
         Some(trace)
     }
 
-    /// The rows from a scan on as they are held: a word a cell; that of a name is its place in [`Trace::texts`].
+    /// The rows from a scan on as stored: a word a cell; for a name its index in [`Trace::texts`].
     pub(crate) fn words_from(&self, scan: usize) -> impl Iterator<Item = &[u64]> {
         let rows = self.bits.chunks_exact(self.columns.len().max(1));
         rows.skip(scan.saturating_sub(self.first))
@@ -413,14 +414,15 @@ impl Trace {
         self.names.text(word)
     }
 
-    /// Takes the rows out, row after row, a word a cell: a BOOL is 0 or 1, a number its bits, a whole number itself, a name its
-    /// place in [`Trace::names`]. The trace is empty then; [`Trace::put_words`] gives them back.
+    /// Takes the rows out, row after row, a word a cell: a BOOL is 0 or 1, a number its bits, a whole
+    /// number itself, a name its index in [`Trace::names`]. The trace is then empty; [`Trace::put_words`]
+    /// returns them.
     #[must_use]
     pub fn take_words(&mut self) -> Vec<u64> {
         std::mem::take(&mut self.bits)
     }
 
-    /// Gives back the rows that [`Trace::take_words`] took; words that are no whole row at the end are left away.
+    /// Returns the rows that [`Trace::take_words`] took; an incomplete row at the end is dropped.
     pub fn put_words(&mut self, mut words: Vec<u64>) {
         let width = self.columns.len();
         words.truncate(words.len() - words.len().checked_rem(width).unwrap_or(words.len()));
@@ -433,7 +435,7 @@ impl Trace {
         &self.names.texts
     }
 
-    /// What a word means in a column of this kind.
+    /// The meaning of a word in a column of this kind.
     pub(crate) fn decode(&self, kind: Kind, word: u64) -> Cell<'_> {
         match kind {
             Kind::Bool => Cell::Bool(word != 0),
@@ -485,7 +487,8 @@ impl Names {
         index
     }
 
-    /// Whether [`Names::index`] gives a text this index: most names stay from row to row, and then nothing is looked up.
+    /// Whether [`Names::index`] returns this index for a text. Most names stay from row to row, and then
+    /// no search is needed.
     fn is(&self, index: u64, text: &str) -> bool {
         let given = usize::try_from(index).ok().and_then(|at| self.given.get(at));
         given.is_some_and(|given| given == text)

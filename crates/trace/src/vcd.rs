@@ -1,8 +1,9 @@
 //! Traces as a value change dump (IEEE 1364), which GTKWave, Surfer and other waveform viewers open.
 //!
-//! Axes and instances are scopes, input variables stand in the scope `inputs`. BOOL is a wire, a number a real, a whole
-//! number an integer of 64 bits; states and other names are strings, an extension that both viewers know. Only changes
-//! are written; the dump ends a scan after the last row, so that this one has a width, too.
+//! Axes and instances are scopes, input variables are in the scope `inputs`. BOOL is a wire, a number a
+//! real, a whole number an integer of 64 bits; states and other names are strings, an extension that both
+//! viewers know. Only changes are written. The dump ends a scan after the last row, so that this one also
+//! has a width.
 
 use std::io::{self, Write};
 
@@ -11,7 +12,8 @@ use crate::events::{VARIABLES, same};
 use crate::number::shortest;
 use crate::trace::Trace;
 
-/// Writes the trace. Text that the form cannot hold is bent to it: blanks in names become `_`, a name that is empty `-`.
+/// Writes the trace. Text that the form cannot have is changed: blanks in names become `_`, an empty name
+/// `-`.
 ///
 /// # Errors
 /// Those of `out`.
@@ -64,7 +66,7 @@ fn variable(at: usize, column: &Column, out: &mut impl Write) -> io::Result<()> 
     writeln!(out, "$var {kind} {} {} $end", code(at), word(column.signal()))
 }
 
-/// A value as it stands before the code of its variable.
+/// A value in the form before the code of its variable.
 fn change(cell: Cell<'_>) -> String {
     match cell {
         Cell::Bool(value) => u8::from(value).to_string(),

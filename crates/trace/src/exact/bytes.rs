@@ -28,7 +28,7 @@ pub fn put_text(body: &mut Vec<u8>, text: &str) {
     body.extend(text.as_bytes());
 }
 
-/// The rest of an unpacked companion. Every read is `None` where the bytes end or make no sense.
+/// The rest of an unpacked companion. Every read returns `None` if the bytes end or are invalid.
 pub struct Reader<'a>(pub &'a [u8]);
 
 impl Reader<'_> {
@@ -50,7 +50,7 @@ impl Reader<'_> {
         None
     }
 
-    /// A count of things that take at least a byte each, so it cannot exceed the bytes left.
+    /// A count of items that take at least a byte each, so it cannot exceed the bytes left.
     pub fn count(&mut self) -> Option<usize> {
         let count = usize::try_from(self.number()?).ok()?;
         (count <= self.0.len()).then_some(count)

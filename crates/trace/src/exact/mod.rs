@@ -1,14 +1,15 @@
 //! The exact companion of a golden: every bit of a trace in a small file.
 //!
-//! A golden text judges all bits by digest, but cannot say which one differs. The companion can, and is
-//! small because signals of motion are smooth: each number is predicted from the ones before it, and only
-//! the distance between prediction and truth, counted in representable numbers, is kept and deflated.
+//! A golden text judges all bits by digest, but cannot say which one differs. The companion can. It is
+//! small because signals of motion are smooth: each number is predicted from those before it, and only
+//! the distance from the prediction, counted in representable numbers, is stored and deflated.
 //!
-//! Layout: a line of text with the version; the digest of the trace (8 bytes, least significant first: that of all
-//! subjects together, in version 1 of all rows, [`digest::whole`]); then in zlib form: cycle, number of rows and columns, the columns, the names, and column after column the
-//! distances. Whole numbers are LEB128, signed ones zigzag. Predictions use `+ - *` on f64 in a fixed
-//! order, so the same trace gives the same bytes everywhere. A new version of the compressor may pack
-//! tighter; [`crate::golden::accept`] leaves a file alone that holds the right content.
+//! Layout: a line of text with the version; the digest of the trace (8 bytes, least significant first:
+//! that of all subjects together, in version 1 of all rows, [`digest::whole`]); then in zlib form: cycle,
+//! number of rows and columns, the columns, the names, and column after column the distances. Whole
+//! numbers are LEB128, signed ones zigzag. Predictions use `+ - *` on f64 in a fixed order, so the same
+//! trace gives the same bytes everywhere. A new version of the compressor may pack tighter;
+//! [`crate::golden::accept`] does not change a file that has the right content.
 
 mod bytes;
 mod predict;
@@ -29,10 +30,10 @@ use crate::trace::Trace;
 /// The first bytes of a companion, with the version of its form.
 const MAGIC: &[u8] = b"standstill exact 2\n";
 
-/// As [`MAGIC`], of a form that is still read: all but its digest is the same.
+/// The same for version 1, which is still read: only its digest differs.
 const MAGIC_1: &[u8] = b"standstill exact 1\n";
 
-/// Bytes that surely hold the cycle and the numbers of rows and columns.
+/// Bytes that are enough for the cycle and the numbers of rows and columns.
 const HEAD_BYTES: usize = 64;
 
 /// Most bytes of a cell: a number of 64 bits, seven a byte.
@@ -41,25 +42,25 @@ const CELL_BYTES: usize = 10;
 /// Most bytes of a companion beside its cells: the names of its columns, and those in them.
 const NAMES_BYTES: usize = 1 << 22;
 
-/// The cells that a companion of which nothing else is known may always unpack to ..
+/// Number of cells that may always be unpacked, if nothing else is known of a companion ..
 const CELLS_FREE: usize = 1 << 22;
 
 /// .. and how many more for each byte of the file.
 const CELLS_PER_BYTE: usize = 256;
 
-/// Why a companion could not be read.
+/// The reason why a companion could not be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ExactError {
-    /// It does not begin as a companion of this version does.
+    /// It does not begin like a companion of this version.
     #[error("no exact trace of this version")]
     Foreign,
     /// It is cut short or altered.
     #[error("the exact trace is damaged")]
     Damaged,
-    /// It holds more than there is reason to unpack.
+    /// It has more cells than may be unpacked.
     #[error("the exact trace is larger than the {most} cells that are read of it")]
     TooLarge {
-        /// So many cells would have been read.
+        /// The largest number of cells that would have been read.
         most: usize,
     },
 }
@@ -119,19 +120,21 @@ pub fn digest_of(file: &[u8]) -> Result<u64, ExactError> {
         .ok_or(ExactError::Damaged)
 }
 
-/// Unpacks a companion that stands for itself. Of the header only the cycle and the names of the axes are known.
+/// Unpacks a companion without its golden. Of the header only the cycle and the names of the axes are
+/// known.
 ///
-/// Memory is in proportion to the file: a companion of more than 2^22 cells must hold at most 256 a byte. Goldens are
-/// bounded by their runs instead, see [`decode_within`].
+/// Memory is in proportion to the file: beyond 2^22 cells a companion may have at most 256 cells per
+/// byte. Goldens are bounded by their runs instead, see [`decode_within`].
 ///
 /// # Errors
-/// Another file, one whose content does not have the digest it states, or one that would take too much memory.
+/// Another file, one whose content does not have its stated digest, or one that would take too much
+/// memory.
 pub fn decode(file: &[u8]) -> Result<Trace, ExactError> {
     decode_within(file, CELLS_FREE.max(file.len().saturating_mul(CELLS_PER_BYTE)))
 }
 
-/// Unpacks a companion of a limited number of cells, that is rows times columns. Memory: at most some 30 bytes a cell that is
-/// there, and 4 MiB.
+/// Unpacks a companion with a limited number of cells, that is rows times columns. Memory: at most some
+/// 30 bytes for each cell, and 4 MiB.
 ///
 /// # Errors
 /// As [`decode`].
@@ -139,7 +142,7 @@ pub fn decode_within(file: &[u8], most: usize) -> Result<Trace, ExactError> {
     let stated = digest_of(file)?;
     let packed = file.get(MAGIC.len() + 8..).unwrap_or_default();
     let room = most.saturating_mul(CELL_BYTES).saturating_add(NAMES_BYTES);
-    // The head of what is packed says how much it is, so a file that says too much is not unpacked.
+    // The head of the packed data gives its size, so a file with too large a size is not unpacked.
     let head = match miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(packed, HEAD_BYTES) {
         Ok(whole) => whole,
         Err(error) if error.status == TINFLStatus::HasMoreOutput => error.output,
@@ -192,7 +195,7 @@ fn word(cell: Cell<'_>, names: &BTreeMap<&str, u64>) -> u64 {
     }
 }
 
-/// Words as differences of their differences: counters and running times become zeros.
+/// Words as second differences: counters and running times become zeros.
 fn put_words(body: &mut Vec<u8>, words: impl Iterator<Item = u64>) {
     let (mut last, mut step) = (0_u64, 0_u64);
     for word in words {
@@ -203,7 +206,7 @@ fn put_words(body: &mut Vec<u8>, words: impl Iterator<Item = u64>) {
 }
 
 /// A column of reals under its cheapest predictor: the order of an extrapolation, or the number of orders
-/// plus the lag and then which column of reals is copied; then the distances.
+/// plus the lag and then the number of the copied column; then the distances.
 fn put_reals(body: &mut Vec<u8>, values: &[f64], earlier: &[Vec<f64>]) {
     let predictor = cheapest(values, earlier);
     match predictor {
@@ -254,7 +257,7 @@ impl Reader<'_> {
         })
     }
 
-    /// The words of a column, each to its place among those of all rows.
+    /// Writes the words of a column to their places among those of all rows.
     fn words(&mut self, places: impl Iterator<Item = usize>, bits: &mut [u64]) -> Option<()> {
         let (mut last, mut step) = (0_u64, 0_u64);
         for place in places {
@@ -282,7 +285,7 @@ impl Reader<'_> {
         Some(values)
     }
 
-    /// Rows times columns, as the first numbers say.
+    /// Rows times columns, from the first numbers.
     fn cells(mut self) -> Option<usize> {
         let _cycle_ns = self.number()?;
         let rows = usize::try_from(self.number()?).ok()?;
@@ -302,7 +305,7 @@ impl Reader<'_> {
             .take(count)
             .collect::<Option<_>>()?;
         let cells = rows.checked_mul(width)?;
-        // A cell takes a byte at least, so a count that the file does not hold takes no memory.
+        // A cell takes at least a byte, so memory is not allocated for a count that the file cannot have.
         if cells > self.0.len() || (width == 0 && rows > 0) {
             return None;
         }

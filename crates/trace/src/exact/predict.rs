@@ -18,10 +18,10 @@ const EXTRAPOLATIONS: [&[f64]; EXTRAPOLATION_ORDERS] = [
 /// Orders of extrapolation: 0 to 6.
 pub const EXTRAPOLATION_ORDERS: usize = 7;
 
-/// How many scans back an earlier column may be what this one repeats (feedback of an ideal drive).
+/// Largest number of scans by which a column may repeat an earlier one (feedback of an ideal drive).
 const LAG_MAX: usize = 3;
 
-/// How a column of reals is predicted.
+/// The prediction of a column of reals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Predictor {
     /// By the polynomial through some of its own last values.
@@ -31,7 +31,8 @@ pub enum Predictor {
 }
 
 impl Predictor {
-    /// The next value of a column that so far holds `own`; `earlier` are the columns of reals before it.
+    /// The next value of a column that has the values `own` so far; `earlier` are the columns of reals
+    /// before it.
     fn predict(self, own: &[f64], earlier: &[Vec<f64>]) -> f64 {
         let prediction = match self {
             Self::Extrapolation(order) => {
@@ -49,7 +50,7 @@ impl Predictor {
                     .unwrap_or(0.0)
             }
         };
-        // An overflow is no use, and which NaN it gives differs between processors.
+        // An overflow is useless, and which NaN it gives differs between processors.
         if prediction.is_finite() {
             prediction
         } else {
@@ -57,7 +58,7 @@ impl Predictor {
         }
     }
 
-    /// How far the value is from its prediction, in representable numbers.
+    /// The distance of the value from its prediction, in representable numbers.
     pub fn distance(self, own: &[f64], earlier: &[Vec<f64>], value: f64) -> i64 {
         ordered(value).wrapping_sub(ordered(self.predict(own, earlier)))
     }
@@ -80,12 +81,12 @@ impl Predictor {
     }
 }
 
-/// So few bytes above the least that any predictor can need, there is nothing to look for any more: a column that
-/// stands still costs its first value.
+/// Within this many bytes of the least that any predictor can need, the search ends: a column that stands
+/// still costs its first value.
 const BYTES_SPARE: usize = 10;
 
-/// The predictor under which a column takes the fewest bytes, or next to the least possible, found by trying one after
-/// the other; of equals the first.
+/// The predictor under which a column takes the fewest bytes, or nearly the least possible, found by
+/// trying one after the other; of equal ones the first.
 pub fn cheapest(values: &[f64], earlier: &[Vec<f64>]) -> Predictor {
     let extrapolations = (0..EXTRAPOLATION_ORDERS).map(Predictor::Extrapolation);
     let copies =

@@ -1,4 +1,4 @@
-//! Traces in files, whose form follows from the name: `.csv`, `.jsonl`, and for reading `.exact`.
+//! Traces in files. The form follows from the name: `.csv`, `.jsonl`, and for reading `.exact`.
 
 mod streaming;
 
@@ -33,24 +33,24 @@ pub enum FileError {
         /// What the system said.
         source: io::Error,
     },
-    /// The system refused while a long run was written; what there is of it was kept.
+    /// The system refused while a long run was written; the part written so far was kept.
     #[error("{}: {source}; the first {rows} rows are in {}", shown(.path), shown(.partial))]
     Partial {
         /// The file.
         path: PathBuf,
         /// Where the rows are.
         partial: PathBuf,
-        /// How many there are, all of them whole.
+        /// Number of rows in it, all of them whole.
         rows: usize,
         /// What the system said.
         source: io::Error,
     },
-    /// Its text is no trace, or not all of one.
+    /// Its text is no trace, or a part of one.
     #[error("{}: {source}", shown(.path))]
     Text {
         /// The file.
         path: PathBuf,
-        /// What is wrong, and where.
+        /// The fault and its place.
         source: ReadError,
     },
     /// It is no exact trace, or a damaged one.
@@ -82,7 +82,7 @@ fn form(path: &Path) -> Result<Form, FileError> {
     }
 }
 
-/// Whether [`save`] knows how to write a file of this name: to be asked before a long run, not after it.
+/// Whether [`save`] can write a file of this name. Ask before a long run, not after it.
 #[must_use]
 pub fn can_save(path: &Path) -> bool {
     matches!(form(path), Ok(Form::Csv | Form::JsonLines))
@@ -94,11 +94,11 @@ pub fn is_csv(path: &Path) -> bool {
     matches!(form(path), Ok(Form::Csv))
 }
 
-/// Writes a trace; for CSV its header goes into [`csv::meta_path`]. A file that was there is replaced as
-/// [`replace`] does it.
+/// Writes a trace; for CSV its header goes into [`csv::meta_path`]. An existing file is replaced as by
+/// [`replace`].
 ///
 /// # Errors
-/// A name that ends in neither `.csv` nor `.jsonl`, or what the system says.
+/// A name that ends in neither `.csv` nor `.jsonl`, or an error of the system.
 pub fn save(trace: &Trace, path: &Path) -> Result<(), FileError> {
     save_as(trace, path, Dialect::default())
 }
@@ -111,11 +111,11 @@ pub fn save_as(trace: &Trace, path: &Path, dialect: Dialect) -> Result<(), FileE
     Saving::begin(path)?.finish(trace, dialect)
 }
 
-/// The files of a trace, begun before the run that it is of: what keeps them from being written shows before it.
+/// The files of a trace, created before its run, so that an obstacle to writing them shows at once.
 #[derive(Debug)]
 pub struct Saving {
     rows: Draft,
-    /// What stands beside a table.
+    /// The file beside a table.
     header: Option<Draft>,
 }
 
@@ -153,17 +153,18 @@ impl Saving {
     }
 }
 
-/// Writes a file that a person named, whole or not at all: what `write` gives goes to a new file beside it, which then
-/// takes its place. A link is replaced, not followed; what is no regular file (a pipe, a device) is written to as it is.
+/// Writes a file that a person named, whole or not at all: `write` fills a new file beside it, which then
+/// takes its place. A link is replaced, not followed. If it is not a regular file (a pipe, a device), it
+/// is written to directly.
 ///
 /// # Errors
-/// What the system says; a file that was there is then as it was.
+/// An error of the system; an existing file is then unchanged.
 pub fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
     Draft::begin(path)?.finish(write)
 }
 
-/// As [`replace`], for a file that nobody named, such as the golden beside a script: whatever stands in its place, nothing
-/// but this name in its folder changes. A folder or a device there is an error.
+/// As [`replace`], for a file that nobody named, such as the golden beside a script. Whatever is in its
+/// place, nothing but this name in its folder changes. A folder or a device there is an error.
 ///
 /// # Errors
 /// As [`replace`].
@@ -174,8 +175,8 @@ pub fn replace_beside(
     Draft::beside(path)?.finish(write)
 }
 
-/// A file that is to be replaced, begun before there is anything to write: what keeps it from being written shows at the
-/// begin of a long run, not at its end. Dropped, it leaves what was there.
+/// A file that will be replaced, created before there is anything to write, so that an obstacle shows at
+/// the begin of a long run and not at its end. If it is dropped, the existing file is unchanged.
 #[derive(Debug)]
 pub struct Draft {
     path: PathBuf,
@@ -184,9 +185,9 @@ pub struct Draft {
 
 #[derive(Debug)]
 enum Target {
-    /// It takes the place of what is there.
+    /// It takes the place of the existing file.
     New(NamedTempFile),
-    /// A pipe or a device, written to as it is.
+    /// A pipe or a device, written to directly.
     Open(File),
 }
 
@@ -196,7 +197,7 @@ impl Draft {
     /// # Errors
     /// What the system says.
     pub fn begin(path: &Path) -> Result<Self, FileError> {
-        // Through a link, too: `/dev/stdout` is one.
+        // Also through a link: `/dev/stdout` is one.
         let special = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
         if !special {
             return Self::beside(path);
@@ -229,7 +230,7 @@ impl Draft {
         self.keep()
     }
 
-    /// Puts what was written into its place.
+    /// Puts the written file into its place.
     ///
     /// # Errors
     /// What the system says; a file that was there is then as it was.
@@ -255,7 +256,7 @@ impl Draft {
     }
 }
 
-/// For what is written bit by bit; [`Draft::keep`] ends it.
+/// For data written in parts; [`Draft::keep`] ends it.
 impl Write for Draft {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.file().write(bytes)
@@ -266,7 +267,7 @@ impl Write for Draft {
     }
 }
 
-/// An empty file beside `path` with the permissions of the one there, or those of any new file.
+/// An empty file beside `path` with the permissions of the existing one, or those of any new file.
 fn begun(path: &Path) -> io::Result<NamedTempFile> {
     let there = fs::symlink_metadata(path).ok();
     if there
@@ -284,7 +285,7 @@ fn begun(path: &Path) -> io::Result<NamedTempFile> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // The system takes from these what its mask says.
+        // The system removes the permissions in its mask.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let draft = builder.tempfile_in(folder).map_err(without_path)?;
@@ -295,7 +296,7 @@ fn begun(path: &Path) -> io::Result<NamedTempFile> {
     Ok(draft)
 }
 
-/// What the system said, without the name of the new file, which nobody knows.
+/// The error of the system without the name of the new file, which the user does not know.
 fn without_path(error: io::Error) -> io::Error {
     let text = error.to_string();
     let said = text.split(" at path ").next().unwrap_or(&text).to_owned();
@@ -319,8 +320,8 @@ pub fn shown(path: &Path) -> String {
     printable(&text).into_owned()
 }
 
-/// The bytes of a file that nobody named. What is no regular file is not read: a pipe would be waited for, and a device
-/// may have no end.
+/// The bytes of a file that nobody named. Anything but a regular file is not read: a pipe would block,
+/// and a device may have no end.
 ///
 /// # Errors
 /// What the system says.
@@ -337,7 +338,7 @@ pub fn read_regular(path: &Path) -> io::Result<Vec<u8>> {
 /// Reads a trace, for CSV together with [`csv::meta_path`] if that file is there.
 ///
 /// # Errors
-/// A name that ends in none of the forms, what the system says, or a file that is no trace.
+/// A name without a known form, an error of the system, or a file that is no trace.
 pub fn load(path: &Path) -> Result<Loaded, FileError> {
     let io_error = |path: &Path, source| FileError::Io {
         path: path.to_owned(),

@@ -1,4 +1,4 @@
-//! A trace that is written while its run goes on.
+//! A trace that is written during its run.
 
 use super::{Draft, FileError, Form, form, replace_beside};
 use crate::csv::{self, Dialect};
@@ -8,11 +8,12 @@ use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, BufWriter, ErrorKind, Seek, Write};
 use std::path::{Path, PathBuf};
 
-/// The files of a trace whose rows are written as they come and are then no longer needed. They go to `X.partial`, which takes the
-/// place of `X` at the end; a pipe or a device is written to as it is. Whatever ends the run early, the partial file has whole
-/// rows, but for the last one after a kill.
+/// The files of a trace whose rows are written as they come and are then no longer needed. They go to
+/// `X.partial`, which takes the place of `X` at the end. A pipe or a device is written to directly. If
+/// the run ends early, the partial file has whole rows, except for the last one after a kill.
 ///
-/// JSON Lines end with an object that has what the header, written before the first scan, cannot have: verdicts, cams, notes.
+/// JSON Lines end with an object for what is not known before the first scan, when the header is written:
+/// verdicts, cams, notes.
 #[derive(Debug)]
 pub struct Streaming {
     path: PathBuf,
@@ -22,7 +23,7 @@ pub struct Streaming {
     /// `X.partial`; none if `X` is a pipe or a device.
     partial: Option<PathBuf>,
     notes: Notes,
-    /// Rows that were written whole.
+    /// Number of rows written whole.
     rows: usize,
 }
 
@@ -47,7 +48,7 @@ impl Streaming {
             }
         };
         if form == Form::Csv {
-            // What keeps it from being written shows now.
+            // An obstacle to writing shows now.
             drop(Draft::beside(&csv::meta_path(path))?);
         }
         let mut streaming = Self {
@@ -69,7 +70,7 @@ impl Streaming {
         Ok(streaming)
     }
 
-    /// Where the rows are that were written, and how many; none if they went to a pipe or a device.
+    /// The file with the written rows, and their number; none if they went to a pipe or a device.
     #[must_use]
     pub fn kept(&self) -> Option<(&Path, usize)> {
         Some((self.partial.as_deref()?, self.rows))
@@ -78,7 +79,7 @@ impl Streaming {
     /// Writes the rows that the trace has got since the last call.
     ///
     /// # Errors
-    /// What the system says, and where the rows are that were written.
+    /// The error of the system, and the file with the rows written so far.
     pub fn look(&mut self, trace: &Trace) -> Result<(), FileError> {
         self.take(trace).map_err(|error| self.failed(error))
     }
@@ -97,7 +98,8 @@ impl Streaming {
         self.notes.take(trace)
     }
 
-    /// Writes whole lines. If they cannot be written, a line that was begun is taken back, and those that stand are counted.
+    /// Writes whole lines. If they cannot be written, a line that was begun is removed, and the whole
+    /// ones are counted.
     fn write(&mut self, lines: &[u8]) -> Result<(), (io::Error, usize)> {
         let mut rest = lines;
         while !rest.is_empty() {
@@ -118,16 +120,17 @@ impl Streaming {
         Ok(())
     }
 
-    /// Takes back the last bytes of the partial file.
+    /// Removes the last bytes of the partial file.
     fn take_back(&self, bytes: usize) {
         let length = self.out.metadata().map(|found| found.len());
         if let (Some(_), Ok(length)) = (&self.partial, length) {
-            // What cannot be taken back stays as a torn row, as after a kill.
+            // If they cannot be removed, a torn row remains, as after a kill.
             let _ = self.out.set_len(length.saturating_sub(bytes as u64));
         }
     }
 
-    /// Writes what comes after the rows, of a trace whose claims are judged, and puts the files into their places.
+    /// Writes the data behind the rows, for a trace whose claims are judged, and puts the files into
+    /// their places.
     ///
     /// # Errors
     /// As [`Streaming::look`].
@@ -171,7 +174,7 @@ impl Streaming {
         })
     }
 
-    /// Puts the partial file into its place, unless another run has taken it away.
+    /// Puts the partial file into its place, unless another run has removed it.
     fn put(&self) -> io::Result<()> {
         let Some(partial) = &self.partial else {
             return Ok(());
@@ -213,10 +216,10 @@ fn beside(path: &Path, ending: &str) -> PathBuf {
     PathBuf::from(name)
 }
 
-/// An empty file for what takes the place of `path`, with the permissions of the one there. What an earlier run left in its place
-/// is replaced, and a link is not followed.
+/// An empty file that will take the place of `path`, with the permissions of the existing one. A
+/// remainder of an earlier run is replaced, and a link is not followed.
 fn begun(path: &Path, partial: &Path) -> Result<File, FileError> {
-    // What keeps the file from being replaced shows now.
+    // An obstacle to replacing the file shows now.
     drop(Draft::beside(path)?);
     match fs::symlink_metadata(partial) {
         Ok(there) if !there.is_file() => {
@@ -235,7 +238,7 @@ fn begun(path: &Path, partial: &Path) -> Result<File, FileError> {
     Ok(file)
 }
 
-/// The notes of a run, on disk: there may be more than memory holds. One JSON object a line.
+/// The notes of a run, on disk, because they may exceed the memory. One JSON object a line.
 #[derive(Debug)]
 struct Notes {
     lines: BufWriter<File>,
@@ -250,7 +253,7 @@ impl Notes {
         })
     }
 
-    /// Takes those that the trace has got since the last call.
+    /// Takes the notes that the trace has got since the last call.
     fn take(&mut self, trace: &Trace) -> io::Result<()> {
         let new = self.count.saturating_sub(trace.notes_forgotten());
         for note in trace.notes().get(new..).unwrap_or_default() {
@@ -261,7 +264,7 @@ impl Notes {
         Ok(())
     }
 
-    /// Writes them as a member of an object that has others; nothing where there are none.
+    /// Writes them as a further member of an object; nothing if there are none.
     fn write(&mut self, out: &mut dyn Write) -> io::Result<()> {
         if self.count == 0 {
             return Ok(());

@@ -1,10 +1,11 @@
-//! Recordings of machines: CSV as scopes, traces of a PLC and loggers export it.
+//! Recordings of machines: CSV as exported by scopes, PLC traces and loggers.
 //!
-//! Such files have header blocks of any length, their own names, decimal points or commas, and times in their own
-//! unit. What the reader must find is said by name, so it needs to know no maker's form: the line of names is the one
-//! that holds the most of the names asked for, the rows begin where the time below it is a number.
+//! Such files have header blocks of any length, their own names, decimal points or commas, and times in
+//! their own unit. The caller names the columns it needs, so the reader knows no manufacturer's form. The
+//! line of names is the one with most of these names, and the rows begin where the time below it is a
+//! number.
 //!
-//! The work is proportional to the length of the text, but for the search of the names in its first
+//! The work is proportional to the length of the text, except for the search of the names in its first
 //! [`HEADER_LINES`] lines.
 
 mod number;
@@ -20,7 +21,7 @@ use table::Table;
 
 use crate::read::ReadError;
 
-/// Lines in which the line of names is looked for.
+/// Lines that are searched for the line of names.
 pub const HEADER_LINES: usize = 1000;
 
 /// Which column.
@@ -47,48 +48,48 @@ pub enum Unit {
     Ticks,
 }
 
-/// Where the times of the samples stand.
+/// The times of the samples.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Times {
-    /// In a column. Where several have its name, each signal takes the nearest one to its left.
+    /// In a column. If several have its name, each signal uses the nearest one to its left.
     Column {
         /// The column.
         place: Place,
         /// What its numbers count.
         unit: Unit,
     },
-    /// Nowhere: the distance of two rows (ns), above 0.
+    /// Not in the file: the distance of two rows (ns), above 0.
     Every(i64),
 }
 
 /// The form of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
-    /// What stands between cells; found out if `None`.
+    /// The separator of cells; found from the file if `None`.
     pub delimiter: Option<char>,
-    /// What stands before decimals, `.` or `,`; found out if `None`.
+    /// The decimal mark, `.` or `,`; found from the file if `None`.
     pub decimal: Option<char>,
     /// The times.
     pub times: Times,
 }
 
-/// What the cells of a column are read as.
+/// How the cells of a column are read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reading {
     /// Numbers, joined by straight lines.
     Curve,
-    /// Truth values (`TRUE`, `FALSE` in any case, 1, 0), which hold until the next sample.
+    /// Truth values (`TRUE`, `FALSE` in any case, 1, 0), which stay until the next sample.
     Bool,
     /// Whole numbers, which hold.
     Whole,
-    /// Words, which hold; those found here stand for others.
+    /// Words, which stay until the next sample; those listed here are replaced.
     Word(BTreeMap<String, String>),
 }
 
-/// A column that is wanted.
+/// A requested column.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Wanted {
-    /// The signal it is wanted for: goes into messages.
+    /// The signal that needs it; used in messages.
     pub signal: String,
     /// Which column.
     pub place: Place,
@@ -96,7 +97,7 @@ pub struct Wanted {
     pub reading: Reading,
 }
 
-/// What was recorded of one signal; times (ns) count from the earliest sample of the recording.
+/// The samples of one signal; times (ns) count from the earliest sample of the recording.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Channel {
     /// Samples, their times rising.
@@ -105,7 +106,7 @@ pub enum Channel {
     Steps(Steps),
 }
 
-/// Values that hold until they change.
+/// Values that stay until they change.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Steps {
     /// The first value and every change, each with its time (ns).
@@ -138,15 +139,15 @@ impl Channel {
 /// A recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
-    /// One channel for each wanted column, in that order.
+    /// One channel for each requested column, in that order.
     pub channels: Vec<Channel>,
     /// Rows that were read.
     pub rows: usize,
     /// What stands between cells.
     pub delimiter: char,
-    /// What stands before decimals; `None` if no number has any.
+    /// The decimal mark; `None` if no number has decimals.
     pub decimal: Option<char>,
-    /// The last line has no end: it may have been cut.
+    /// The last line has no line end, so it may have been cut.
     pub open_end: bool,
 }
 
@@ -167,8 +168,8 @@ impl fmt::Display for Recording {
 /// Reads the wanted columns.
 ///
 /// # Errors
-/// Columns that are not there or twice, rows that are cut short, cells that cannot be read as wanted, times that do
-/// not rise; with line and column.
+/// Columns that are missing or twice, rows that are cut short, cells that cannot be read as requested,
+/// times that do not rise; with line and column.
 pub fn read(text: &str, layout: &Layout, wanted: &[Wanted]) -> Result<Recording, ReadError> {
     let table = Table::find(text, layout, wanted)?;
     let mut marks = Marks::new(layout.decimal, table.delimiter);
@@ -187,7 +188,7 @@ pub fn read(text: &str, layout: &Layout, wanted: &[Wanted]) -> Result<Recording,
             let ns = match (&layout.times, column.time) {
                 (Times::Column { unit, .. }, Some(time)) => {
                     let time = row.cell(time, "the time")?;
-                    // Slower channels leave the rows between their samples empty.
+                    // Slower channels have empty cells between their samples.
                     if time.text.is_empty() || cell.text.is_empty() {
                         continue;
                     }

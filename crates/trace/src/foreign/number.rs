@@ -5,12 +5,13 @@ use super::{Reading, Unit};
 use crate::number;
 use crate::read::ReadError;
 
-/// What stands before decimals: said, or found out from the first number that has one.
+/// The decimal mark: given, or found from the first number that has one.
 pub struct Marks {
     mark: Option<char>,
-    /// The line it was found in; `None` if it was said.
+    /// The line it was found in; `None` if it was given.
     line: Option<usize>,
-    /// The first time of all (ns): ticks since 1601 do not fit in 64 bits of nanoseconds, what lies between them does.
+    /// The first time of all (ns). Ticks since 1601 do not fit in 64 bits of nanoseconds, but their
+    /// differences do.
     base: Option<i128>,
 }
 
@@ -19,7 +20,7 @@ pub const TIME_MAX: i64 = 1 << 61;
 
 impl Marks {
     pub fn new(said: Option<char>, delimiter: char) -> Self {
-        // Between commas a comma cannot stand, but in quotes.
+        // With commas as separators, a decimal comma is possible only in quotes.
         let mark = said.or((delimiter == ',').then_some('.'));
         Self {
             mark,
@@ -62,7 +63,7 @@ impl Marks {
             .ok_or_else(|| cell.error("no finite number"))
     }
 
-    /// A time in nanoseconds since the first one that was read, exact but for what is below them.
+    /// A time in nanoseconds since the first one that was read, exact down to the nanosecond.
     pub fn time(&mut self, cell: &Cell<'_>, unit: Unit) -> Result<i64, ReadError> {
         let text = self.pointed(cell)?;
         let ns = nanoseconds(&text, unit).ok_or_else(|| cell.error("no time: a number is needed"))?;
@@ -78,7 +79,7 @@ impl Marks {
         match reading {
             Reading::Curve | Reading::Whole => {
                 let value = self.number(cell)?;
-                // Casts saturate; the comparison lets only numbers through that were kept.
+                // Casts saturate; the comparison accepts only numbers that did not change.
                 let whole = value as i64;
                 if whole as f64 == value {
                     Ok(whole.to_string())
@@ -112,12 +113,12 @@ impl Marks {
     }
 }
 
-/// Whether a cell could be a number, whatever its decimal mark.
+/// Whether a cell could be a number, with either decimal mark.
 pub fn is_number(text: &str) -> bool {
     number::parse(&text.replacen(',', ".", 1)).is_some()
 }
 
-/// The nanoseconds of a decimal number; what is below one is cut off.
+/// The nanoseconds of a decimal number; fractions of one are cut off.
 fn nanoseconds(text: &str, unit: Unit) -> Option<i128> {
     let zeros = match unit {
         Unit::Seconds => 9,

@@ -1,4 +1,4 @@
-//! Where the names and the rows of a file stand.
+//! The places of the names and the rows of a file.
 
 use std::borrow::Cow;
 
@@ -6,30 +6,30 @@ use super::{HEADER_LINES, Layout, Place, Times, Wanted, number};
 use crate::csv::{DELIMITERS, split};
 use crate::read::ReadError;
 
-/// Preference where two delimiters explain a file equally well: commas may be decimal ones.
+/// The preference if two delimiters explain a file equally well, because commas may be decimal ones.
 const TRIED: [char; 4] = ['\t', ';', '|', ','];
 
 /// Names a message lists at most.
 const NAMES_LISTED: usize = 12;
 
-/// The columns of a wanted signal, from 0.
+/// The columns of a requested signal, from 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Columns {
     pub value: usize,
     pub time: Option<usize>,
 }
 
-/// A file whose columns and rows were found.
+/// A file with its columns and rows.
 pub struct Table<'t> {
     pub delimiter: char,
-    /// One for each wanted signal.
+    /// One for each requested signal.
     pub columns: Vec<Columns>,
     /// The line of the first row, from 1.
     pub first_row: usize,
     lines: Vec<&'t str>,
 }
 
-/// A cell and where it stands.
+/// A cell and its place.
 #[derive(Clone, Debug)]
 pub struct Cell<'t> {
     pub text: Cow<'t, str>,
@@ -81,7 +81,7 @@ fn cells(line: &str, delimiter: char, number: usize) -> Result<Vec<Cell<'_>>, Re
 /// The line of names that was found.
 struct Names<'t> {
     delimiter: char,
-    /// Its number from 0; `None` if only numbers of columns are wanted.
+    /// Its number from 0; `None` if columns are requested only by number.
     line: Option<usize>,
     cells: Vec<Cell<'t>>,
 }
@@ -132,7 +132,7 @@ impl<'t> Table<'t> {
         })
     }
 
-    /// The rows; blank lines and the mark `EOF` at the end of the file are none.
+    /// The rows, without blank lines and the mark `EOF` at the end of the file.
     pub fn rows(&self) -> impl Iterator<Item = Result<Row<'t>, ReadError>> + '_ {
         let blank = |line: &str| line.trim_matches([self.delimiter, ' ', '\r']).is_empty();
         let mut last = self.lines.len();
@@ -155,7 +155,8 @@ fn is_value(text: &str) -> bool {
     number::is_number(text) || text.eq_ignore_ascii_case("TRUE") || text.eq_ignore_ascii_case("FALSE")
 }
 
-/// Finds the delimiter and the line of names: the one with the most of the wanted names, the lowest of such.
+/// Finds the delimiter and the line of names: the one with most of the requested names, the lowest of
+/// such.
 fn names<'t>(lines: &[&'t str], layout: &Layout, wanted: &[Wanted]) -> Result<Names<'t>, ReadError> {
     let time = match &layout.times {
         Times::Column { place, .. } => Some(place),
@@ -180,7 +181,7 @@ fn names<'t>(lines: &[&'t str], layout: &Layout, wanted: &[Wanted]) -> Result<Na
             continue;
         }
         for (at, line) in lines.iter().enumerate().take(HEADER_LINES) {
-            // Free text above the names may hold a lone quote.
+            // Free text above the names may have a lone quote.
             let cells = cells(line, delimiter, at + 1).unwrap_or_default();
             let found = if sought.is_empty() {
                 usize::from(cells.len() >= least.max(2) && cells.iter().any(|cell| is_value(&cell.text)))
@@ -189,7 +190,7 @@ fn names<'t>(lines: &[&'t str], layout: &Layout, wanted: &[Wanted]) -> Result<Na
                 sought.iter().filter(held).count()
             };
             let line = (!sought.is_empty()).then_some(at);
-            // Within one delimiter the lowest line, over all of them the first delimiter.
+            // Within one delimiter the lowest line; over all of them the first delimiter.
             let better = best.as_ref().is_none_or(|(most, names)| {
                 found > *most
                     || (found == *most && found > 0 && names.delimiter == delimiter && line.is_some())
@@ -264,7 +265,7 @@ impl Names<'_> {
         }
     }
 
-    /// The column of the times of what stands in column `value`.
+    /// The column with the times of column `value`.
     fn time(&self, place: &Place, value: usize) -> Result<usize, ReadError> {
         let name = match place {
             Place::Number(number) => return Ok(number.saturating_sub(1)),

@@ -1,7 +1,7 @@
 //! Bytes of files as text.
 
-/// The text of a file that another program wrote: UTF-8, UTF-16 with a byte order mark, else Windows' Latin letters
-/// (`µs` and `°` are what old tools write in them). `None` if it is no text.
+/// The text of a file that another program wrote: UTF-8, UTF-16 with a byte order mark, otherwise
+/// Windows' Latin letters (old tools write `µs` and `°` in them). `None` if it is no text.
 #[must_use]
 pub fn decode(bytes: &[u8]) -> Option<String> {
     let text = match bytes {

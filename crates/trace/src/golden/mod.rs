@@ -1,9 +1,10 @@
-//! Goldens: the record of a run that people reviewed, and the judgement whether a run still agrees with it.
+//! Goldens: the reviewed record of a run, and the judgement whether a run still agrees with it.
 //!
-//! A golden is two files side by side. `x.snap` is an insta snapshot of [`text`]: it is reviewed, and
-//! judges every bit by the digests of its [subjects](mod@crate::subjects). `x.exact` is its companion
-//! ([`crate::exact`]): it is not reviewed, and is there to name the first scan and signal in which a run differs. It holds
-//! the columns that count; the others have their defaults. Goldens of version 1 are judged in `version_1`.
+//! A golden is two files side by side. `x.snap` is an insta snapshot of [`text`]. People review it, and
+//! it judges every bit by the digests of its [subjects](mod@crate::subjects). `x.exact` is its companion
+//! ([`crate::exact`]). It is not reviewed, and names the first scan and signal in which a run differs. It
+//! has the columns that count; the others have their defaults. Goldens of version 1 are judged in
+//! `version_1`.
 
 mod near;
 mod snap;
@@ -27,46 +28,50 @@ use crate::trace::Trace;
 
 pub use text::text;
 
-/// Lines of a text difference that are shown.
+/// Most lines of a text difference that are shown.
 const DIFF_LINES_SHOWN: usize = 60;
 
-/// Lines of each text that are held against each other.
+/// Most lines of each text that are compared.
 const DIFF_LINES_MOST: usize = 4000;
 
-/// What a run is, held against its golden.
+/// The result of comparing a run with its golden.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// Every bit is as reviewed.
     Same,
-    /// Every bit that a golden of version 1 knows is as reviewed. Accepting again brings it to the present version.
+    /// Every bit that a golden of version 1 knows is as reviewed. Accepting again converts it to the
+    /// present version.
     Old,
     /// Events are as reviewed, and set-points within the tolerance asked for.
     Close(Option<Closeness>),
     /// There is no golden yet.
     Missing,
-    /// The text is as reviewed, but the companion is not that of this run: missing, damaged or of another
-    /// run. Accepting again writes it.
+    /// The text is as reviewed, but the companion does not belong to this run: missing, damaged or of
+    /// another run. Accepting again writes it.
     Companion(String),
     /// The run differs.
     Different(Box<Mismatch>),
 }
 
-/// How a run differs from its golden; `Display` tells it all.
+/// How a run differs from its golden; `Display` writes all of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
-    /// What was asked of the run.
+    /// The comparison that was asked for.
     pub yardstick: Yardstick,
-    /// The first scan and signals that differ; `None` if the rows are equal or the companion is no help.
+    /// The first scan and signals that differ; `None` if the rows are equal or the companion cannot be
+    /// used.
     pub difference: Option<Difference>,
-    /// Why the companion is no help; empty if it is.
+    /// The reason why the companion cannot be used; empty if it can.
     pub companion: String,
-    /// The subjects whose digests differ, and those whose digests are the same; both empty for a golden of version 1.
+    /// The subjects whose digests differ, and those whose digests are equal; both empty for a golden of
+    /// version 1.
     pub subjects: [Vec<String>; 2],
-    /// The difference of the texts, of their events only where no more was asked for, in unified form, golden first.
+    /// The difference of the texts in unified form, golden first; only of their events if no more was
+    /// asked for.
     pub text: String,
 }
 
-/// Why a golden could not be judged or accepted.
+/// The reason why a golden could not be judged or accepted.
 #[derive(Debug, thiserror::Error)]
 pub enum GoldenError {
     /// A file could not be read or written.
@@ -100,15 +105,15 @@ pub fn exact_path(snap: &Path) -> PathBuf {
     snap.with_extension("exact")
 }
 
-/// Holds a run against the golden of this path (`x.snap`), to the bit. Writes nothing.
+/// Compares a run with the golden of this path (`x.snap`), to the bit. Writes nothing.
 ///
 /// # Errors
-/// A file that is there but cannot be read, or a snapshot in another form.
+/// An existing file that cannot be read, or a snapshot in another form.
 pub fn judge(snap: &Path, trace: &Trace) -> Result<Verdict, GoldenError> {
     judge_by(snap, trace, Yardstick::Exact)
 }
 
-/// As [`judge`], by a yardstick: what is equal to the bit is [`Verdict::Same`] by all of them.
+/// As [`judge`], by a yardstick. A run equal to the bit is [`Verdict::Same`] by all of them.
 ///
 /// # Errors
 /// As [`judge`].
@@ -163,8 +168,8 @@ pub fn judge_by(snap: &Path, trace: &Trace, yardstick: Yardstick) -> Result<Verd
     })))
 }
 
-/// The reviewed run of this path (`x.snap`) from its companion, to be held against `run`; none if there is no golden, no
-/// companion that belongs to it, or one that is far larger than the run.
+/// The reviewed run of this path (`x.snap`) from its companion, for comparison with `run`. None if there
+/// is no golden, no companion that belongs to it, or one that is far larger than the run.
 ///
 /// # Errors
 /// As [`judge`].
@@ -176,9 +181,9 @@ pub fn expected(snap: &Path, run: &Trace) -> Result<Option<Trace>, GoldenError> 
     Ok(expected_trace(&reviewed, companion.as_deref(), run).ok())
 }
 
-/// Makes this run the golden of this path: writes `x.snap` and `x.exact` where they do not hold it already,
-/// and says whether it wrote. Whether a run deserves it (its claims hold, this is no CI) is for the caller
-/// to say.
+/// Makes this run the golden of this path: writes `x.snap` and `x.exact` unless they have this content
+/// already, and returns whether it wrote. The caller decides whether a run may become one (its claims
+/// hold, this is no CI).
 ///
 /// # Errors
 /// A file that cannot be read or written.
@@ -186,7 +191,7 @@ pub fn accept(snap: &Path, trace: &Trace) -> Result<bool, GoldenError> {
     let found = text(trace);
     let held = match reviewed(snap) {
         Ok(text) => text,
-        // Accepting is the way out of a snapshot in another form.
+        // Accepting replaces a snapshot in another form.
         Err(GoldenError::Form { .. }) => None,
         Err(error) => return Err(error),
     };
@@ -209,13 +214,13 @@ pub fn accept(snap: &Path, trace: &Trace) -> Result<bool, GoldenError> {
     Ok(wrote)
 }
 
-/// The proposal beside a snapshot: `x.snap.new`, the name under which cargo-insta looks for it.
+/// The proposal beside a snapshot: `x.snap.new`, the name that cargo-insta expects.
 #[must_use]
 pub fn proposal_path(snap: &Path) -> PathBuf {
     snap.with_extension("snap.new")
 }
 
-/// Writes this run as a proposal for the golden of this path, to be accepted in review.
+/// Writes this run as a proposal for the golden of this path, for review.
 ///
 /// # Errors
 /// What the system says.
@@ -236,7 +241,7 @@ pub fn withdraw(snap: &Path) -> Result<(), GoldenError> {
     }
 }
 
-/// Writes a file whole or not at all: half a golden would be no golden.
+/// Writes a file whole or not at all: half a golden would be invalid.
 fn write(path: &Path, bytes: &[u8]) -> Result<(), GoldenError> {
     replace_beside(path, |out| out.write_all(bytes)).map_err(|error| match error {
         FileError::Io { path, source } => GoldenError::Io { path, source },
@@ -264,20 +269,20 @@ fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>, GoldenError> {
     }
 }
 
-/// Cells of a companion that are read to say where a run differs from it: more than a reviewed run of a changed script may
-/// have, and in proportion to this one.
+/// The largest number of cells of a companion that are read to find a difference: more than a reviewed
+/// run of a changed script may have, and in proportion to this run.
 fn most_cells(run: &Trace) -> usize {
     let cells = run.scans().saturating_mul(run.columns().len());
     cells.saturating_mul(4).max(1 << 20)
 }
 
-/// The reviewed run from its companion, if that is the one the snapshot's last line speaks of, with the columns of `run` that
-/// it leaves out.
+/// The reviewed run from its companion, if the snapshot's last line names that one, with the columns of
+/// `run` that it leaves out.
 fn expected_trace(reviewed: &str, companion: Option<&[u8]>, run: &Trace) -> Result<Trace, String> {
     kept_trace(reviewed, companion, most_cells(run)).map(|kept| kept.completed_as(run))
 }
 
-/// As [`expected_trace`], with the columns that are kept alone.
+/// As [`expected_trace`], with the stored columns only.
 fn kept_trace(reviewed: &str, companion: Option<&[u8]>, most: usize) -> Result<Trace, String> {
     let file = companion.ok_or("there is no exact trace")?;
     let stated = exact::digest_of(file).map_err(|error: ExactError| error.to_string())?;
@@ -295,8 +300,8 @@ fn events_difference(reviewed: &str, found: &str, tolerance: Tolerance) -> Strin
     text_difference(near::events(reviewed), near::events(found))
 }
 
-/// Both texts from where they part, at most [`DIFF_LINES_MOST`] lines of each: the work of a difference grows with the
-/// square of what differs. Texts that are no longer than that stay whole.
+/// Both texts from their first difference, at most [`DIFF_LINES_MOST`] lines of each, because the work
+/// grows with the square of the difference. Shorter texts stay whole.
 fn window(old: &str, new: &str) -> [String; 2] {
     let whole = |text: &str| text.lines().nth(DIFF_LINES_MOST).is_none();
     if whole(old) && whole(new) {

@@ -1,4 +1,4 @@
-//! Events of two golden texts, held against each other within a tolerance.
+//! Comparison of the events of two golden texts within a tolerance.
 
 use crate::compare::Tolerance;
 
@@ -8,8 +8,8 @@ pub fn events(text: &str) -> &str {
     below.split_once("\n\n").map_or(below, |(events, _)| events)
 }
 
-/// Whether two golden texts tell the same events: the same words in the same lines, but for numbers with a fraction,
-/// which may differ within the tolerance. Scans, counts of scans and other whole numbers are words.
+/// Whether two golden texts have the same events: the same words in the same lines. Only numbers with a
+/// fraction may differ, within the tolerance. Scans, counts of scans and other whole numbers are words.
 pub fn same_events(expected: &str, found: &str, tolerance: Tolerance) -> bool {
     let (mut expected, mut found) = (events(expected).lines(), events(found).lines());
     loop {
@@ -32,7 +32,7 @@ fn same_line(expected: &str, found: &str, tolerance: Tolerance) -> bool {
     }
 }
 
-/// `Position=4.0` and `4.0;` are numbers with something around them, which must be the same.
+/// `Position=4.0` and `4.0;` are numbers with a prefix or suffix, which must be equal.
 fn same_number(expected: &str, found: &str, tolerance: Tolerance) -> bool {
     let (Some((before, expected, after)), Some(other)) = (number(expected), number(found)) else {
         return false;
@@ -40,7 +40,7 @@ fn same_number(expected: &str, found: &str, tolerance: Tolerance) -> bool {
     (before, after) == (other.0, other.2) && tolerance.passes(expected, other.1)
 }
 
-/// A word as what stands before a number, the number, and what stands after it.
+/// A word as the text before a number, the number, and the text after it.
 fn number(word: &str) -> Option<(&str, f64, &str)> {
     let start = word.find(|c: char| c.is_ascii_digit() || c == '-')?;
     let (before, rest) = word.split_at(start);

@@ -1,9 +1,9 @@
-//! Snapshot files in insta's form: a line `---`, the YAML of where the text came from, a line `---`, the
-//! text.
+//! Snapshot files in insta's form: a line `---`, YAML that names the source of the text, a line `---`,
+//! the text.
 //!
-//! Read and written here rather than through insta: it can read a file at run time but offers no stable
-//! way to make one outside its macros, and it is a test library that the released program would carry.
-//! A test holds our files against insta's reader and its macro.
+//! They are read and written here and not through insta. It can read a file at run time, but has no
+//! stable way to make one outside its macros, and it is a test library that the released program would
+//! contain. A test compares our files with insta's reader and its macro.
 
 use std::path::Path;
 
@@ -20,7 +20,7 @@ pub fn contents(file: &str) -> Option<String> {
 /// The file of a snapshot beside a script: its source is the script.
 pub fn file(snap: &Path, contents: &str) -> String {
     let stem = snap.file_stem().unwrap_or_default().to_string_lossy();
-    // A JSON string is a YAML string as well, whatever the name holds.
+    // A JSON string is also a YAML string, for any name.
     let source = serde_json::Value::from(format!("{stem}.scan.json"));
     format!(
         "---\nsource: {source}\nexpression: golden\n---\n{}\n",
@@ -28,7 +28,7 @@ pub fn file(snap: &Path, contents: &str) -> String {
     )
 }
 
-/// Whether two texts are the same snapshot: insta, too, does not count white space at the end.
+/// Whether two texts are the same snapshot; like insta, white space at the end does not count.
 pub fn same(a: &str, b: &str) -> bool {
     a.trim_end() == b.trim_end()
 }

@@ -14,11 +14,12 @@ use crate::trace::Trace;
 /// The heading above the digests.
 const DIGESTS: &str = "digests";
 
-/// About the number of rows at equal distances in a set-point table, besides those of events.
+/// Approximate number of rows at equal distances in a set-point table, in addition to those of events.
 const TABLE_ROWS: usize = 16;
 
-/// The golden text: header, events, a thin table of set-points per axis, extremes against limits, the digest of every
-/// subject, and at the end one of them all. No version, date or path, so it changes only when behaviour does.
+/// The golden text: header, events, a thin table of set-points per axis, extremes against limits, the
+/// digest of every subject, and at the end one of all. It has no version, date or path, so it changes
+/// only when behaviour does.
 #[must_use]
 pub fn text(trace: &Trace) -> String {
     let events = events(trace);
@@ -47,7 +48,7 @@ pub fn text(trace: &Trace) -> String {
     text
 }
 
-/// The digest of all subjects as it stands at the end of the text.
+/// The digest of all subjects in the form of the last line.
 pub fn digest_text(digest: u64) -> String {
     format!("{digest:016x}")
 }
@@ -128,7 +129,7 @@ fn axis_line(axis: &Axis) -> String {
     words.join("  ")
 }
 
-/// What the in-out pins of each instance were bound to in scan 0: its axes.
+/// The axes that the in-out pins of each instance were bound to in scan 0.
 fn in_outs(trace: &Trace) -> BTreeMap<&str, Vec<String>> {
     let mut bound: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for (column, cell) in trace.columns().iter().zip(trace.row(0)) {
@@ -139,8 +140,8 @@ fn in_outs(trace: &Trace) -> BTreeMap<&str, Vec<String>> {
     bound
 }
 
-/// Set-points at equal distances and at the scans in which the axis had an event. Rows at rest that repeat the
-/// row above are left out.
+/// Set-points at equal distances and at the scans in which the axis had an event. Rows at rest that
+/// repeat the row above are left out.
 fn set_points(trace: &Trace, axis: &Axis, events: &[usize]) -> String {
     let quantities = ["Position", "Velocity", "Acceleration", "Jerk"];
     let columns = quantities.map(|quantity| trace.column(&format!("{}.{quantity}", axis.name)));
@@ -213,8 +214,8 @@ fn digest_lines(subjects: &[Subject]) -> String {
     })
 }
 
-/// The subjects of two golden texts whose digests differ, and those whose digests are the same. One that only one of them
-/// has differs.
+/// The subjects of two golden texts whose digests differ, and those whose digests are equal. A subject
+/// that only one of them has differs.
 pub fn moved<'t>(reviewed: &'t str, found: &'t str) -> [Vec<&'t str>; 2] {
     let (reviewed, found) = (digests(reviewed), digests(found));
     let mut names: Vec<&str> = found.iter().map(|(name, _)| *name).collect();

@@ -1,7 +1,7 @@
-//! Goldens of version 1: one digest over all columns that there were, in their order ([`digest::whole`]).
+//! Goldens of version 1: one digest over all columns of that time, in their order ([`digest::whole`]).
 //!
-//! A pin that came later would change it. So a run is judged by the columns that the golden knows: those that its
-//! companion has, or all of them where there is no companion that belongs to it.
+//! A pin that was added later would change it. So a run is judged by the columns that the golden knows:
+//! those of its companion, or all of them if no companion belongs to it.
 
 use super::{Mismatch, Verdict, events_difference, kept_trace, most_cells, near, text};
 use crate::column::Column;
@@ -14,7 +14,8 @@ pub fn is_it(reviewed: &str) -> bool {
     reviewed.contains("\ndigest per 64 scans\n")
 }
 
-/// Holds a run against a golden of version 1. Of the snapshot its digest counts, and where that differs its events.
+/// Compares a run with a golden of version 1. Of the snapshot its digest counts, and if that differs its
+/// events.
 pub fn judge(reviewed: &str, companion: Option<&[u8]>, run: &Trace, yardstick: Yardstick) -> Verdict {
     let kept = kept_trace(reviewed, companion, most_cells(run));
     let run = match &kept {
@@ -53,7 +54,8 @@ pub fn judge(reviewed: &str, companion: Option<&[u8]>, run: &Trace, yardstick: Y
     }))
 }
 
-/// The run with the columns that a golden knows, in its order; as every column counted then, none has a default.
+/// The run with the columns that a golden knows, in its order. Every column counted then, so none has a
+/// default.
 fn known(run: &Trace, columns: &[Column]) -> Trace {
     let places = columns.iter().filter_map(|column| run.column(&column.name));
     run.only(&places.collect::<Vec<_>>())

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::{Deviation, Finding};
 
-/// What may lie between two curves.
+/// The permitted differences of two curves.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerances {
     /// In units of the trace.
@@ -13,8 +13,8 @@ pub struct Tolerances {
     pub time: i64,
 }
 
-/// The recorded value at a time, on the straight line between its neighbours; at the ends the last there is.
-/// `None` without samples. Cost: logarithmic in the samples.
+/// The recorded value at a time, on the straight line between its neighbours; beyond the ends the first
+/// or last value. `None` without samples. Cost: logarithmic in the samples.
 pub fn at(samples: &[(i64, f64)], ns: i64) -> Option<f64> {
     let behind = samples.partition_point(|(time, _)| *time <= ns);
     let before = behind.checked_sub(1).and_then(|index| samples.get(index));
@@ -28,10 +28,10 @@ pub fn at(samples: &[(i64, f64)], ns: i64) -> Option<f64> {
     }
 }
 
-/// The least and the largest value in windows that only move on.
+/// The least and the largest value in windows that only move forward.
 struct Range<'s> {
     samples: &'s [(i64, f64)],
-    /// The next sample to come in.
+    /// The next sample to add.
     next: usize,
     /// Candidates for the least value: times and values rise.
     low: VecDeque<(i64, f64)>,
@@ -49,8 +49,9 @@ impl<'s> Range<'s> {
         }
     }
 
-    /// The least and the largest value of the curve from `from` to `to`, neither below those of the call before.
-    /// Every sample comes and goes once, so all calls together cost as many steps as there are samples.
+    /// The least and the largest value of the curve from `from` to `to`, neither below those of the last
+    /// call. Every sample is added and removed once, so all calls together cost as many steps as there
+    /// are samples.
     fn of(&mut self, from: i64, to: i64) -> Option<(f64, f64)> {
         while let Some(&(ns, value)) = self.samples.get(self.next)
             && ns <= to
@@ -77,8 +78,8 @@ impl<'s> Range<'s> {
     }
 }
 
-/// Compares the rows of a trace with a recording. A row holds if the curve, anywhere within the tolerance of time,
-/// comes as near as the tolerance of values; `time` gives the recording's time (ns) of a scan.
+/// Compares the rows of a trace with a recording. A row agrees if the curve comes within the tolerance of
+/// values anywhere within the tolerance of time; `time` gives the recording's time (ns) of a scan.
 pub fn compare(
     samples: &[(i64, f64)],
     rows: impl Iterator<Item = (usize, f64)>,

@@ -5,10 +5,10 @@ use crate::foreign::Channel;
 use crate::number::cell_text;
 use crate::trace::Trace;
 
-/// A value that holds from a time (ns) on; the first of a list is no edge.
+/// A value from a time (ns) on; the first of a list is no edge.
 pub type Edge = (i64, String);
 
-/// What was recorded, its times moved by `shift`.
+/// The recorded edges, with their times moved by `shift`.
 pub fn recorded(pair: &Pair<'_>, shift: i64) -> Vec<Edge> {
     match &pair.channel {
         Channel::Steps(steps) => {
@@ -31,7 +31,7 @@ pub fn of_trace(trace: &Trace, column: usize, cycle: i64) -> Vec<Edge> {
     edges
 }
 
-/// The value at a time; before the first the first.
+/// The value at a time; before the first edge the first value.
 fn value_at(edges: &[Edge], ns: i64) -> Option<&str> {
     let behind = edges.partition_point(|(time, _)| *time <= ns);
     edges
@@ -39,8 +39,9 @@ fn value_at(edges: &[Edge], ns: i64) -> Option<&str> {
         .map(|(_, value)| value.as_str())
 }
 
-/// Pairs edges to the same value that are no more than `tolerance` (ns) apart, each with the earliest one still free.
-/// Edges without counterpart count in the window, but for its outer `tolerance`, where the other may lie outside.
+/// Pairs edges to the same value that are at most `tolerance` (ns) apart, each with the earliest one
+/// still free. An edge without counterpart counts in the window, except within `tolerance` of its ends,
+/// where the counterpart may be outside.
 pub fn compare(recorded: &[Edge], found: &[Edge], window: (i64, i64), tolerance: i64) -> Finding {
     let mut wrong = Vec::new();
     let start = value_at(found, window.0);
@@ -81,7 +82,7 @@ pub fn compare(recorded: &[Edge], found: &[Edge], window: (i64, i64), tolerance:
         match (left.peek(), right.peek()) {
             (None, None) => break,
             (Some(a), Some(b)) if a.1 == b.1 && a.0.abs_diff(b.0) <= tolerance.unsigned_abs() => {
-                // What both have outside is not what was asked for.
+                // A value that both have before the window was not asked for.
                 let inside = |ns: i64| ns >= window.0 && ns <= window.1;
                 if inside(a.0) || inside(b.0) {
                     matched += 1;

@@ -1,11 +1,12 @@
-//! A trace held against the recording of a machine, within tolerances.
+//! Compares a trace with the recording of a machine, within tolerances.
 //!
-//! Every signal has the scan times of the trace and the sample times of the recording, shifted by one offset: the
-//! scan at time t is compared with what was recorded at t + offset. Numbers are joined by straight lines between
-//! samples. What holds (truth values, whole numbers, words) is compared as a list of edges.
+//! All signals share one offset between the scan times of the trace and the sample times of the
+//! recording: the scan at time t is compared with the recording at t + offset. Numbers are joined by
+//! straight lines between samples. Values that stay until they change (truth values, whole numbers,
+//! words) are compared as lists of edges.
 //!
-//! The work is proportional to scans plus samples, but for the fit of the offset, whose bound is
-//! [`FIT_SCANS`] times [`FIT_ROWS`] readings of the recording.
+//! The work is proportional to scans plus samples, except for the fit of the offset, which reads the
+//! recording at most [`FIT_SCANS`] times [`FIT_ROWS`] times.
 
 mod curve;
 mod edges;
@@ -24,9 +25,9 @@ use std::collections::BTreeMap;
 pub struct Map {
     /// The form of the recording.
     pub layout: Layout,
-    /// What lies between the times of the two.
+    /// The offset between the times of the two.
     pub offset: Offset,
-    /// The part of the trace (ns) that is compared and must be recorded; what both have if `None`.
+    /// The part of the trace (ns) that is compared and must be recorded; the common part if `None`.
     pub window: Option<(i64, i64)>,
     /// The signals; at least one.
     pub signals: Vec<Signal>,
@@ -39,22 +40,22 @@ pub struct Signal {
     pub name: String,
     /// Its column in the recording.
     pub place: Place,
-    /// By how much its times may differ (ns), 0 or more.
+    /// The permitted difference of its times (ns), 0 or more.
     pub time_tolerance: i64,
     /// What is compared.
     pub measure: Measure,
 }
 
-/// What is compared of a signal.
+/// The comparison of a signal.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Measure {
-    /// Numbers: recorded times `factor`, plus `zero`, is what the trace should have.
+    /// Numbers: recorded value times `factor`, plus `zero`, is the expected value of the trace.
     Curve {
         /// Units of the trace per unit of the recording, with the sign; not 0.
         factor: f64,
-        /// Where the recording's 0 is in the trace.
+        /// The trace's value for 0 of the recording.
         zero: f64,
-        /// By how much they may differ, in units of the trace; 0 or more.
+        /// The permitted difference, in units of the trace; 0 or more.
         tolerance: f64,
     },
     /// A truth value; the recording has the opposite if `invert`.
@@ -64,12 +65,12 @@ pub enum Measure {
     },
     /// A whole number.
     Whole,
-    /// A word, and what its words are called in the recording.
+    /// A word, and the names of its words in the recording.
     Word(BTreeMap<String, String>),
 }
 
 impl Measure {
-    /// What can be compared of a column of this kind: numbers by [`Self::Curve`], the rest as edges.
+    /// Whether a column of this kind is compared as numbers, by [`Self::Curve`], or otherwise as edges.
     #[must_use]
     pub const fn is_curve(kind: Kind) -> bool {
         matches!(kind, Kind::Real)
@@ -87,10 +88,10 @@ pub enum Offset {
         signal: String,
         /// The value it changes to, as traces write it.
         to: String,
-        /// Which of these changes, from 1.
+        /// The number of this change, from 1.
         number: usize,
     },
-    /// The one with the least mean square of the differences of a curve.
+    /// The offset with the least mean square of the differences of a curve.
     Fit {
         /// A signal of the map that is a curve.
         signal: String,
@@ -101,7 +102,7 @@ pub enum Offset {
     },
 }
 
-/// Why a recording and a trace cannot be compared.
+/// The reason why a recording and a trace cannot be compared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct NotComparable(pub String);
@@ -123,7 +124,7 @@ pub struct Comparison {
     pub signals: Vec<Compared>,
 }
 
-/// What came out for one signal.
+/// The result for one signal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
     /// Its name in the trace.
@@ -134,7 +135,7 @@ pub struct Compared {
     pub finding: Finding,
 }
 
-/// What was found of a signal.
+/// The findings of a signal.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finding {
     /// A curve.
@@ -150,7 +151,7 @@ pub enum Finding {
     },
     /// Edges.
     Edges {
-        /// Edges that have a counterpart.
+        /// Number of edges with a counterpart.
         matched: usize,
         /// The largest distance (ns) of two that belong together.
         farthest: i64,
@@ -159,14 +160,14 @@ pub enum Finding {
     },
 }
 
-/// How far a curve is from the recording in a scan.
+/// The difference between a curve and the recording in a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
     /// The scan.
     pub scan: usize,
     /// What the trace has.
     pub found: f64,
-    /// What was recorded nearest to it within the tolerance of time, in units of the trace.
+    /// The nearest recorded value within the tolerance of time, in units of the trace.
     pub recorded: f64,
 }
 
@@ -237,7 +238,7 @@ impl Map {
     }
 }
 
-/// A signal with what both sides have of it.
+/// A signal with the data of both sides.
 struct Pair<'p> {
     signal: &'p Signal,
     /// Its column in the trace.
@@ -245,7 +246,7 @@ struct Pair<'p> {
     channel: Channel,
 }
 
-/// Compares a trace with a recording that was read as [`Map::wanted`] says.
+/// Compares a trace with a recording that was read for [`Map::wanted`].
 ///
 /// # Errors
 /// A trace without cycle or rows, a signal it does not have, an offset that cannot be found, nothing in common.
@@ -262,7 +263,7 @@ pub fn compare(recording: &Recording, trace: &Trace, map: &Map) -> Result<Compar
     let offset = offset::find(&pairs, trace, map, cycle)?;
     let last = i64::try_from(trace.scans() - 1).unwrap_or(i64::MAX);
     let trace_end = last.saturating_mul(cycle);
-    // What both have, in times of the trace.
+    // The common part, in times of the trace.
     let both = (
         start.saturating_sub(offset.ns).max(0),
         end.saturating_sub(offset.ns).min(trace_end),

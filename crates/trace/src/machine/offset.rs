@@ -1,13 +1,13 @@
-//! What lies between the times of a recording and of a trace.
+//! The offset between the times of a recording and of a trace.
 
 use super::{Map, NotComparable, Offset, Pair, curve, edges, scan_ns, show};
 use crate::foreign::Channel;
 use crate::trace::Trace;
 
-/// Whole scans that a fit tries at most.
+/// Most whole scans that a fit tries.
 pub const FIT_SCANS: i64 = 4000;
 
-/// Rows that a fit looks at at most; of a longer trace every n-th.
+/// Most rows that a fit uses; of a longer trace every n-th.
 pub const FIT_ROWS: usize = 2000;
 
 /// Rounds of the search between whole scans; each makes the step ten times smaller.
@@ -20,7 +20,7 @@ pub struct Found {
     pub ns: i64,
     /// How, in words.
     pub how: String,
-    /// Whether a better one may lie outside what was tried.
+    /// Whether a better one may be outside the range that was tried.
     pub at_border: bool,
 }
 
@@ -71,7 +71,7 @@ pub fn find(pairs: &[Pair<'_>], trace: &Trace, map: &Map, cycle: i64) -> Result<
     }
 }
 
-/// What a fit looks at.
+/// The data of a fit.
 struct Fit<'f> {
     samples: &'f [(i64, f64)],
     /// Times (ns) and values of the rows.
@@ -98,8 +98,8 @@ impl<'f> Fit<'f> {
         }
     }
 
-    /// The cost of an offset; `None` if less than half of the shorter of the two overlaps, where a small piece could
-    /// fit by chance.
+    /// The cost of an offset; `None` if less than half of the shorter of the two overlaps, because a
+    /// small piece could fit by chance.
     fn cost(&self, offset: i64) -> Option<Cost> {
         let (first, last) = (self.samples.first()?.0, self.samples.last()?.0);
         let (mut sum, mut rows) = (0.0, 0);
@@ -144,7 +144,7 @@ impl<'f> Fit<'f> {
             )));
         };
         let first = costs.first().map_or(0.0, |(_, cost)| cost.mean);
-        // A curve that only repeats itself to rounding tells nothing about time.
+        // A curve that repeats itself except for rounding has no information about time.
         let largest = costs.iter().map(|(_, cost)| cost.mean).fold(0.0, f64::max);
         let flat = costs
             .iter()

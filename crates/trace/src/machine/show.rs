@@ -5,7 +5,7 @@ use std::fmt;
 use super::{Compared, Comparison, Deviation, EdgeFault, Finding, Side, scan_ns};
 use crate::number::{shortest, time_literal};
 
-/// Edges that are named at most for one signal.
+/// Most edges that are named for one signal.
 const EDGES_SHOWN: usize = 4;
 
 /// A time as a TIME literal, with its sign.
@@ -22,7 +22,7 @@ pub fn range((from, to): (i64, i64)) -> String {
     format!("{} to {}", time(from), time(to))
 }
 
-/// A number in four digits: for people, who compare it with a tolerance.
+/// A number in four digits, for comparison with a tolerance.
 pub fn short(value: f64) -> String {
     if !value.is_finite() || value == 0.0 {
         return shortest(value);

@@ -1,7 +1,8 @@
-//! What kind of change leaves the marks that two traces show.
+//! The likely cause of the difference between two traces.
 //!
-//! Read off the traces alone: what their headers say, what differs first and in what order it was computed, and how the
-//! events from there on relate. A cause that comes before the others in a scan is told before them.
+//! It is found from the traces alone: from the differences of their headers, from what differs first and
+//! the order of its computation, and from the relation of the events from there on. In a scan, a cause
+//! that comes before the others is listed before them.
 
 use crate::column::{Column, Kind, Role};
 use crate::compare::{Difference, ScanDifference, SignalDifference};
@@ -11,15 +12,15 @@ use crate::story::Extent;
 use crate::trace::Trace;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Share of the largest value of a column below which a difference is that of rounding.
+/// A difference below this share of the largest value of a column is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// What may be behind a difference.
+/// A possible cause of a difference.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cause {
     /// The runs have other cycles (ns): expected and found.
     Cycle(u64, u64),
-    /// The rows that both have are equal; these are their numbers.
+    /// The common rows are equal; these are the numbers of rows.
     Length(usize, usize),
     /// The headers have other limits for an axis.
     Limits(String, Vec<Setting>),
@@ -29,7 +30,7 @@ pub enum Cause {
     Order {
         /// The first block that is called in another place.
         expected: String,
-        /// What is called there instead.
+        /// The block that is called there instead.
         found: String,
     },
     /// An input variable gets another value, or gets it in another scan.
@@ -41,27 +42,28 @@ pub enum Cause {
     },
     /// An input pin is given another value.
     Parameter(Vec<SignalDifference>),
-    /// A fault or a refusal in one run only.
+    /// A fault or a refusal in only one of the runs.
     Fault {
         /// Where and what.
         event: Event,
         /// It is in the found run.
         in_found: bool,
     },
-    /// The drive answers otherwise to the same set-points.
+    /// The drive responds differently to the same set-points.
     Feedback(String),
-    /// The same events in the same scans, and numbers that differ as rounding does: relative, and in ULPs at first.
+    /// The same events in the same scans, and numbers that differ by rounding: relative, and in ULPs at
+    /// first.
     Rounding {
         /// Largest difference as a share of the largest value of its column.
         share: f64,
-        /// ULPs between the first values that differ, the most of its scan.
+        /// ULPs between the first values that differ; the most of that scan.
         ulps: Option<u64>,
     },
     /// The same events in the same scans, but other set-points between them.
     Path,
     /// The same events, this many scans later (earlier if negative).
     Shift(i64),
-    /// The same events in the same order, at distances that change: the first and the last, in scans.
+    /// The same events in the same order, at changing distances: the first and the last, in scans.
     Drift(i64, i64),
     /// Other events: the first that is missing, and the first that is new.
     Events {
@@ -83,7 +85,7 @@ pub struct Setting {
     pub found: Option<f64>,
 }
 
-/// All causes that the traces speak for, the likeliest first.
+/// All causes that the traces support, the likeliest first.
 pub fn causes(
     expected: &Trace,
     found: &Trace,
@@ -165,7 +167,7 @@ fn settings(expected: &Limits, found: &Limits) -> Vec<Setting> {
         .collect()
 }
 
-/// The instances that both have, in call order, if that differs.
+/// The instances of both, in call order, if the order differs.
 fn order(expected: &Trace, found: &Trace) -> Option<Cause> {
     let instances = |of: &Trace, other: &Trace| {
         let columns = of.columns().iter();
@@ -180,7 +182,8 @@ fn order(expected: &Trace, found: &Trace) -> Option<Cause> {
     Some(Cause::Order { expected, found })
 }
 
-/// What the rows speak for, from the first scan that differs on; `ordered` says that both call blocks in the same order.
+/// The causes that the rows support, from the first scan that differs on; `ordered` says that both call
+/// blocks in the same order.
 fn of_rows(expected: &Trace, found: &Trace, first: &ScanDifference, extent: &Extent, ordered: bool) -> Cause {
     let of = |signal: &SignalDifference| {
         let column = expected.column(&signal.name);
@@ -198,8 +201,8 @@ fn of_rows(expected: &Trace, found: &Trace, first: &ScanDifference, extent: &Ext
             later: later(expected, found, &signal.name, first.scan),
         };
     }
-    // Columns of pins stand in the order of their computation. An input that differs before any output was given so, if
-    // both runs compute in the same order.
+    // Columns of pins are in the order of their computation. If both runs compute in the same order, an
+    // input that differs before any output was given that value.
     let pins = first
         .signals
         .iter()
@@ -255,7 +258,7 @@ fn is_pin(column: &Column) -> bool {
     matches!(column.role, Role::InOut | Role::Input | Role::Output)
 }
 
-/// Whether it is what a drive reported.
+/// Whether it is a value reported by a drive.
 fn is_actual(column: &Column) -> bool {
     column.role == Role::AxisValue
         && (column.signal().starts_with("Actual") || column.signal() == "FollowingError")
@@ -273,7 +276,7 @@ fn later(expected: &Trace, found: &Trace, name: &str, scan: usize) -> Option<i64
     let (wanted, got) = (expected.cell(scan, at)?, found.cell(scan, other)?);
     let before = scan.checked_sub(1).and_then(|scan| expected.cell(scan, at));
     if before == Some(got) {
-        // Nothing has happened yet where something was expected.
+        // Nothing has happened yet where an event was expected.
         let come = found.cells(other).skip(scan).position(|cell| cell == wanted)?;
         return distance(scan, scan + come);
     }
@@ -287,7 +290,7 @@ fn fault(before: &[Event], after: &[Event], scan: usize) -> Option<Cause> {
         let mut words = event.text.split_whitespace();
         event.scan == scan && words.any(|word| matches!(word, "ErrorStop" | "+Error"))
     };
-    // An axis tells more of it than a block that it made fail.
+    // An axis has more information about it than a block that failed because of it.
     let find = |events: &[Event], other: &[Event]| {
         let others = other.iter().filter(tells);
         let other: BTreeSet<_> = others.map(|event| (&event.subject, &event.text)).collect();
@@ -307,7 +310,7 @@ fn fault(before: &[Event], after: &[Event], scan: usize) -> Option<Cause> {
     Some(Cause::Fault { event, in_found })
 }
 
-/// The same events at other scans; those that fell off the end of a run are not missed.
+/// The same events at other scans; events beyond the end of a run are not missed.
 fn shifted(before: &[Event], after: &[Event], scans: (usize, usize)) -> Option<Cause> {
     let away = |a: &Event, b: &Event| Some(i64::try_from(b.scan).ok()? - i64::try_from(a.scan).ok()?);
     let first = away(before.first()?, after.first()?)?;
@@ -340,7 +343,7 @@ fn shifted(before: &[Event], after: &[Event], scans: (usize, usize)) -> Option<C
     Some(Cause::Drift(first, last))
 }
 
-/// The first event that the other run does not have from there on, in whatever scan.
+/// The first event that the other run does not have from there on, in any scan.
 fn only(events: &[Event], other: &[Event]) -> Option<Event> {
     let other = other.iter().map(|event| (&event.subject, &event.text));
     let other: BTreeSet<_> = other.collect();

@@ -1,4 +1,4 @@
-//! Where in the text of a program two runs part.
+//! The place in the text of a program where two runs differ first.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -8,7 +8,7 @@ use crate::header::Written;
 use crate::number::cell_text;
 use crate::trace::Trace;
 
-/// Most places that are told.
+/// Most places that are shown.
 const PLACES_MOST: usize = 3;
 
 /// The variable of a program that differs first, and the statements that wrote it.
@@ -22,9 +22,10 @@ pub struct Line {
     pub expected: String,
     /// What it is.
     pub found: String,
-    /// Statements that may have written it, at most three: those that write this value as a constant come first.
+    /// Statements that may have written it, at most three; those that write this value as a constant come
+    /// first.
     pub places: Vec<String>,
-    /// Whether they are of the run that was expected: in the other one it stayed as it was.
+    /// Whether they belong to the expected run, because in the other one the variable did not change.
     pub stayed: bool,
 }
 
@@ -38,8 +39,8 @@ fn written(trace: &Trace) -> BTreeMap<String, &[Written]> {
     pins.collect()
 }
 
-/// The first one in the text, among the variables that differ in the first scan that differs. Where something else differs
-/// in an earlier scan the program only follows, and there is none.
+/// The first one in the text, among the variables that differ in the first scan that differs. If anything
+/// else differs in an earlier scan, the program only follows, and there is none.
 pub(super) fn line(expected: &Trace, found: &Trace, difference: &Difference) -> Option<Line> {
     let first = difference.first.as_ref()?;
     let (before, after) = (written(expected), written(found));
@@ -71,7 +72,7 @@ pub(super) fn line(expected: &Trace, found: &Trace, difference: &Difference) -> 
     lines.min_by_key(|line| line.places.first().map(|place| in_order(place)))
 }
 
-/// A place as something that sorts as the text does.
+/// A place in a form that sorts in text order.
 fn in_order(place: &str) -> (String, u64, u64) {
     let mut parts = place.rsplitn(3, ':');
     let mut number = || parts.next().and_then(|part| part.parse().ok()).unwrap_or(0);

@@ -1,5 +1,5 @@
-//! Two traces that differ, told as a story: what changed first, the events around it, how far it goes, and what kind of
-//! cause leaves such marks.
+//! The story of two traces that differ: what changed first, the events around it, its extent, and the
+//! likely kind of cause.
 
 mod cause;
 mod line;
@@ -15,21 +15,21 @@ use crate::compare::{Difference, compare, pairs};
 use crate::number::shortest;
 use crate::trace::Trace;
 
-/// How two traces differ, and why they may.
+/// How two traces differ, and the likely reasons.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Story {
     /// Where they part.
     pub difference: Difference,
-    /// How far they part; `None` if the rows that both have are equal.
+    /// The extent of the difference; `None` if the common rows are equal.
     pub extent: Option<Extent>,
-    /// Where in the text of a program it began; `None` if what differs first is no variable of one, or if its statements are not
-    /// known.
+    /// The place in the text of a program where it began. `None` if the first difference is not a
+    /// variable of a program, or if its statements are not known.
     pub line: Option<Line>,
-    /// What may be behind it, the likeliest first; never empty.
+    /// The possible causes, the likeliest first; never empty.
     pub causes: Vec<Cause>,
 }
 
-/// How much of the rows that both traces have differs.
+/// The part of the common rows that differs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extent {
     /// Scans in which a signal of both differs.
@@ -38,11 +38,12 @@ pub struct Extent {
     pub of: usize,
     /// The last scan that differs.
     pub last: usize,
-    /// The number that is furthest off, measured by the largest magnitude of its column in either trace.
+    /// The number with the largest difference, relative to the largest magnitude of its column in either
+    /// trace.
     pub furthest: Option<Furthest>,
 }
 
-/// The number that is furthest off.
+/// The number with the largest difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Furthest {
     /// Name of its column.

@@ -6,11 +6,11 @@ use super::cause::Cause;
 use crate::compare::SignalDifference;
 use crate::number::{shortest, time_literal};
 
-/// Names that a sentence lists at most.
+/// Most names that a sentence lists.
 const NAMED: usize = 4;
 
 impl Cause {
-    /// Where to look for it.
+    /// Where to look for the cause.
     #[must_use]
     pub const fn look_at(&self) -> &'static str {
         match self {

@@ -1,4 +1,4 @@
-//! Curves below each other over numbers that are no scans: times, or places of a master.
+//! Curves below each other over an axis other than scans: times, or places of a master.
 
 use super::picture::{CURVE, GAP, GUTTER, MARGIN, Picture, WIDTH};
 use super::range::{Range, path, ticks};
@@ -21,11 +21,11 @@ pub struct Panel<'a> {
     pub title: &'a str,
     /// What is drawn.
     pub lines: &'a [Line],
-    /// Values that are dashed where a line comes near.
+    /// Values that are dashed if a line comes near.
     pub limits: &'a [f64],
     /// Points to be marked.
     pub marks: &'a [[f64; 2]],
-    /// 0 is in its range.
+    /// Whether 0 is in its range.
     pub with_zero: bool,
 }
 
@@ -52,7 +52,7 @@ impl Panels {
         GUTTER + (WIDTH - MARGIN - GUTTER) * if whole > 0.0 { way / whole } else { 0.0 }
     }
 
-    /// Draws a panel; nothing where no line leaves 0 that is to be in its range.
+    /// Draws a panel. Draws nothing if 0 must be in its range and no line leaves 0.
     pub fn draw(&mut self, panel: &Panel<'_>) {
         let Panel {
             title,
@@ -118,7 +118,7 @@ impl Panels {
         self.picture.y = bottom + GAP;
     }
 
-    /// All of it, above the numbers of the axis and what they are.
+    /// The whole picture, above the numbers of the axis and their title.
     pub fn finish(mut self, title: &str, across: &str) -> String {
         let y = self.picture.y + 4.0;
         for tick in std::mem::take(&mut self.ticks) {
@@ -131,7 +131,8 @@ impl Panels {
     }
 }
 
-/// A value for a label; one that six decimals hardly tell has a power of ten, unless it is rounding beside the `largest`.
+/// A value for a label. A value that six decimals hardly show gets a power of ten, unless it is rounding
+/// relative to the `largest`.
 fn told(value: f64, largest: f64) -> String {
     if (1e-9 * largest..1e-3).contains(&value.abs()) && value != 0.0 {
         format!("{value:.3e}")

@@ -1,4 +1,4 @@
-//! The picture of a cam: where the slave is, and its derivatives by the master.
+//! The picture of a cam: the slave's place, and its derivatives by the master.
 
 use super::across::{Line, Panel, Panels};
 use super::picture::{GUTTER, Picture, ROW};
@@ -8,14 +8,15 @@ const STYLE: &str = "<style>\n\
     @media (prefers-color-scheme: dark) { .mark { fill: #ffa566 } }\n\
     </style>\n";
 
-/// More rows are not marked: their dots would hide the curve.
+/// More rows than this are not marked: their dots would hide the curve.
 const MARKS_MOST: usize = 100;
 
-/// What is drawn, below each other.
+/// The curves, below each other.
 const TITLES: [&str; 5] = ["Slave", "Slope", "Curvature", "Third", "Fourth"];
 
-/// The picture of a cam: `course` are moments of it (places of the master and the slave, four derivatives of the slave by the
-/// master) whose places do not fall, at equal ones a value jumps; `rows` are marked. What is 0 all along is left out.
+/// The picture of a cam. `course` are moments of it (places of the master and the slave, four derivatives
+/// of the slave by the master) whose places do not fall; at equal ones a value jumps. `rows` are marked.
+/// Curves that are always 0 are left out.
 ///
 /// Work is proportional to the moments.
 #[must_use]

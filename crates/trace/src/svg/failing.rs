@@ -1,4 +1,5 @@
-//! The picture of a test that fails: the run over what it was to be, where they part, why, and the claims in their words.
+//! The picture of a test that fails: the run over the expected run, their first difference, the cause,
+//! and the claims in words.
 
 use super::picture::{CURVE, GAP, GUTTER, Picture, ROW};
 use super::range::{Range, limits, ticks};
@@ -19,9 +20,9 @@ const STYLE: &str = "<style>\n\
     rect.cause { fill: #3a1d1f; stroke: #a55 } }\n\
     </style>\n";
 
-/// The picture of a run of the script `name` that differs from what was expected: verdict and likeliest cause, the states of each
-/// axis, its position and velocity over those expected, every Boolean output that differs, the claims in their words. A line
-/// stands at the first scan in which any of these differ.
+/// The picture of a run of the script `name` that differs from the expected one: verdict and likeliest
+/// cause, the states of each axis, its position and velocity over the expected ones, every Boolean output
+/// that differs, and the claims in words. A line marks the first scan in which any of these differ.
 ///
 /// Work is proportional to rows times columns.
 #[must_use]
@@ -67,7 +68,7 @@ pub fn failing(name: &str, expected: &Trace, found: &Trace) -> String {
     picture.finish(&format!("{name}: a test that fails"))
 }
 
-/// Verdict, cause, and what the lines are.
+/// Verdict, cause, and the legend.
 fn heading(picture: &mut Picture, name: &str, expected: &Trace, found: &Trace) {
     let claims = &found.header().claims;
     let held = claims
@@ -92,7 +93,7 @@ fn heading(picture: &mut Picture, name: &str, expected: &Trace, found: &Trace) {
     picture.y += GAP;
 }
 
-/// Booleans that both runs have, and not alike, as they were and as they are.
+/// Booleans that both runs have and that differ: expected and actual.
 fn differing(expected: &Trace, found: &Trace) -> Vec<(Wave, Wave)> {
     let columns = found.columns().iter().enumerate();
     let columns = columns.filter(|(_, column)| column.kind == Kind::Bool);
@@ -188,7 +189,7 @@ mod tests {
             4,
             "legend, two curves, one wave: {picture}"
         );
-        // Scan 50 of 100 on a scale from 190 to 850: there the one of before rises.
+        // Scan 50 of 100 on a scale from 190 to 850: there the expected one rises.
         let part = picture
             .lines()
             .filter(|line| line.starts_with("<path class=\"part\""))

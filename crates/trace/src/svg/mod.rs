@@ -1,7 +1,7 @@
 //! A run as a picture: curves with limits, axis states, and the Booleans that change as a timing diagram.
 //!
-//! The picture is drawn in numbers with one decimal, so the same trace gives the same bytes everywhere. Its colours
-//! follow the reader's light or dark theme; it loads nothing.
+//! The picture is drawn in numbers with one decimal, so the same trace gives the same bytes everywhere.
+//! Its colours follow the reader's light or dark theme. It loads nothing.
 
 mod across;
 mod cam;
@@ -21,11 +21,11 @@ pub use plans::{PLANS_MAX, Plan, plans};
 use range::{Range, ticks};
 pub use report::report;
 
-/// The picture of a trace: for every axis its states and the curves of `signals` (names of
-/// [`AXIS_SIGNALS`](crate::AXIS_SIGNALS); limits near a curve are dashed), then every Boolean that changes,
-/// inputs and outputs told apart, over scans and time.
+/// The picture of a trace. For every axis: its states and the curves of `signals` (names of
+/// [`AXIS_SIGNALS`](crate::AXIS_SIGNALS); limits near a curve are dashed). Then every Boolean that
+/// changes, with inputs and outputs distinct, over scans and time.
 ///
-/// A pulse of one scan stays visible however long the run. Work is proportional to rows times columns.
+/// A pulse of one scan stays visible in a run of any length. Work is proportional to rows times columns.
 #[must_use]
 pub fn svg(trace: &Trace, signals: &[&str]) -> String {
     let mut picture = Picture::new(trace.scans());
@@ -51,8 +51,8 @@ pub fn svg(trace: &Trace, signals: &[&str]) -> String {
     picture.finish(&trace.header().title)
 }
 
-/// Curves of one value a scan each, below each other: a title and its values, over scans of `cycle_ns`. All are drawn
-/// in one range, so that they can be compared.
+/// Curves with one value a scan each, below each other: a title and its values, over scans of `cycle_ns`.
+/// All have one range, so that they can be compared.
 #[must_use]
 pub fn chart(title: &str, cycle_ns: u64, curves: &[(String, Vec<f64>)]) -> String {
     let scans = curves.iter().map(|(_, values)| values.len()).max().unwrap_or(0);

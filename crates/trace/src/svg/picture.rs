@@ -32,7 +32,7 @@ const LEVEL: f64 = 11.0;
 /// Between one panel and the next.
 pub const GAP: f64 = 14.0;
 
-/// Width of a character of a label, for what fits into a band.
+/// Width of a character of a label, to decide whether it fits into a band.
 const CHARACTER: f64 = 6.6;
 
 const STYLE: &str = "<style>\n\
@@ -67,16 +67,16 @@ pub fn wrapped(text: &str, letters: usize) -> Vec<String> {
     lines
 }
 
-/// In which light a picture is looked at.
+/// The theme in which a picture is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Theme {
-    /// Light, whatever the reader's system has.
+    /// Light, whatever the reader's system uses.
     Light,
     /// Dark, likewise.
     Dark,
 }
 
-/// What begins and ends the colours for the dark.
+/// The begin and the end of the dark colours.
 const DARK: [&str; 2] = ["@media (prefers-color-scheme: dark) {", " }\n</style>"];
 
 /// A picture of this module for one light only: for pages that choose between two files.
@@ -122,7 +122,7 @@ impl Picture {
         }
     }
 
-    /// Where a scan is, the number of scans being the right end.
+    /// The place of a scan; the number of scans is the right end.
     pub fn x(&self, scan: usize) -> f64 {
         GUTTER + (WIDTH - MARGIN - GUTTER) * (scan as f64 / self.scans.max(1) as f64)
     }
@@ -144,7 +144,7 @@ impl Picture {
         self.text(class, "end", [GUTTER - 8.0, y], text);
     }
 
-    /// The band of an axis' states, each named where it fits.
+    /// The band of an axis' states, with names if they fit.
     pub fn states(&mut self, trace: &Trace, axis: &Axis) {
         let name = format!("{}.State", axis.name);
         if let Some(column) = trace.column(&name) {
@@ -154,7 +154,7 @@ impl Picture {
         }
     }
 
-    /// A box for every stretch of equal cells, with its text where that fits.
+    /// A box for every stretch of equal cells, with its text if that fits.
     pub fn boxes<'t>(&mut self, cells: impl Iterator<Item = Cell<'t>>, row: f64) {
         let y = self.y;
         let cells: Vec<Cell<'_>> = cells.collect();
@@ -230,7 +230,7 @@ impl Picture {
         self.line("frame", &format!("M{GUTTER} {top:.1}V{bottom:.1}H{right:.1}"));
     }
 
-    /// What `rows` draws, with a grid below it, which it is to hide.
+    /// The drawing of `rows`, with a grid below it, which it hides.
     pub fn over_grid(&mut self, ticks: &[usize], rows: impl FnOnce(&mut Self)) {
         let (top, place) = (self.y, self.body.len());
         rows(self);
@@ -284,7 +284,7 @@ impl Picture {
         self.y = top + height + GAP;
     }
 
-    /// All of it, below a title that readers of pages are told.
+    /// The whole picture, below a title for screen readers.
     pub fn finish(self, title: &str) -> String {
         let height = self.y + GAP;
         format!(

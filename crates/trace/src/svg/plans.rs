@@ -1,9 +1,9 @@
-//! The picture of plans: their courses over each other, from one start on.
+//! The picture of plans: their courses over each other, from one start.
 
 use super::across::{Line, Panel, Panels};
 use super::picture::{GUTTER, Picture, ROW, wrapped};
 
-/// The colours: no more plans are drawn than these can tell apart.
+/// The most plans that are drawn: the number of colours.
 pub const PLANS_MAX: usize = 6;
 
 const STYLE: &str = "<style>\n\
@@ -16,7 +16,7 @@ const STYLE: &str = "<style>\n\
 /// Letters of a plan's label on its line.
 const LABEL: usize = 110;
 
-/// What is drawn, below each other, and its unit.
+/// The curves, below each other, and their units.
 const TITLES: [(&str, &str); 5] = [
     ("Position", "u"),
     ("Velocity", "u/s"),
@@ -30,15 +30,16 @@ const TITLES: [(&str, &str); 5] = [
 pub struct Plan {
     /// What it is called.
     pub label: String,
-    /// Moments of its course: time (s), position, velocity, acceleration, jerk, snap (in u and s). Times do not fall; at
-    /// equal ones a value jumps.
+    /// Moments of its course: time (s), position, velocity, acceleration, jerk, snap (in u and s). Times
+    /// do not fall; at equal ones a value jumps.
     pub course: Vec<[f64; 6]>,
-    /// Limits of velocity, acceleration, jerk and snap, where there are some.
+    /// Limits of velocity, acceleration, jerk and snap, if there are some.
     pub limits: [Option<f64>; 4],
 }
 
-/// The picture of up to [`PLANS_MAX`] plans: the labels, then position to snap, each in one range for all plans, with their
-/// limits dashed where a curve comes near. What stands still in every plan is left out.
+/// The picture of up to [`PLANS_MAX`] plans: the labels, then position to snap, each in one range for all
+/// plans. Limits are dashed where a curve comes near. Quantities that are constant in every plan are left
+/// out.
 ///
 /// Work is proportional to the moments.
 #[must_use]

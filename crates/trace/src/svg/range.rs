@@ -1,4 +1,4 @@
-//! Where values and scans are drawn, and how few points tell a curve.
+//! The places of values and scans in a picture, and curves with as few points as possible.
 
 use std::fmt::Write;
 
@@ -10,7 +10,7 @@ const NEAR: f64 = 0.1;
 /// About the number of ticks on the time axis.
 const TICKS: f64 = 8.0;
 
-/// What a curve is drawn in: its values, with some room around them.
+/// The range of a curve: its values, with some room around them.
 pub struct Range {
     pub least: f64,
     pub greatest: f64,
@@ -43,7 +43,7 @@ impl Range {
     }
 }
 
-/// What the curve must stay within.
+/// The limits of the curve.
 pub fn limits(curve: &Curve<'_>) -> Vec<f64> {
     let limits = &curve.axis.limits;
     let both = |bound: Option<f64>| bound.into_iter().flat_map(|bound| [-bound, bound]).collect();
@@ -70,7 +70,8 @@ pub fn ticks(scans: usize) -> Vec<usize> {
     (0..=scans).step_by(step).collect()
 }
 
-/// A line through the points, without those that a reader cannot tell from the line between the others.
+/// A line through the points, without those that a reader cannot distinguish from the line between the
+/// others.
 pub fn path(points: &[[f64; 2]]) -> String {
     let mut text = String::new();
     let mut points = points.iter().copied();

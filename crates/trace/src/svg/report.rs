@@ -1,5 +1,5 @@
-//! The picture with everything on it that the page of a trace shows: all curves and what the drive reported, claims,
-//! and every pin that changes, whatever its type.
+//! The full picture of a trace, as its page shows it: all curves and the drive's reports, claims, and
+//! every pin that changes, of any type.
 
 use std::fmt::Write;
 
@@ -15,7 +15,7 @@ use crate::trace::Trace;
 /// The curves of an axis, top to bottom.
 const SIGNALS: [&str; 5] = ["Position", "Velocity", "Acceleration", "Jerk", "Snap"];
 
-/// What the drive reported, drawn over the set-points.
+/// The drive's reports, drawn over the set-points.
 const ACTUAL: [(&str, &str); 2] = [("Position", "ActualPosition"), ("Velocity", "ActualVelocity")];
 
 /// A number that changes in more than one of this many scans is a curve, not a row of boxes.
@@ -41,9 +41,9 @@ pub const STYLE: &str = "<style>\n\
     circle { fill: #4fc882 } }\n\
     </style>\n";
 
-/// The picture of a whole trace, as the HTML report lays it out: title, for every axis its states and the curves that
-/// move, with limits and actual values, the claims over the scans they speak of, and every input, output and input variable that
-/// changes.
+/// The picture of a whole trace, in the layout of the HTML report: title; for every axis its states and
+/// the curves that move, with limits and actual values; the claims over their scans; and every input,
+/// output and input variable that changes.
 ///
 /// Work is proportional to rows times columns.
 #[must_use]
@@ -56,7 +56,7 @@ pub fn report(trace: &Trace) -> String {
     let curves = curves(trace, &SIGNALS);
     for axis in &header.axes {
         picture.states(trace, axis);
-        // What stands still, as the snap of an axis of order 2, tells nothing.
+        // A constant curve, such as the snap of an axis of order 2, shows nothing.
         let moves = |curve: &&Curve<'_>| std::ptr::eq(curve.axis, axis) && curve.least < curve.greatest;
         for curve in curves.iter().filter(moves) {
             draw(&mut picture, trace, curve, &ticks);
@@ -93,7 +93,7 @@ fn heading(picture: &mut Picture, trace: &Trace) {
     picture.y += GAP;
 }
 
-/// A panel with a curve, and what the drive reported of it.
+/// A panel with a curve, and the drive's report of it.
 fn draw(picture: &mut Picture, trace: &Trace, curve: &Curve<'_>, ticks: &[usize]) {
     let actual = ACTUAL.iter().find(|(signal, _)| *signal == curve.signal);
     let actual = actual.and_then(|(_, signal)| trace.column(&format!("{}.{signal}", curve.axis.name)));
@@ -110,7 +110,7 @@ fn draw(picture: &mut Picture, trace: &Trace, curve: &Curve<'_>, ticks: &[usize]
     picture.trail("actual", &actual, |value| bottom - CURVE * range.part(value));
 }
 
-/// A claim: what it says, the scans it speaks of, where it came true, where it failed.
+/// A claim: its text, its scans, where it came true, where it failed.
 pub fn draw_claim(picture: &mut Picture, claim: &Claim) {
     let (mark, class) = match claim.verdict {
         ClaimVerdict::Passed => ("✓", "held"),
@@ -148,7 +148,7 @@ pub fn draw_claim(picture: &mut Picture, claim: &Claim) {
     picture.y += 14.0;
 }
 
-/// A row for every input variable and pin that changes, instances set apart.
+/// A row for every input variable and pin that changes, with gaps between instances.
 fn pins(picture: &mut Picture, trace: &Trace) {
     let mut before: Option<&str> = None;
     for (at, column) in trace.columns().iter().enumerate() {
@@ -204,7 +204,7 @@ fn row(picture: &mut Picture, column: &Column, cells: &[Cell<'_>], changes: usiz
 fn real(cell: &Cell<'_>) -> Option<f64> {
     match cell {
         Cell::Real(value) => Some(*value),
-        // The time of a timer, a count: what a picture resolves is less than a float does.
+        // The time of a timer, or a count: a picture resolves less than a float does.
         Cell::Integer(value) => Some(*value as f64),
         Cell::Bool(_) | Cell::Name(_) => None,
     }
