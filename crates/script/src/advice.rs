@@ -1,11 +1,11 @@
-//! What may be meant otherwise in a script that is legal.
+//! Hints for legal scripts that may not do what their author means.
 
 use standstill_axis::{HomeDirection, Homing, Procedure};
 use standstill_drives::switches::Switches;
 use standstill_trace::shortest;
 
-/// Where the reference of a homing lies, seen from where the search begins (u): `None` without a single place to look for,
-/// or on an axis that comes round.
+/// The place of a homing's reference, seen from where the search begins (u). `None` if there is no single
+/// place to search for, or on a modulo axis.
 struct Way {
     what: &'static str,
     from: f64,
@@ -40,7 +40,8 @@ fn way(start: f64, homing: &Homing, switches: &Switches) -> Option<Way> {
     Some(Way { what, from, to, up })
 }
 
-/// Where the reference lies that a homing looks for, as a sentence; it says so if that is behind the search.
+/// A sentence with the place of the reference that a homing searches; it says so if that is behind the
+/// search.
 pub(crate) fn reference(axis: &str, start: f64, homing: &Homing, switches: &Switches) -> Option<String> {
     let Way { what, from, to, up } = way(start, homing, switches)?;
     let side = match behind(start, from, to, up) {

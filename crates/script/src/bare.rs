@@ -1,4 +1,4 @@
-//! A program in Structured Text that runs without a script: for a first look at it.
+//! Runs a program in Structured Text without a script, for a first look at it.
 
 use crate::model::Script;
 use crate::read::names::identifier_error;
@@ -9,14 +9,14 @@ use crate::suite::{Allowed, SuiteError, included, program_file, shown};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// What runs, and for how long.
+/// The program, and the length of its run.
 #[derive(Clone, Copy, Debug)]
 pub struct Bare<'a> {
     /// The files of the project; the last one names the program.
     pub sources: &'a [PathBuf],
     /// The machine file with its axes; none without one.
     pub axes: Option<&'a Path>,
-    /// The PROGRAM, where there are several.
+    /// The PROGRAM, if there are several.
     pub program: Option<&'a str>,
     /// Length of a scan (ns), above 0.
     pub cycle_ns: i64,
@@ -27,7 +27,7 @@ pub struct Bare<'a> {
 /// Runs a program in Structured Text by itself: no steps, no claims.
 ///
 /// # Errors
-/// [`SuiteError`], but for [`SuiteError::Golden`].
+/// [`SuiteError`], except [`SuiteError::Golden`].
 pub fn run_bare(
     bare: Bare<'_>,
     parameters: &[(String, f64)],
@@ -62,7 +62,7 @@ pub fn run_bare(
         members.insert("include".to_owned(), json!(machine));
     }
     let mut load = |inner: &str| match bare.axes {
-        // Named by whoever runs it; what it includes in its turn is looked at as ever.
+        // The user has named the file. Files that it includes are checked as always.
         Some(path) if Some(inner) == machine.as_deref() => {
             crate::suite::read_text(path).map_err(|error| error.to_string())
         }

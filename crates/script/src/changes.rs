@@ -1,4 +1,4 @@
-//! A script with what was changed while it was watched.
+//! A script with the changes that were made while it was watched.
 
 use crate::error::ScriptError;
 use crate::format::format;
@@ -7,8 +7,8 @@ use crate::read::without_mark;
 use crate::run::Change;
 use std::fmt::Write;
 
-/// The text of a script with these changes as steps behind its own, in the canonical layout. Its run is the one in which
-/// they were made.
+/// The text of a script with these changes as steps behind its own, in the canonical layout. Its run
+/// repeats the one in which they were made.
 ///
 /// # Errors
 /// [`ScriptError`] if the text is no strict JSON.
@@ -24,7 +24,8 @@ pub fn with_changes(text: &str, file_name: &str, changes: &[Change]) -> Result<S
         // Writing to a String cannot fail.
         let _ = write!(steps, "{comma}{{\"at\": {scan}, \"set\": {{");
         for (index, change) in same.iter().enumerate() {
-            // Of several values for one point the last counts; a key may stand once.
+            // If there are several values for one point, the last counts, because a key may occur only
+            // once.
             let later = same.get(index + 1..).unwrap_or_default();
             if later.iter().any(|later| later.point == change.point) {
                 continue;

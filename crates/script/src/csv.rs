@@ -1,8 +1,9 @@
 //! Tables as text: rows of numbers under the names of their fields, as a spreadsheet saves them.
 //!
-//! The first line names the fields in any order; fields that are absent are 0. Without such a line two columns are the first two
-//! fields. Lines that begin with `#` and empty ones are left out. Columns are parted by commas or semicolons; numbers have a decimal
-//! point, never a decimal comma. Cells may stand in quotation marks.
+//! The first line names the fields in any order; absent fields are 0. Without such a line two columns are
+//! the first two fields. Empty lines and lines that begin with `#` are skipped. Commas or semicolons
+//! separate columns; numbers have a decimal point, never a decimal comma. Cells may be in quotation
+//! marks.
 
 use crate::error::quoted;
 use standstill_fb::{Pin, PinType, TableInfo};
@@ -37,14 +38,14 @@ const OTHERS: [(&[(&str, &str)], i32); 2] = [
     ),
 ];
 
-/// What is wrong, and where.
+/// A fault and its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CsvFault {
     /// Line, from 1; 0 if none is at fault.
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// What is wrong, one sentence without a full stop.
+    /// The fault, one sentence without a full stop.
     pub message: String,
     /// What to do about it.
     pub help: String,
@@ -189,7 +190,8 @@ fn split(line: &str, number: usize, separator: char) -> Vec<Cell<'_>> {
     cells.collect()
 }
 
-/// The remedy for a line with too many columns, which decimal commas make, or too few, which another separator makes.
+/// The remedy for a line with too many columns, usually because of decimal commas, or too few, usually
+/// because of another separator.
 fn comma_help(cells: &[Cell<'_>], separator: char, otherwise: &str) -> String {
     let is_part = |text: &str| text.parse::<f64>().is_ok() && !text.contains('.');
     let are_parts = cells.iter().all(|cell| is_part(cell.text.trim_matches('"')));
@@ -208,13 +210,13 @@ fn has_decimal_comma(text: &str) -> bool {
     text.contains(',') && text.replacen(',', ".", 1).parse::<f64>().is_ok()
 }
 
-/// Which field each column is, and the law of rows that are named as another system does.
+/// The field of each column, and the law of rows with the names of another system.
 fn named(cells: &[Cell<'_>], info: &TableInfo) -> Result<(Vec<usize>, Option<i32>), CsvFault> {
     let field = |name: &str| {
         let mut fields = info.fields.iter();
         fields.position(|field: &Pin| field.name.eq_ignore_ascii_case(name))
     };
-    // A line of numbers, then, and not of names.
+    // Then it is a line of numbers and not of names.
     if let Some(cell) = cells.iter().find(|cell| has_decimal_comma(cell.text)) {
         let message = format!("{} is no number", quoted(cell.text));
         return Err(cell.fault(message, "write a decimal point, 1.5 for 1,5"));

@@ -1,4 +1,4 @@
-//! What is wrong with a script, and how it is shown.
+//! The faults of a script, and how they are shown.
 
 use crate::model::Span;
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet, normalize_untrusted_str};
@@ -6,8 +6,8 @@ use std::fmt;
 
 macro_rules! codes {
     ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal,)*) => {
-        /// The kinds of errors a script can have. The name stands in the first line of a message; scripts
-        /// may rely on it.
+        /// The kinds of errors of a script. The name is in the first line of a message; programs may rely
+        /// on it.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         #[non_exhaustive]
         pub enum Code { $($(#[doc = $doc])+ $variant,)* }
@@ -21,7 +21,7 @@ macro_rules! codes {
                 match self { $(Self::$variant => $name,)* }
             }
 
-            /// What it means, one sentence.
+            /// Its meaning, one sentence.
             pub const fn doc(self) -> &'static str {
                 match self { $(Self::$variant => concat!($($doc),+).trim_ascii(),)* }
             }
@@ -99,7 +99,7 @@ pub struct Diagnostic {
     pub code: Code,
     /// What is wrong, one sentence without a full stop.
     pub message: String,
-    /// Where in the text; `None` if the cause does not stand in it.
+    /// The place in the text; `None` if the cause is not in the text.
     pub span: Option<Span>,
     /// A few words under the carets, possibly none.
     pub label: String,
@@ -151,12 +151,12 @@ impl Diagnostic {
     }
 }
 
-/// A text that a script is made of.
+/// A text that belongs to a script.
 #[derive(Clone, Debug)]
 pub(crate) struct File {
     name: String,
     text: String,
-    /// Place of its first byte among those of all files.
+    /// Offset of its first byte among those of all files.
     start: usize,
 }
 
@@ -186,7 +186,8 @@ impl File {
         self.name.get(..end).unwrap_or_default()
     }
 
-    /// Where the next file may start: one further, because a message may point at the end of a file.
+    /// The first possible offset of the next file: one more than the end, because a message may point at
+    /// the end of a file.
     pub(crate) fn after(&self) -> usize {
         self.start + self.text.len() + 1
     }
@@ -197,20 +198,20 @@ impl File {
     }
 }
 
-/// Why a script was refused: at least one [`Diagnostic`], in the order of the text.
+/// The faults of a refused script: at least one [`Diagnostic`], in text order.
 #[derive(Clone, Debug)]
 pub struct ScriptError {
     /// The script, then what it includes; never empty.
     files: Vec<File>,
     diagnostics: Vec<Diagnostic>,
-    /// What is wrong with sources in Structured Text; a diagnostic says whose they are.
+    /// The faults of sources in Structured Text; a diagnostic says to which program they belong.
     reports: Vec<standstill_st::Report>,
 }
 
 /// Most diagnostics that are rendered in full; the rest is only counted.
 pub const DIAGNOSTICS_SHOWN: usize = 20;
 
-/// Most characters of a name or value that a message repeats.
+/// Most characters of a name or value that a message quotes.
 const SHOWN_CHARS: usize = 60;
 
 impl ScriptError {
@@ -265,8 +266,8 @@ impl ScriptError {
         place_of(&self.files, span)
     }
 
-    /// The message for people: per diagnostic what is wrong, file, line and column, the excerpt, a remedy.
-    /// Without colours, so it is the same everywhere. [`fmt::Display`] writes the same.
+    /// The message for people: for each diagnostic the fault, file, line and column, the excerpt, a
+    /// remedy. It has no colours, so it is the same everywhere. [`fmt::Display`] writes the same.
     pub fn render(&self) -> String {
         let mut out: Vec<String> = self
             .diagnostics
@@ -290,7 +291,7 @@ pub(crate) fn rendered(
     kind: &str,
     diagnostic: &Diagnostic,
 ) -> String {
-    // Pieces of the script stand in these; they must not reach a terminal as control characters.
+    // They contain pieces of the script, which must not reach a terminal as control characters.
     let visible = normalize_untrusted_str;
     let title = level.clone().primary_title(visible(&diagnostic.message)).id(kind);
     let mut group = match diagnostic.span {

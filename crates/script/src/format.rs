@@ -1,4 +1,4 @@
-//! The one canonical layout of a script: what `standstill fmt` writes.
+//! The canonical layout of a script, which `standstill fmt` writes.
 
 use crate::error::ScriptError;
 use crate::read::json::{self, Json, Node};
@@ -14,12 +14,12 @@ const INDENT: usize = 2;
 /// Keys of the script whose members always stand one per line.
 const ONE_PER_LINE: [&str; 5] = ["axes", "tasks", "blocks", "steps", "expect"];
 
-/// Lays out a script: two spaces per level, an object or list on one line where it fits in 110 columns, the
-/// members of `axes`, `tasks`, `blocks`, `steps` and `expect` on lines of their own, numbers in the shortest
-/// form that reads back to the same bits, LF, a newline at the end. Keys keep their order. What is laid out
-/// stays as it is when laid out again, and reads as the same script.
+/// Lays out a script: two spaces per level; an object or list on one line if it fits in 110 columns; the
+/// members of `axes`, `tasks`, `blocks`, `steps` and `expect` on lines of their own; numbers in the
+/// shortest form that reads back to the same bits; LF, and a newline at the end. Keys keep their order.
+/// Laying out a second time changes nothing, and the text reads as the same script.
 ///
-/// Only the syntax is looked at, so a script with an unknown pin can be laid out too.
+/// Only the syntax is checked, so a script with an unknown pin can be laid out too.
 ///
 /// # Errors
 /// [`ScriptError`] if the text is no strict JSON.
@@ -53,8 +53,8 @@ fn line(out: &mut String, level: usize, index: usize) {
     out.extend(std::iter::repeat_n(' ', level * INDENT));
 }
 
-/// Writes `node` behind what the last line of `out` already holds; its own members stand at `level` + 1.
-/// With `spread` they stand on lines of their own even if they would fit. `rest` characters follow.
+/// Writes `node` behind the text that the last line of `out` already has; its own members are at `level`
+/// + 1. With `spread` they are on lines of their own even if they would fit. `rest` characters follow.
 fn write_node(out: &mut String, node: &Node, level: usize, spread: bool, rest: usize) {
     let count = match &node.json {
         Json::Map(members) => members.len(),
@@ -127,8 +127,9 @@ fn write_flat(out: &mut String, node: &Node) {
     }
 }
 
-/// The shortest digits that read back to the same bits; whole numbers without a point. -0.0 keeps its sign,
-/// because a script may want just that bit. What is not finite is written as the word of the format.
+/// The shortest digits that read back to the same bits; whole numbers without a point. -0.0 keeps its
+/// sign, because a script may need just that bit. NaN and infinities are written as the words of the
+/// format.
 pub(crate) fn number_text(value: f64) -> String {
     if !value.is_finite() {
         return if value.is_nan() {

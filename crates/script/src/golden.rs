@@ -1,7 +1,8 @@
-//! Goldens: whether a run is as it was reviewed, and who may say that a new one is.
+//! Goldens: whether a run is as it was reviewed, and who may accept a new one.
 //!
-//! The golden of `x.scan.json` is the insta snapshot `x.snap` beside it, with every exact bit in `x.exact`.
-//! A golden is a record of what a reviewed version did, never a claim; a script whose claims fail gets none.
+//! The golden of `x.scan.json` is the insta snapshot `x.snap` beside it, with every exact bit in
+//! `x.exact`. A golden is a record of a reviewed version, never a claim; a script whose claims fail gets
+//! none.
 
 use crate::run::Outcome;
 use crate::why::Reason;
@@ -14,23 +15,24 @@ use std::path::{Path, PathBuf};
 /// What may be done to goldens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// Nothing is written: as in continuous integration.
+    /// Writes nothing, as in continuous integration.
     Check,
     /// A golden that is missing or differs fails, and is proposed as `x.snap.new` for review, with
-    /// cargo-insta or by eye. An exact trace that does not belong to its snapshot is written anew.
+    /// cargo-insta or by hand. An exact trace that does not belong to its snapshot is written anew.
     Propose,
-    /// Goldens become what the run is, where all claims hold.
+    /// Replaces goldens by the run, if all claims hold.
     Accept,
 }
 
-/// Nothing is accepted where the environment says `CI`.
+/// Goldens cannot be accepted if the environment has `CI`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("goldens are not accepted under CI: accept where you can review them, and unset CI there")]
 pub struct UnderCi;
 
 impl Mode {
-    /// The mode the environment asks for: `CI` (unless empty, `0` or `false`) and `INSTA_UPDATE=no` write
-    /// nothing, `INSTA_UPDATE=always` accepts, everything else proposes. `accept` is the user's own wish.
+    /// The mode that the environment asks for: `CI` (unless empty, `0` or `false`) and `INSTA_UPDATE=no`
+    /// write nothing, `INSTA_UPDATE=always` accepts, everything else proposes. `accept` is the user's own
+    /// request.
     ///
     /// # Errors
     /// [`UnderCi`] if the user wishes to accept there.
@@ -50,7 +52,7 @@ impl Mode {
     }
 }
 
-/// How a run stands to its golden.
+/// The result of comparing a run with its golden.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Standing {
     /// Every bit is as reviewed.
@@ -59,11 +61,11 @@ pub enum Standing {
     Close(Option<Closeness>),
     /// Every bit that the golden knows is as reviewed, but it is of version 1: what to do about it.
     Old(String),
-    /// None is asked for: the claims decide alone.
+    /// No golden is required: only the claims decide.
     Unasked,
     /// It was written in this run.
     Accepted,
-    /// It is not as reviewed: what differs, and what can be done.
+    /// It differs from the reviewed run: the differences, and the possible actions.
     Failed(String),
 }
 
@@ -73,8 +75,8 @@ pub fn snap_path(script: &Path) -> PathBuf {
     script.with_extension("").with_extension("snap")
 }
 
-/// The run that the golden of a script records, to be held against `run`; none without a golden, or where its exact trace is
-/// no help.
+/// The run that the golden of a script records, for comparison with `run`; none without a golden, or if
+/// its exact trace cannot be used.
 ///
 /// # Errors
 /// As [`judge`].
@@ -82,8 +84,8 @@ pub fn expected(script: &Path, run: &Trace) -> Result<Option<Trace>, GoldenError
     golden::expected(&snap_path(script), run)
 }
 
-/// Holds a run against the golden of its script by this yardstick, and does to the golden what `mode` permits. A golden
-/// that the run passes for is left as it is.
+/// Compares a run with the golden of its script by this yardstick, and changes the golden as `mode`
+/// permits. A golden that agrees with the run is not changed.
 ///
 /// # Errors
 /// A file that cannot be read or written, or a snapshot in another form than insta's.
@@ -100,7 +102,7 @@ pub fn judge(
     {
         match golden::judge_by(&snap, trace, yardstick) {
             Ok(Verdict::Close(how)) => return Ok(Standing::Close(how)),
-            // Accepting is the way out of a snapshot in another form.
+            // Accepting replaces a snapshot in another form.
             Ok(_) | Err(GoldenError::Form { .. }) => {}
             Err(error) => return Err(error),
         }
@@ -152,8 +154,8 @@ pub fn judge(
     Ok(Standing::Failed(format!("{}\n{hint}", what.trim_end())))
 }
 
-/// What may be behind a difference from the golden of a script, where the golden's exact trace can tell; whether it is
-/// something that was given otherwise, which explains all that follows.
+/// The likely cause of a difference from the golden of a script, if the golden's exact trace shows it.
+/// Also whether a value was given differently, which explains all that follows.
 ///
 /// # Errors
 /// As [`judge`].
@@ -181,7 +183,7 @@ pub fn why(script: &Path, run: &Trace) -> Result<Option<(Reason, bool)>, GoldenE
     }))
 }
 
-/// The first scan in which an output or an axis is otherwise: where the difference begins to show.
+/// The first scan in which an output or an axis differs, where the difference begins to show.
 fn first_output(expected: &Trace, run: &Trace) -> Option<u64> {
     let shown = expected.columns().iter().enumerate().filter_map(|(at, column)| {
         let is_shown = !matches!(column.role, Role::Variable | Role::Input | Role::InOut);

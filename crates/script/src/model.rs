@@ -46,9 +46,9 @@ pub struct Script {
     pub claims: Vec<Claim>,
     /// Ends the run before `scans` rows: conditions, and scans after them.
     pub stop_when: Option<(Conditions, u64)>,
-    /// Values of the script's parameters, overrides applied.
+    /// Values of the script's parameters, after overrides.
     pub parameters: BTreeMap<String, f64>,
-    /// A golden counts beside the claims.
+    /// Whether a golden counts beside the claims.
     pub golden: bool,
     /// Values above the limits are meant.
     pub clamps_expected: bool,
@@ -58,7 +58,7 @@ pub struct Script {
     pub hash: u64,
 }
 
-/// Where something stands in a script, and whether it may test nothing.
+/// The place of an item in a script, and whether it may test nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Place {
     /// Where.
@@ -74,7 +74,7 @@ pub struct NamedTable {
     pub name: String,
     /// Its type.
     pub info: TableInfo,
-    /// Where its numbers stand in [`Script::tables`].
+    /// The place of its numbers in [`Script::tables`].
     pub place: TableRef,
 }
 
@@ -89,7 +89,8 @@ pub struct Axis {
     pub config: AxisConfig,
     /// Its drive.
     pub drive: DriveSetup,
-    /// The most masters that a block with it at its `Slave` pin gives it: 0 where there is none, 2 for MC_CombineAxes.
+    /// The most masters that a block with it at its `Slave` pin gives it: 0 for none, 2 for
+    /// MC_CombineAxes.
     pub masters: usize,
     /// It has a master, and a block with it at its `Axis` pin superimposes motions.
     pub superimposed: bool,
@@ -123,14 +124,14 @@ pub struct Instance {
     pub constants: Vec<(usize, Value)>,
     /// Wires, by pin index.
     pub wires: Vec<(usize, Wire)>,
-    /// It is never called: of a mutant only.
+    /// Never called; only in a mutant.
     pub(crate) left_out: bool,
     /// Where it stands.
     pub place: Place,
 }
 
 impl Instance {
-    /// The inputs that set it to work: index and name.
+    /// The inputs that start it: index and name.
     pub(crate) fn triggers(&self) -> impl Iterator<Item = (usize, &'static str)> {
         let is_standard = self.block.group == Group::Standard;
         let is_trigger =
@@ -157,11 +158,11 @@ pub struct Program {
     pub calls: Vec<Call>,
     /// What was compiled.
     pub guest: standstill_guest::Program,
-    /// Its variables that are signals; before them stands `Fault`, which the runtime writes.
+    /// Its variables that are signals; the first is `Fault`, which the runtime writes.
     pub symbols: Vec<Symbol>,
     /// Where it stands.
     pub place: Place,
-    /// What is known of it where it is Structured Text.
+    /// Data of a program in Structured Text.
     pub text: Option<Arc<ProgramText>>,
 }
 
@@ -174,10 +175,10 @@ pub struct Call {
     pub entry: Option<String>,
 }
 
-/// What is doubtful in a program in Structured Text.
+/// A doubtful place of a program in Structured Text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Doubt {
-    /// `cell.st:12:5: ` and what it is, in one line.
+    /// `cell.st:12:5: ` and the doubt, in one line.
     pub message: String,
     /// What to do about it.
     pub help: String,
@@ -190,9 +191,9 @@ pub struct ProgramText {
     pub symbols: standstill_st::Symbols,
     /// Its instances of blocks by the address of their key, with the names that records show.
     pub blocks: BTreeMap<u32, String>,
-    /// What the compiler finds doubtful: place in the sources, what it is, and what to do about it.
+    /// The compiler's doubts: place in the sources, the doubt, and the remedy.
     pub doubtful: Vec<Doubt>,
-    /// Its files: their names in messages, and what stands in them, without a byte order mark.
+    /// Its files: their names in messages, and their text without a byte order mark.
     pub sources: Vec<(String, String)>,
     /// The script's folder, which the names of its files begin with.
     pub folder: String,
@@ -207,9 +208,9 @@ pub struct Symbol {
     pub ty: PinType,
     /// Its own type, which that of its signal holds.
     pub own: standstill_guest::SymbolType,
-    /// Where it stands; where the guest exports it if absent.
+    /// Its address; if absent, the address that the guest exports.
     pub address: Option<u32>,
-    /// What the guest exports it as; by its name if absent.
+    /// The name of the guest's export; its own name if absent.
     pub export: Option<String>,
     /// What it is in Structured Text.
     pub variable: Option<Variable>,
@@ -222,9 +223,9 @@ pub struct Formula {
     pub text: String,
     /// Where it stands.
     pub span: Span,
-    /// Whether it is one of a condition, which reads rows; else it is one of a wire.
+    /// Whether it belongs to a condition, which reads rows; otherwise it belongs to a wire.
     pub in_rows: bool,
-    /// What was compiled of it.
+    /// Its compiled program.
     pub guest: standstill_guest::Program,
     /// The signals it reads.
     pub inputs: Vec<FormulaInput>,
@@ -232,7 +233,7 @@ pub struct Formula {
     pub result: standstill_guest::Symbol,
     /// The type of its value.
     pub ty: PinType,
-    /// What can go wrong in it, by the number of the place.
+    /// The possible errors in it, by the number of the place.
     pub places: Vec<standstill_st::FaultKind>,
 }
 
@@ -245,11 +246,11 @@ pub struct FormulaInput {
     pub symbol: standstill_guest::Symbol,
     /// What the variable is.
     pub variable: Variable,
-    /// Names and numbers of the elements, where it has some.
+    /// Names and numbers of the elements, if it has some.
     pub names: Vec<(String, i128)>,
 }
 
-/// Where a value comes from.
+/// The source of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Point {
     /// Script variable by index.
@@ -262,7 +263,7 @@ pub enum Point {
     Formula(usize),
 }
 
-/// What feeds an input pin.
+/// The source of an input pin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Wire {
     /// The value as it is; also numeric.
@@ -301,7 +302,7 @@ pub struct Task {
     pub watchdog: Option<u32>,
 }
 
-/// A place in the script's text, for messages; those of included files follow on.
+/// A place in the script's text, for messages; the places of included files follow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Span {
     /// First byte.
@@ -337,7 +338,7 @@ pub enum When {
 }
 
 impl When {
-    /// Looks at the row of a scan.
+    /// Number of rows that it reads in a scan.
     pub(crate) fn looks(&self) -> u64 {
         match self {
             Self::At(_) => 0,
@@ -447,12 +448,12 @@ pub enum AxisNumber {
     Phase2,
     /// What is superimposed on the law of a slave.
     Superimposed,
-    /// The place of the master at which a slave on a cam is.
+    /// The place of the master where a slave on a cam is.
     Shadow,
 }
 
 impl AxisNumber {
-    /// How many masters an axis may have at least to have it.
+    /// The least number of masters that an axis needs to have it.
     pub(crate) const fn least_masters(self) -> usize {
         match self {
             Self::Deviation | Self::Phase | Self::Superimposed | Self::Shadow => 1,
@@ -478,7 +479,7 @@ pub struct Condition {
     pub span: Span,
 }
 
-/// What a signal must be.
+/// The required value of a signal.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Test {
     /// A BOOL.
@@ -530,7 +531,7 @@ pub enum Comparison {
     AbsLe(f64),
     /// Equal to the bit to another signal.
     SameAs(String, Signal),
-    /// Of a variable with a whole number of 64 bits: exact, whatever an f64 makes of it.
+    /// For a variable with a 64-bit whole number: exact, although an f64 may not be.
     Whole(Relation, i128),
 }
 
@@ -561,7 +562,7 @@ impl Relation {
     }
 }
 
-/// What the script's author says of the run.
+/// A statement of the script's author about the run.
 #[derive(Clone, Debug)]
 pub struct Claim {
     /// Path in the script, such as `expect[2]`.
@@ -570,7 +571,7 @@ pub struct Claim {
     pub span: Span,
     /// `"vacuous": "allowed"`
     pub may_be_vacuous: bool,
-    /// From and to what it speaks, where conditions say so.
+    /// The scans it covers, if conditions define them.
     pub window: Window,
     /// What it says.
     pub kind: ClaimKind,
@@ -704,7 +705,7 @@ pub enum ClaimKind {
         range: Range,
         /// `while`
         during: Conditions,
-        /// What begins and what ends it.
+        /// The begin and the end.
         ends: [Conditions; 2],
         /// Scans.
         bounds: Bounds,

@@ -1,7 +1,8 @@
-//! Mutants of a script's program: small changes, each of which a claim should notice.
+//! Mutants of a script's program: small changes, each of which a claim should detect.
 //!
-//! Changed are what a machine's builder writes: constants at pins and in tables, wires, blocks and limits. Steps and claims stay as they are:
-//! they are the test. A list of the changes stands in `docs/mutants.md`.
+//! The changes are made to what a machine builder writes: constants at pins and in tables, wires, blocks
+//! and limits. Steps and claims are not changed, because they are the test. `docs/mutants.md` lists the
+//! changes.
 
 use crate::claims::Verdict;
 use crate::model::{Script, Wire};
@@ -18,7 +19,7 @@ const FACTORS: [f64; 2] = [0.9, 1.1];
 pub struct Mutant {
     /// JSON path of what is changed, such as `blocks[2].pins.Velocity`.
     pub path: String,
-    /// From what to what, in a few words.
+    /// The old and the new value, in a few words.
     pub says: String,
     change: Change,
 }
@@ -37,20 +38,21 @@ enum Change {
     LeftOut(usize),
 }
 
-/// What became of a mutant.
+/// The fate of a mutant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Fate {
     /// This claim failed, the first in file order.
     Killed(String),
     /// No claim noticed.
     Survived,
-    /// Nothing in the run is otherwise, but for what was changed itself; there is nothing to notice.
+    /// The run does not differ, except for the changed value itself; there is nothing to detect.
     Same,
     /// The script cannot be run with it.
     Impossible,
 }
 
-/// All mutants of a script in file order; of more than `most` only `most` of them, drawn from the seed.
+/// All mutants of a script in file order. If there are more than `most`, only `most` of them, drawn from
+/// the seed.
 #[must_use]
 pub fn mutants(script: &Script, seed: u64, most: usize) -> Vec<Mutant> {
     let mut all = Vec::new();
@@ -63,7 +65,8 @@ pub fn mutants(script: &Script, seed: u64, most: usize) -> Vec<Mutant> {
     drawn(all, seed, most)
 }
 
-/// So many of all, in their order. Whether one is drawn depends on the seed and on its path and change alone.
+/// This many of all, in their order. Whether one is drawn depends only on the seed, its path and its
+/// change.
 fn drawn(all: Vec<Mutant>, seed: u64, most: usize) -> Vec<Mutant> {
     if all.len() <= most {
         return all;
@@ -95,7 +98,7 @@ fn limits(script: &Script, index: usize, all: &mut Vec<Mutant>) {
         return;
     };
     let old = axis.config.limits;
-    // A deceleration that is not given is the acceleration.
+    // The default of the deceleration is the acceleration.
     let one = old.deceleration == old.acceleration;
     type Set = fn(&mut Limits, f64);
     let each: [(&str, f64, Set); 5] = [
@@ -171,7 +174,7 @@ fn block(script: &Script, index: usize, all: &mut Vec<Mutant>) {
     }
 }
 
-/// The numbers of a table at a pin, as far as they are not 0: what a record leaves out is 0, too.
+/// The numbers of a table at a pin that are not 0: a value left out of a record is 0, too.
 fn table(script: &Script, path: &str, place: TableRef, info: TableInfo, all: &mut Vec<Mutant>) {
     let first = usize::try_from(place.first).unwrap_or(usize::MAX);
     let cells = script.tables.iter().enumerate().skip(first);
@@ -203,7 +206,7 @@ fn table(script: &Script, path: &str, place: TableRef, info: TableInfo, all: &mu
     }
 }
 
-/// A constant a tenth less and a tenth more; a BOOL turned.
+/// A constant a tenth less and a tenth more; for a BOOL the opposite.
 fn numbers(value: Value) -> Vec<(Value, String)> {
     let text = |value: f64| shortest(value);
     match value {
@@ -233,7 +236,7 @@ fn numbers(value: Value) -> Vec<(Value, String)> {
             })
             .collect(),
         Value::Int(value) if value != 0 => {
-            // A tenth of a small number is none, so it is one at least.
+            // A tenth of a small number is 0, so the change is at least one.
             let step = (value / 10).abs().max(1);
             let others = [value.saturating_sub(step), value.saturating_add(step)];
             let each = others.into_iter();
@@ -244,8 +247,8 @@ fn numbers(value: Value) -> Vec<(Value, String)> {
     }
 }
 
-/// Another element: of a buffer mode aborting where it waits and buffered where it aborts, of others the next one. An
-/// enumeration that the script does not name is left alone, but for buffer modes.
+/// Another element. For a buffer mode: aborting if it waits, buffered if it aborts. For others the next
+/// one. An enumeration that the script does not name is not changed, except buffer modes.
 fn element(
     elements: &[(&'static str, i32)],
     now: Option<Value>,
@@ -272,7 +275,7 @@ fn element(
     }
 }
 
-/// A logical wire turned round.
+/// A logical wire inverted.
 fn rewired(wire: &Wire, ty: PinType) -> Option<(Wire, String)> {
     if ty != PinType::Bool {
         return None;
@@ -325,7 +328,7 @@ impl Mutant {
         }
     }
 
-    /// Runs the script with the change; `original` is its run without. Goldens are not looked at.
+    /// Runs the script with the change; `original` is its run without. Goldens are not used.
     #[must_use]
     pub fn judge(&self, script: &Script, original: &Outcome) -> Fate {
         let Some(outcome) = self.applied(script).and_then(|script| run(&script).ok()) else {

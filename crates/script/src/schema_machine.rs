@@ -1,4 +1,5 @@
-//! The JSON Schema of machine files, which scripts include: of what the one of scripts says, the part they may hold.
+//! The JSON Schema of machine files, which scripts include: the part of the scripts' schema that they may
+//! have.
 
 use crate::read::shape;
 use crate::schema::{add, definitions, object, required};
@@ -6,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 /// The JSON Schema (draft 2020-12) of machine files (`*.machine.json`), in the layout of [`format`](crate::format).
 ///
-/// What an included file may name of the files that include it, only the reader of the script can say.
+/// Only the reader of the script can check which names of the including files an included file may use.
 pub fn machine_schema() -> String {
     let mut document = document();
     document.sort_all_objects();

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 /// The JSON Schema (draft 2020-12) of maps, in the layout of [`format`](crate::format).
 ///
-/// It knows no trace, so it takes the keys of every kind of signal for every one.
+/// It knows no trace, so it accepts the keys of every kind of signal for every one.
 pub fn map_schema() -> String {
     let mut document = document();
     document.sort_all_objects();

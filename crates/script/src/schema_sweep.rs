@@ -89,7 +89,7 @@ pub(crate) fn measures() -> Value {
     json!({"type": "object", "additionalProperties": {"oneOf": each_measure()}})
 }
 
-/// A measure for each thing that can be taken: exactly one of the keys.
+/// A measure for each quantity: exactly one of the keys.
 fn each_measure() -> Vec<Value> {
     let text = json!({"type": "string"});
     TAKES

@@ -1,4 +1,4 @@
-//! Folders of scan scripts: finding them, and judging one as a test.
+//! Folders of scan scripts: finds them, and judges one as a test.
 //!
 //! The command line and the repository's own tests call the same functions, so both give the same verdict.
 
@@ -32,11 +32,11 @@ const COMPANIONS: [&str; 3] = [".snap", ".exact", ".snap.new"];
 pub struct Report {
     /// Its trace and its judged claims.
     pub outcome: Outcome,
-    /// How it stands to its golden.
+    /// The result of comparing it with its golden.
     pub golden: Standing,
-    /// What is behind it where it failed, the likeliest first.
+    /// The reasons if it failed, the likeliest first.
     pub why: Vec<Reason>,
-    /// What tests nothing, and what was changed on its way.
+    /// Items that test nothing, and values that were changed on the way.
     pub warnings: Warnings,
 }
 
@@ -47,7 +47,7 @@ impl Report {
     }
 }
 
-/// What failed, a paragraph each: claims first, in file order, and why, then the golden.
+/// The failures, a paragraph each: claims first, in file order, and their reasons, then the golden.
 impl fmt::Display for Report {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         for failure in self.outcome.verdicts.iter().flat_map(failures) {
@@ -67,7 +67,7 @@ impl fmt::Display for Report {
     }
 }
 
-/// Reasons as lines under a heading; nothing where there are none.
+/// Reasons as lines under a heading; nothing if there are none.
 #[derive(Clone, Copy, Debug)]
 pub struct Reasons<'a>(pub &'a [Reason]);
 
@@ -87,7 +87,7 @@ fn failures(verdict: &Verdict) -> impl Iterator<Item = &crate::Failure> {
     verdict.failures.iter()
 }
 
-/// Why a script could not be judged.
+/// The reason why a script could not be judged.
 #[derive(Debug, thiserror::Error)]
 pub enum SuiteError {
     /// A file or folder could not be read.
@@ -103,12 +103,12 @@ pub enum SuiteError {
     Encoding {
         /// The script.
         path: PathBuf,
-        /// So many bytes are text.
+        /// The number of bytes that are text.
         valid: usize,
         /// What it looks like.
         like: &'static str,
     },
-    /// The script is not usable.
+    /// The script is not valid.
     #[error(transparent)]
     Script(#[from] ScriptError),
     /// The script could not be run to its end.
@@ -133,14 +133,16 @@ impl SuiteError {
     }
 }
 
-/// What the scripts of a command may do beyond what any script may.
+/// Permissions of a command's scripts beyond those of any script.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Allowed {
-    /// Folders from which, and from whose folders, files may be read beside those of the script's own.
+    /// Folders from which files may be read, and from the folders in them, in addition to the script's
+    /// own.
     pub folders: Vec<PathBuf>,
     /// Memory that all guest programs of a script may have together (bytes).
     pub guest_memory: u64,
-    /// Whether runs may have more cells than fit into one trace: for a command that does not keep their rows.
+    /// Whether runs may have more cells than fit into one trace: for a command that does not keep their
+    /// rows.
     pub long: bool,
 }
 
@@ -154,12 +156,13 @@ impl Default for Allowed {
     }
 }
 
-/// Reads and runs the script at `path`, and holds it against its claims and, by this yardstick, its golden; without one, or
-/// where the script says `"golden": false`, the claims decide alone. `progress` is told
-/// from time to time how many scans are done. Files that it includes lie below its folder or where `allowed` says.
+/// Reads and runs the script at `path`, and judges it by its claims and, with this yardstick, by its
+/// golden. Without a golden, or with `"golden": false` in the script, only the claims decide. `progress`
+/// is called from time to time with the number of scans done. Files that it includes must be below its
+/// folder or where `allowed` says.
 ///
 /// # Errors
-/// [`SuiteError`]; claims and goldens that fail are no error but stand in the report.
+/// [`SuiteError`]. Claims and goldens that fail are no error; they are in the report.
 pub fn judge_file(
     path: &Path,
     mode: Mode,
@@ -190,7 +193,7 @@ pub fn judge_file(
     })
 }
 
-/// Reads and runs the script at `path`, with these values in place of its own parameters; `allowed` as for
+/// Reads and runs the script at `path`, with these values replacing its own parameters; `allowed` as for
 /// [`judge_file`].
 ///
 /// # Errors
@@ -204,7 +207,7 @@ pub fn run_file(
     run_script(path, parameters, allowed, progress).map(|(_, outcome)| outcome)
 }
 
-/// As [`run_file`]; the script, too.
+/// As [`run_file`]; also returns the script.
 ///
 /// # Errors
 /// As [`run_file`].
@@ -234,7 +237,8 @@ pub fn read_file(
     read_as(path, parameters, allowed, false)
 }
 
-/// Reads a machine file for its axes, as a script that does nothing else would; a file that ends in `.scan.json` is a script itself.
+/// Reads a machine file for its axes, like a script that does nothing else; a file that ends in
+/// `.scan.json` is a script itself.
 ///
 /// # Errors
 /// As [`read_file`].
@@ -280,7 +284,8 @@ pub fn read_axes(path: &Path, allowed: &Allowed) -> Result<Script, SuiteError> {
     )?)
 }
 
-/// As [`read_file`]; the statements of its programs in Structured Text are counted, and may take more fuel.
+/// As [`read_file`]; the statements of its programs in Structured Text are counted, and may take more
+/// fuel.
 ///
 /// # Errors
 /// As [`read_file`].
@@ -308,7 +313,7 @@ fn read_as(
     Ok((script, text))
 }
 
-/// Reads a text as the script that would stand at `path`; what it names is looked for from there. Arguments as for
+/// Reads a text as the script at `path`; files that it names are searched from there. Arguments as for
 /// [`run_file`].
 ///
 /// # Errors
@@ -339,8 +344,9 @@ fn read_at(
     read_within(text, &shown(path), parameters, &mut load, &mut guest, terms)
 }
 
-/// How often each statement and branch of the script's programs in Structured Text is executed: `None` if it has no such
-/// program. It is counted in a run of its own, so the run that is judged is the same with and without.
+/// The execution counts of the statements and branches of the script's programs in Structured Text:
+/// `None` if it has no such program. They are counted in a run of their own, so the judged run is the
+/// same with and without.
 ///
 /// # Errors
 /// As [`run_file`].
@@ -358,7 +364,7 @@ pub fn coverage(path: &Path, allowed: &Allowed) -> Result<Option<Vec<Counted>>, 
     Ok(Some(session.counted()))
 }
 
-/// A script with all it includes, read once to be run with many values of its parameters.
+/// A script with all its includes, read once for runs with many values of its parameters.
 #[derive(Clone, Debug)]
 pub struct Texts {
     parsed: Parsed,
@@ -367,8 +373,8 @@ pub struct Texts {
 }
 
 impl Texts {
-    /// Reads the script at `path` and the files that it includes; `allowed` as for [`judge_file`]. The script as it
-    /// stands, too.
+    /// Reads the script at `path` and the files that it includes; `allowed` as for [`judge_file`]. Also
+    /// returns the script with its own parameters.
     ///
     /// # Errors
     /// [`SuiteError::Io`], [`SuiteError::Encoding`], [`SuiteError::Script`].
@@ -394,10 +400,10 @@ impl Texts {
         Ok((texts, script))
     }
 
-    /// The script with these values in place of its own parameters.
+    /// The script with these values replacing its own parameters.
     ///
     /// # Errors
-    /// [`ScriptError`] where it cannot be used with them.
+    /// [`ScriptError`] if it is not valid with them.
     pub fn script(&self, parameters: &[(String, f64)]) -> Result<Script, ScriptError> {
         let mut guest = |inner: &str| {
             let bytes = self.guests.get(inner).cloned();
@@ -420,7 +426,7 @@ pub fn read_text(path: &Path) -> Result<String, SuiteError> {
     })
 }
 
-/// The text of a file in UTF-8; how many bytes of it are, and what it looks like instead.
+/// The text of a file in UTF-8; otherwise the number of valid bytes, and the probable encoding.
 fn decoded(bytes: Vec<u8>) -> Result<String, (usize, &'static str)> {
     // Every second byte of plain text in UTF-16 is 0, and a text in UTF-8 has none.
     let zero = bytes.iter().take(4).position(|byte| *byte == 0);
@@ -450,9 +456,9 @@ fn module(outer: &Path, inner: &str, allowed: &Allowed) -> Result<Vec<u8>, Strin
     program_file(&beside(outer, inner, &allowed.folders, "script")?)
 }
 
-/// The bytes of a program; of a file that is too large, as many as show that it is.
+/// The bytes of a program; of a file that is too large only as many as show that it is.
 pub(crate) fn program_file(path: &Path) -> Result<Vec<u8>, String> {
-    // A pipe would be waited for.
+    // Reading a pipe would block.
     if !fs::metadata(path).map_err(why)?.is_file() {
         return Err("it is no regular file".to_owned());
     }
@@ -463,14 +469,14 @@ pub(crate) fn program_file(path: &Path) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// The system's own path of a file that is named relative to the folder of `outer`, and lies in this folder or below,
-/// or below one of `allowed`; `what` is what `outer` is called in a message.
+/// The system's own path of a file that is named relative to the folder of `outer`, and is in this folder
+/// or below, or below one of `allowed`; `what` names `outer` in a message.
 ///
 /// # Errors
-/// Why it cannot or may not be read, in words that are the same everywhere.
+/// The reason why it cannot or may not be read, in words that are the same everywhere.
 pub fn beside(outer: &Path, inner: &str, allowed: &[PathBuf], what: &str) -> Result<PathBuf, String> {
     let folder = outer.parent().unwrap_or(Path::new(""));
-    // The system's own view of both, so that no link leads outside.
+    // The system's own paths of both, so that no link leads outside.
     let real = |path: &Path| {
         fs::canonicalize(if path == Path::new("") {
             Path::new(".")
@@ -528,8 +534,8 @@ pub fn find(path: &Path) -> Result<Vec<PathBuf>, SuiteError> {
     Ok(files)
 }
 
-/// Goldens and proposals in a folder whose script is not there any more, sorted by path. Snapshots that `insta` keeps for other tests
-/// are none of them.
+/// Goldens and proposals in a folder whose script no longer exists, sorted by path. Snapshots that
+/// `insta` keeps for other tests are not among them.
 ///
 /// # Errors
 /// A folder that cannot be read.
@@ -551,7 +557,7 @@ pub fn orphans(folder: &Path) -> Result<Vec<PathBuf>, SuiteError> {
 
 /// A snapshot whose header names a source that is no scan script.
 fn is_of_another_test(file: &Path) -> bool {
-    // The header stands at the top; what cannot be read is no snapshot of anybody's.
+    // The header is at the top; a file that cannot be read is no snapshot.
     const HEADER: u64 = 4096;
     let mut text = Vec::new();
     let read = fs::File::open(file).and_then(|file| file.take(HEADER).read_to_end(&mut text));
@@ -564,7 +570,8 @@ fn is_of_another_test(file: &Path) -> bool {
     source.is_some_and(|source| !source.trim_matches('"').ends_with(EXTENSION))
 }
 
-/// Files in a folder that look like scan scripts, but for their names, sorted by path: they are not tested.
+/// Files in a folder that look like scan scripts except for their names, sorted by path: they are not
+/// tested.
 ///
 /// # Errors
 /// A folder that cannot be read.
@@ -598,7 +605,7 @@ fn looks_like_a_script(file: &Path) -> bool {
     matches!(read, Ok(Ok(_))) && ["standstill", "cycle", "scans"].into_iter().all(has)
 }
 
-/// Bytes of a file that are looked at to tell whether it is a script.
+/// Bytes of a file that are read to decide whether it is a script.
 const LOOKED_AT: u64 = 1 << 16;
 
 /// The name of a script as a test: its path in `folder` without extension.
@@ -619,7 +626,8 @@ fn walk(folder: &Path) -> Result<Vec<PathBuf>, SuiteError> {
         for entry in fs::read_dir(&folder).map_err(SuiteError::io(&folder))? {
             let entry = entry.map_err(SuiteError::io(&folder))?;
             let kind = entry.file_type().map_err(SuiteError::io(&folder))?;
-            // Links to folders are not followed: they could lead back here. Pipes and devices are no scripts.
+            // Links to folders are not followed, because they could form a loop. Pipes and devices are no
+            // scripts.
             if kind.is_dir() {
                 folders.push(entry.path());
             } else if kind.is_file() || fs::metadata(entry.path()).is_ok_and(|found| found.is_file()) {

@@ -1,7 +1,7 @@
-//! What a sweep varies, and the cases that follow from it.
+//! The parameters that a sweep varies, and its cases.
 //!
-//! A case is a number; its parameters follow from the number and the file alone, so that it does not matter which
-//! process computes which case. A sample has no end of its own: with a larger `count` the first cases stay the same.
+//! A case is a number. Its parameters follow from the number and the file alone, so any process may
+//! compute any case. A sample can be extended: with a larger `count` the first cases stay the same.
 
 use crate::error::{Code, Diagnostic, ScriptError, quoted};
 use crate::model::{Script, Span};
@@ -11,7 +11,7 @@ use standstill_trace::{Column, Kind, Trace};
 /// Most cases of one sweep.
 pub const CASES_MAX: u64 = 10_000_000;
 
-/// A sweep file, read and checked; it does not know yet whether the script has what it names.
+/// A sweep file, read and checked; it is not yet compared with the script that it names.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     /// Name and text of the file, for messages.
@@ -22,7 +22,8 @@ pub struct Sweep {
     pub(crate) varied: Vec<Varied>,
     pub(crate) draw: Draw,
     pub(crate) measures: Vec<Measure>,
-    /// Whether the table has the digest of every case. A case without one need not write down what nobody reads.
+    /// Whether the table has the digest of every case. Without it a case need not write columns that
+    /// nobody reads.
     pub has_digest: bool,
 }
 
@@ -34,12 +35,12 @@ pub(crate) struct Varied {
     pub(crate) values: Values,
 }
 
-/// What values a parameter takes.
+/// The values of a parameter.
 #[derive(Clone, Debug)]
 pub(crate) enum Values {
     /// These.
     List(Vec<f64>),
-    /// From the first to the second, both among them; a number of them in a grid, any in a sample.
+    /// From the first to the second, both included; a number of them in a grid, any in a sample.
     Range {
         from: f64,
         to: f64,
@@ -48,7 +49,7 @@ pub(crate) enum Values {
     },
 }
 
-/// How values lie between two ends.
+/// The spacing of values between two ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scale {
     /// At equal differences.
@@ -75,7 +76,7 @@ impl Scale {
 pub(crate) enum Draw {
     /// Every value of a parameter with every one of the others; the last parameter varies fastest.
     Grid,
-    /// So many, each parameter drawn by itself.
+    /// A number of cases, with each parameter drawn independently.
     Sample { seed: u64, count: u64 },
 }
 
@@ -92,7 +93,7 @@ pub struct Measure {
     pub(crate) signal_place: Span,
 }
 
-/// What a measure takes of a signal.
+/// The quantity that a measure takes of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Take {
     /// Its value in the last row.
@@ -109,7 +110,7 @@ pub enum Take {
     Count,
 }
 
-/// The names of what can be taken.
+/// The names of the quantities.
 pub(crate) const TAKES: [(&str, Take); 6] = [
     ("last", Take::Last),
     ("max", Take::Max),
@@ -120,7 +121,7 @@ pub(crate) const TAKES: [(&str, Take); 6] = [
 ];
 
 impl Take {
-    /// What it is taken of, where it is not taken of this kind of signal.
+    /// The kinds of signals it can be taken of, if this kind is not one.
     fn refuses(self, kind: Kind) -> Option<&'static str> {
         match (self, kind) {
             (Self::Last, _)
@@ -179,18 +180,18 @@ impl Sweep {
         values
     }
 
-    /// The message that the script cannot be had, with the reason.
+    /// The message that the script cannot be read, with the reason.
     pub fn no_script(&self, why: &str) -> ScriptError {
         let message = format!("{} cannot be had: {why}", quoted(&self.script));
         let diagnostic = Diagnostic::new(Code::BadInclude, self.script_place, message);
         ScriptError::new(&self.file.0, &self.file.1, vec![diagnostic])
     }
 
-    /// Checks what the file names against the script and the trace of its run, and that no two columns of a table
-    /// which has these have one name.
+    /// Checks the names in the file against the script and the trace of its run, and that no two columns
+    /// of a table with these have one name.
     ///
     /// # Errors
-    /// [`ScriptError`] with every name that is not there or stands for two things.
+    /// [`ScriptError`] with every name that does not exist or is ambiguous.
     pub fn check(&self, script: &Script, trace: &Trace, columns: &[String]) -> Result<(), ScriptError> {
         let mut errors = Vec::new();
         for varied in &self.varied {
@@ -268,11 +269,11 @@ impl Values {
         }
     }
 
-    /// The value that goes with these 64 bits.
+    /// The value for these 64 bits.
     fn draw(&self, random: u64) -> f64 {
         match self {
             Self::List(list) => {
-                // The upper half of a product of 128 bits lies below the length.
+                // The upper half of a product of 128 bits is below the length.
                 let index = (u128::from(random) * list.len() as u128) >> 64;
                 usize::try_from(index)
                     .ok()
@@ -289,7 +290,8 @@ impl Values {
     }
 }
 
-/// The finisher of SplitMix64 (Steele, Lea, Flood 2014): every bit of the number decides every bit of the result.
+/// The finisher of SplitMix64 (Steele, Lea, Flood 2014): every bit of the number affects every bit of the
+/// result.
 const fn mixed(number: u64) -> u64 {
     let z = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -1,11 +1,11 @@
-//! A variable of a program in Structured Text, as signals, columns and steps have it.
+//! A variable of a program in Structured Text, in the forms of signals, columns and steps.
 
 use standstill_fb::{PinType, Value};
 use standstill_guest::SymbolType;
 use standstill_st::{self as st, Elementary, Section};
 use standstill_trace::Cell;
 
-/// What is known of a variable beside its name and place.
+/// The properties of a variable besides its name and place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Variable {
     ty: Elementary,
@@ -36,7 +36,7 @@ impl Variable {
         self.settable
     }
 
-    /// What its type is called: of an enumeration its name, else that of the elementary type.
+    /// The name of its type: for an enumeration its name, otherwise that of the elementary type.
     #[must_use]
     pub fn type_name(&self) -> &str {
         match self.meaning {
@@ -54,7 +54,7 @@ impl Variable {
         }
     }
 
-    /// How its bytes are read. Numbers of 64 bits go as they stand in a TIME, which is a number of 64 bits, too.
+    /// How its bytes are read. Numbers of 64 bits are read as a TIME, which has 64 bits, too.
     pub(crate) const fn read_as(&self) -> SymbolType {
         match self.ty {
             Elementary::Bool => SymbolType::Bool,
@@ -77,7 +77,7 @@ impl Variable {
         }
     }
 
-    /// Whether it has a whole number of 64 bits that is no time; no pin has that.
+    /// Whether it is a 64-bit whole number other than a time; no pin has that type.
     #[must_use]
     pub const fn is_wide(&self) -> bool {
         matches!(self.ty, Elementary::Lint | Elementary::Ulint | Elementary::Lword)
@@ -91,7 +91,7 @@ impl Variable {
         }
     }
 
-    /// The whole number that `value` is of this variable; `None` if it has none.
+    /// The whole number of this variable for `value`; `None` if it has none.
     pub(crate) fn whole(&self, value: Value) -> Option<i128> {
         Some(match value {
             Value::Bool(value) => value.into(),
@@ -108,7 +108,7 @@ impl Variable {
         })
     }
 
-    /// The value that carries a whole number of this variable, which must be in its range.
+    /// The value for a whole number of this variable, which must be in its range.
     pub(crate) fn of_whole(&self, number: i128) -> Value {
         match self.read_as() {
             SymbolType::Bool => Value::Bool(number != 0),
@@ -123,7 +123,7 @@ impl Variable {
         }
     }
 
-    /// The least and the greatest whole number it may hold; `None` of one that holds others.
+    /// The least and the greatest whole number it may have; `None` for other types.
     pub(crate) fn range(&self) -> Option<(i128, i128)> {
         if let st::Value::Range(low, high) = self.meaning {
             return Some((low, high));
@@ -149,7 +149,7 @@ impl Variable {
         })
     }
 
-    /// What stands in the variable as a cell; `None` if it is a number without a name in its enumeration.
+    /// The value of the variable as a cell; `None` if it is a number without a name in its enumeration.
     pub(crate) fn cell(&self, value: Value) -> Option<Cell<'_>> {
         if let Some(elements) = self.elements() {
             let whole = self.whole(value)?;
@@ -159,13 +159,13 @@ impl Variable {
         Some(match value {
             Value::Bool(value) => Cell::Bool(value),
             Value::Lreal(value) if self.ty != Elementary::Dint => Cell::Real(value),
-            // 64 bits go as they are: what reads them back knows the type.
+            // 64 bits are stored unchanged: the reader knows the type.
             Value::Time(value) => Cell::Integer(value),
             other => Cell::Integer(self.whole(other)? as i64),
         })
     }
 
-    /// The number that has no name in its enumeration, as its cell has it.
+    /// The number without a name in its enumeration, in the form of its cell.
     pub(crate) fn unnamed(&self, value: Value) -> Option<String> {
         if self.elements().is_none() || self.cell(value).is_some() {
             return None;
@@ -207,7 +207,7 @@ impl Variable {
         })
     }
 
-    /// The same value as text: an element by its name, a number as it is.
+    /// The same value as text: an element by its name, a number unchanged.
     pub(crate) fn text(&self, value: Value) -> String {
         if self.is_wide() {
             return self.whole(value).unwrap_or_default().to_string();

@@ -5,10 +5,10 @@ use standstill_axis::{
     Anchor, CAM_ROWS_PER_CALL, Cam, CamHead, CamLaw, CamPiece, CamSelection, CamSlot, Cams, Place, Setpoint,
 };
 
-/// Moments of a stretch that are drawn.
+/// Number of moments of a stretch that are drawn.
 const STEPS: u32 = 32;
 
-/// How a cam lies that is nowhere but in its own numbers.
+/// The place of a cam in its own numbers, without axes.
 const AS_IT_IS: CamLaw = CamLaw {
     master_scaling: 1.0,
     slave_scaling: 1.0,
@@ -17,10 +17,10 @@ const AS_IT_IS: CamLaw = CamLaw {
     slave_turn: None,
 };
 
-/// A cam.
+/// Its properties as a whole.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// What is known of it as a whole.
+    /// Its properties as a whole.
     pub head: CamHead,
     pieces: Vec<CamPiece>,
 }
@@ -29,7 +29,7 @@ impl Curve {
     /// The cam of a table.
     ///
     /// # Errors
-    /// [`CamError::Table`] where its rows make none.
+    /// [`CamError::Table`] if its rows make no cam.
     pub fn new(table: &CamTable, periodic: bool) -> Result<Self, CamError> {
         let count = table.rows.len();
         let mut slots = [CamSlot::default()];
@@ -85,10 +85,11 @@ impl Curve {
         self.cam().ends_of(u16::try_from(index).unwrap_or(u16::MAX))
     }
 
-    /// Where the slave is for its master at `place` (u), and its derivatives by it, as position to snap.
+    /// The place of the slave for its master at `place` (u), and its derivatives by the master, as
+    /// position to snap.
     #[must_use]
     pub fn at(&self, place: f64) -> [f64; 5] {
-        // The origin is the first row, so that nothing is rounded away on the way to it.
+        // The origin is the first row, so that no rounding occurs on the way to it.
         let master = Place {
             position: place,
             ..Place::default()
@@ -103,8 +104,8 @@ impl Curve {
         [at.position, at.velocity, at.acceleration, at.jerk, at.snap]
     }
 
-    /// All of it, piece by piece: place of the master, of the slave, four derivatives. Where a derivative jumps two moments have
-    /// the same place.
+    /// The whole cam, piece by piece: place of the master, of the slave, four derivatives. Where a
+    /// derivative jumps, two moments have the same place.
     #[must_use]
     pub fn course(&self) -> Vec<[f64; 6]> {
         let pieces = 0..self.pieces.len();

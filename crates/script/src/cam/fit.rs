@@ -1,4 +1,4 @@
-//! Whether a slave can go along a cam, and how fast its master may be: what MC_CamTableSelect would say.
+//! Whether a slave can follow a cam, and how fast its master may be: the results of MC_CamTableSelect.
 
 use super::curve::Curve;
 use super::table::{CamError, CamTable};
@@ -7,24 +7,24 @@ use standstill_axis::{
     AxisId, CamBounds, CamCurve, CamFit, CamSelection, ErrorId, IecEnum, Limits, Log, Scope, Standard,
 };
 
-/// The cycle of axes that are only asked (s): nothing of a cam depends on it.
+/// The cycle of axes that are not run (s): no property of a cam depends on it.
 const CYCLE: f64 = 1e-3;
 
-/// Looks at a stretch for its worst place.
+/// Samples of a stretch to find its worst place.
 const LOOKS: u32 = 256;
 
-/// A value this much larger, relative to it, is none: of equal ones the first is told.
+/// Values this close, relative to their size, are equal; the first one is reported.
 const SAME: f64 = 1e-9;
 
-/// Steps towards the worst place from the best look at it.
+/// Steps towards the worst place from the best sample.
 const STEPS: u32 = 48;
 
-/// What a cam is held against.
+/// The axes that a cam is checked against.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked<'a> {
     /// The slave.
     pub slave: &'a Axis,
-    /// The master, to whose velocity limit the slave is to follow.
+    /// The master, up to whose velocity limit the slave must follow.
     pub master: Option<&'a Axis>,
     /// Behind its last row the cam goes on as at its first.
     pub periodic: bool,
@@ -92,44 +92,45 @@ pub struct Stretch {
     pub ends: (f64, f64),
     /// IEC name of its law.
     pub law: &'static str,
-    /// What its derivatives are bounded by.
+    /// The bounds of its derivatives.
     pub bounds: CamBounds,
     /// The highest constant velocity of the master on it (u/s).
     pub highest: f64,
-    /// Which limit that follows from, at which place of the master the derivative is largest, and how large; none of a stretch
-    /// that does not move the slave.
+    /// The deciding limit, the place of the master where the derivative is largest, and its value there;
+    /// none for a stretch that does not move the slave.
     pub worst: Option<(Limiting, f64, f64)>,
 }
 
-/// Something that keeps a cam from being followed.
+/// A fault that keeps a slave from following the cam.
 #[derive(Clone, Debug)]
 pub struct Finding {
-    /// What MC_CamTableSelect shows; none if it takes the cam all the same.
+    /// The error of MC_CamTableSelect; none if it accepts the cam all the same.
     pub error: Option<ErrorId>,
     /// The row, from 1, if there is one to name.
     pub row: Option<usize>,
     /// The line of that row.
     pub line: Option<usize>,
-    /// What is wrong there, with its place.
+    /// The fault, with its place.
     pub message: String,
     /// The value.
     pub value: f64,
-    /// What it may be at most, or the limit it breaks.
+    /// The largest permitted value, or the limit it breaks.
     pub limit: f64,
     /// What to do about it.
     pub remedy: String,
 }
 
-/// What axes make of a cam.
+/// The result of checking a cam against its axes.
 #[derive(Clone, Debug)]
 pub struct Fit {
     /// The cam.
     pub curve: Curve,
-    /// How many derivatives the slave needs to go on.
+    /// The number of derivatives that the slave needs to be continuous.
     pub needed: usize,
-    /// How many do, where it needs them to.
+    /// The number that are continuous, where the slave needs them.
     pub continuity: usize,
-    /// The rows, from 1, at which it comes to rest: a derivative jumps that its limits do not let jump.
+    /// The rows, from 1, at which it comes to rest because a derivative jumps that its limits do not
+    /// permit to jump.
     pub stops_at: Vec<usize>,
     /// Whether all places are inside its software limits, if it has some.
     pub inside: bool,
@@ -137,16 +138,17 @@ pub struct Fit {
     pub highest: f64,
     /// From row to row.
     pub stretches: Vec<Stretch>,
-    /// What is wrong; a cam without findings can be followed.
+    /// The faults; a cam without findings can be followed.
     pub findings: Vec<Finding>,
     /// What MC_CamTableSelect would show.
     pub refused: Option<ErrorId>,
 }
 
-/// Holds a cam against its axes.
+/// Checks a cam against its axes.
 ///
 /// # Errors
-/// [`CamError`] if the rows make no cam; a cam that can't be followed is none, it has [`Fit::findings`].
+/// [`CamError`] if the rows make no cam. A cam that can't be followed is no error; it has
+/// [`Fit::findings`].
 pub fn fit(table: &CamTable, asked: Asked<'_>) -> Result<Fit, CamError> {
     let curve = Curve::new(table, asked.periodic)?;
     let axis = standstill_axis::Axis::new(AxisId::default(), asked.slave.config, Standard::new(CYCLE));
@@ -194,7 +196,7 @@ pub fn fit(table: &CamTable, asked: Asked<'_>) -> Result<Fit, CamError> {
     })
 }
 
-/// A derivative jumps that must not.
+/// A derivative jumps that must be continuous.
 fn rough(table: &CamTable, curve: &Curve, fits: &CamFit, asked: Asked<'_>) -> Option<Finding> {
     let head = &curve.head;
     let continuity = usize::from(fits.smooth.continuity);
@@ -303,7 +305,7 @@ fn stretch(curve: &Curve, index: usize, law: CamCurve, limits: &Limits) -> Stret
     }
 }
 
-/// Where a derivative of this order has its largest magnitude in a stretch, and its value there.
+/// The place of the largest magnitude of a derivative of this order in a stretch, and its value there.
 fn largest(curve: &Curve, (from, to): (f64, f64), order: usize) -> (f64, f64) {
     let last = to.next_down();
     let value = |place: f64| {
@@ -331,7 +333,7 @@ fn largest(curve: &Curve, (from, to): (f64, f64), order: usize) -> (f64, f64) {
     }
     let place = 0.5 * (low + high);
     let looked = look(best);
-    // A peak at an end, or a value that is the same all along, is where it was seen first.
+    // For a peak at an end, or a constant value, the first sample counts.
     if value(place).abs() > value(looked).abs() * (1.0 + SAME) {
         (place, value(place))
     } else {

@@ -1,7 +1,8 @@
 //! Rows for the usual laws of rest-to-rest cams.
 //!
-//! The runtime knows no sines: they are not the same to the bit on every machine. Laws with sines become pieces of degree 7 here,
-//! with the law's own derivatives in each row. What is written is the same everywhere: the sines are those of `libm`.
+//! The runtime has no sines, because they differ in a bit between machines. Here, laws with sines become
+//! pieces of degree 7 with the law's own derivatives in each row. The result is the same everywhere,
+//! because the sines are those of `libm`.
 
 use standstill_axis::{CamCurve, CamRow, IecEnum};
 use std::f64::consts::PI;
@@ -10,7 +11,7 @@ use std::fmt::Write;
 /// Pieces of a law with sines; those of all laws begin at eighths.
 const PIECES: u32 = 8;
 
-/// A share of the largest value that is rounding (a sine of a whole turn, say).
+/// A value below this share of the largest one is rounding (for example the sine of a whole turn).
 const ROUNDING: f64 = 1e-13;
 
 /// A law of VDI 2143, from rest to rest.
@@ -91,7 +92,7 @@ const fn sine(until: f64, frequency: f64, phase: f64) -> Part {
 type At = [f64; 4];
 
 impl Part {
-    /// What it is `way` behind `from`, where the law had come to `before`.
+    /// Its value `way` behind `from`; the law had reached `before` there.
     fn on(&self, from: f64, before: At, way: f64) -> At {
         let [y, v, ..] = before;
         match self.sine {
@@ -112,7 +113,7 @@ impl Part {
     }
 }
 
-/// The law at `x` in its first half, with a lift that is still to be made 1.
+/// The law at `x` in its first half, with a lift that is not scaled to 1 yet.
 fn along(half: &[Part], x: f64) -> At {
     let (mut from, mut at) = (0.0, [0.0; 4]);
     for part in half {
@@ -142,7 +143,7 @@ pub struct Lift {
 /// The rows of a law.
 ///
 /// # Errors
-/// What of the lift is no good, with its value and what to do.
+/// The fault of the lift, with its value and the remedy.
 fn rows(law: Law, lift: &Lift) -> Result<Vec<(CamRow, CamCurve)>, String> {
     let Lift {
         begin,

@@ -1,10 +1,10 @@
-//! Cams outside of a run: tables from files, what axes make of them, and rows of the usual laws.
+//! Cams outside of a run: tables from files, the checks of axes, and rows of the usual laws.
 //!
 //! | file | subject |
 //! | --- | --- |
 //! | `table` | the rows of a cam, from a CSV file or a script |
 //! | `curve` | the cam that the runtime makes of them, and its derivatives anywhere |
-//! | `fit` | whether a slave can go along it, and how fast its master may be |
+//! | `fit` | whether a slave can follow it, and how fast its master may be |
 //! | `law` | rows for laws with sines, which the runtime does not compute |
 
 mod curve;

@@ -10,7 +10,7 @@ use std::fmt;
 /// Numbers of a row: Master, Slave, Slope, Curvature, Third, Law.
 const FIELDS: usize = 6;
 
-/// The rows of a cam, and where they stand.
+/// The rows of a cam, and their places in the text.
 #[derive(Clone, Debug)]
 pub struct CamTable {
     /// What messages call it.
@@ -19,20 +19,20 @@ pub struct CamTable {
     pub rows: Vec<CamRow>,
     /// The law of each.
     pub(super) laws: Vec<CamCurve>,
-    /// The line of each in its file; of none that stand in a script.
+    /// The line of each in its file; empty for rows in a script.
     lines: Vec<usize>,
 }
 
-/// Why there is no cam.
+/// The reason why there is no cam.
 #[derive(Debug)]
 pub enum CamError {
     /// A script or a machine file can't be read.
     Suite(SuiteError),
-    /// Something is wrong with a table.
+    /// A fault of a table.
     Table {
-        /// `knife.csv:3:5` or what else there is to name.
+        /// `knife.csv:3:5`, or another name of the place.
         place: String,
-        /// What is wrong, without a full stop.
+        /// The fault, without a full stop.
         message: String,
         /// What to do about it.
         help: String,
@@ -83,7 +83,7 @@ impl CamTable {
     /// The table under `tables` with this name, or the only one; `file` is the script's name.
     ///
     /// # Errors
-    /// [`CamError::Table`] if there is none, or several, or a law is none.
+    /// [`CamError::Table`] if there is none, or several, or a law is unknown.
     pub fn of_script(file: &str, script: &Script, name: Option<&str>) -> Result<Self, CamError> {
         let cams = || {
             let tables = script.named_tables.iter();
@@ -173,7 +173,7 @@ impl CamTable {
         }
     }
 
-    /// Why the runtime makes no cam of it.
+    /// The reason why the runtime makes no cam of it.
     pub(super) fn fault(&self, fault: &CamFault) -> CamError {
         let (place, message, help) = match fault.cause {
             CamCause::Count => (

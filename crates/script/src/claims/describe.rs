@@ -5,7 +5,7 @@ use crate::run::Rows;
 use crate::run::cells::value_text;
 use standstill_trace::{cell_text, shortest};
 
-/// What a claim says, in one line.
+/// A claim in one line of text.
 pub(super) fn claim(rows: &Rows<'_>, kind: &ClaimKind) -> String {
     match kind {
         ClaimKind::At(scan, that) => format!("at {scan}: {}", conditions(rows, that)),
@@ -136,7 +136,7 @@ pub(super) fn bounded(bounds: Bounds) -> String {
     }
 }
 
-/// ` from 3 to 9`, as far as the range says so.
+/// ` from 3 to 9`; only for ends that are given.
 fn scans(Range { from, to }: Range) -> String {
     let from = match from {
         0 => String::new(),
@@ -212,7 +212,7 @@ fn comparison(rows: &Rows<'_>, signal: &Signal, comparison: &Comparison) -> Stri
     }
 }
 
-/// The values a condition looks at in a scan: `X.Velocity 50.1`, and what it is compared with.
+/// The values a condition uses in a scan: `X.Velocity 50.1`, and the value it is compared with.
 pub(super) fn values(rows: &Rows<'_>, condition: &Condition, scan: u64) -> String {
     let text = |signal| {
         rows.cell(signal, scan)

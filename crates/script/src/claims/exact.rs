@@ -1,7 +1,8 @@
-//! Integers that hold every finite number exactly, for judges that round nothing.
+//! Integers that hold every finite number exactly, for judges without rounding.
 //!
-//! Every finite f64 is a whole multiple of the least one above 0, 2^-1074. Here it is that multiple, with room for a
-//! product with three factors of 64 bits. Nothing divides, but [`Exact::quotient`], which rounds once and is for messages.
+//! Every finite f64 is a whole multiple of the least one above 0, 2^-1074. Here it is stored as that
+//! multiple, with room for a product with three factors of 64 bits. Nothing divides except
+//! [`Exact::quotient`], which rounds once and is for messages.
 
 use std::cmp::Ordering;
 
@@ -58,7 +59,8 @@ impl Exact {
         self.0.last().is_some_and(|word| word >> 63 == 1)
     }
 
-    /// The quotient by a number above 0, rounded to the nearest f64; below 1e-300 something may be cut off.
+    /// The quotient by a number above 0, rounded to the nearest f64; below 1e-300 low bits may be cut
+    /// off.
     pub(super) fn quotient(self, by: u64) -> f64 {
         let size = if self.is_negative() { -self } else { self };
         let mut words = size.0;
@@ -68,7 +70,7 @@ impl Exact {
             *word = (of / u128::from(by)) as u64;
             rest = (of % u128::from(by)) as u64;
         }
-        // The leading 64 bits, the last of which also stands for whatever is below.
+        // The leading 64 bits; the last of them also stands for all lower bits.
         let bits = words.iter().rposition(|word| *word != 0).map_or(0, |top| {
             let leading = words.get(top).map_or(0, |word| word.leading_zeros() as usize);
             64 * (top + 1) - leading

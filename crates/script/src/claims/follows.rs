@@ -1,13 +1,16 @@
-//! The claim that a slave is where the law of a gear puts it, judged on published positions alone, to the bit.
+//! The claim that a slave is at the place that the law of a gear gives, judged on published positions
+//! alone, to the bit.
 //!
-//! The law is y = c + s + (num/den)(m + phase) with what is superimposed, s, rounded once: x of a row is the f64 nearest to it, the even one of two that are
-//! equally near. c is a number of the anchor, where one is given. Otherwise the first judged row is the anchor, as far as
-//! its bits tell: its x has been rounded, too, so c lies within half a unit in the last place of it. Every row leaves less
-//! room for c; where none is left, a row is wrong. All of it is done in integers ([`Exact`]), everything times 2 den, so
-//! nothing here is rounded, and nothing is shared with the code that moves the axes.
+//! The law, rounded once, is y = c + s + (num/den)(m + phase), where s is the superimposed distance. The
+//! x of a row is the f64 nearest to y; of two equally near ones it is the even one. c is a number of the
+//! anchor, if one is given. Otherwise the first judged row is the anchor, as far as its bits define it:
+//! its x is rounded too, so c is within half a unit in the last place of it. Every row narrows the range
+//! of c; if no value is left, a row is wrong. All of this uses integers ([`Exact`]), times 2 den, so
+//! nothing here is rounded, and no code is shared with the code that moves the axes.
 //!
-//! A master with turns is unwrapped from row to row by the shorter way round: no axis goes half a turn in a scan. A slave
-//! with turns may be any whole number of them from y; what rounds to a whole turn is 0 of the next one.
+//! A master with turns is unwrapped from row to row by the shorter way round, because no axis goes half a
+//! turn in a scan. A slave with turns may differ from y by any whole number of them; a value that rounds
+//! to a whole turn is 0 of the next one.
 
 use super::exact::Exact;
 use super::judge::{Listed, failure};
@@ -18,14 +21,14 @@ use crate::run::Rows;
 use standstill_trace::{Cell, shortest};
 use std::ops::RangeInclusive;
 
-/// What is known of c: the least and the greatest it may be, both times 2 den.
+/// The known range of c: the least and the greatest value, both times 2 den.
 #[derive(Clone, Copy)]
 struct Room {
     least: Exact,
     greatest: Exact,
 }
 
-/// The law as far as the rows so far tell it.
+/// The law, as far as the rows define it so far.
 struct Law {
     room: Room,
     /// Whole turns of the master since it is known.
@@ -38,12 +41,12 @@ struct Law {
 pub(super) struct Follows<'a> {
     during: &'a [Condition],
     follow: &'a Follow,
-    /// The first scan that was not looked at: a row is judged once the next one is there.
+    /// The first scan that was not read: a row is judged once the next one exists.
     next: u64,
     /// The anchor, until it is used.
     anchor: Option<[f64; 2]>,
     law: Option<Law>,
-    /// The first wrong row, where the slave is in it, and where it should be.
+    /// The first wrong row, the place of the slave in it, and the right place.
     first: Option<(u64, f64, String)>,
     broken: Listed,
 }
@@ -61,7 +64,7 @@ impl<'a> Follows<'a> {
         }
     }
 
-    /// Looks at a row that has a next one.
+    /// Reads a row that has a next one.
     fn row(&mut self, rows: &Rows<'_>, scan: u64, is_judged: bool) {
         let rules = Rules {
             rows,
@@ -158,7 +161,7 @@ fn is_usual(position: f64) -> bool {
     position.abs() < 1e300
 }
 
-/// The rows, and the law that they are held against.
+/// The rows, and the law that they are compared with.
 struct Rules<'a> {
     rows: &'a Rows<'a>,
     follow: &'a Follow,
@@ -177,7 +180,7 @@ impl Rules<'_> {
         there.any(|shift| [self.follow.master, self.follow.slave].contains(&shift.axis))
     }
 
-    /// Whole turns that the master has gone on in the step from one row to the next.
+    /// Whole turns that the master has made from one row to the next.
     fn turns_between(&self, before: f64, now: f64) -> i64 {
         match self.turn_of(self.follow.master) {
             Some(turn) if now - before > turn / 2.0 => -1,
@@ -194,7 +197,8 @@ impl Rules<'_> {
         }
     }
 
-    /// Where the slave sees its master, times 2 num, and what is superimposed on it, times 2 den.
+    /// The place where the slave sees its master, times 2 num, and the superimposed distance, times 2
+    /// den.
     fn seen(&self, law: &Law, scan: u64) -> Exact {
         let phase = self.number(AxisNumber::Phase, scan);
         let superimposed = self.number(AxisNumber::Superimposed, scan);
@@ -234,11 +238,12 @@ impl Rules<'_> {
         value.times(2 * i64::from(self.follow.den))
     }
 
-    /// What c may be where the law is rounded to `slave`, so many turns of it further on.
+    /// The range of c if the law is rounded to `slave`, this many turns of it further on.
     fn room(&self, law: &Law, slave: f64, turns: i64, scan: u64) -> Room {
         let turn = self.turn_of(self.follow.slave);
         let den = i64::from(self.follow.den);
-        // Twice the middles between it and its neighbours. What rounds to a whole turn is 0 of the next.
+        // Twice the middles between it and its neighbours. A value that rounds to a whole turn is 0 of
+        // the next one.
         let (below, even_below) = match turn {
             Some(turn) if slave == 0.0 => (Exact::of(turn.next_down()) - Exact::of(turn), is_even(turn)),
             _ => (Exact::of(slave.next_down()) + Exact::of(slave), is_even(slave)),
@@ -253,7 +258,8 @@ impl Rules<'_> {
         }
     }
 
-    /// What is left of the room when the law is rounded to `slave` in this row, or where the slave should be.
+    /// The rest of the range if the law is rounded to `slave` in this row, or the right place of the
+    /// slave.
     fn narrowed(&self, law: &Law, slave: f64, scan: u64) -> Result<Room, f64> {
         let target = law.room.least + self.seen(law, scan);
         let whole = 2 * u64::from(self.follow.den);

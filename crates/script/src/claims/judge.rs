@@ -1,4 +1,4 @@
-//! Claims that speak of single rows, judged while rows come: what a judge keeps does not grow with them.
+//! Claims about single rows, judged while rows come. A judge's memory does not grow with the rows.
 
 use super::place::{Stretch, within_run};
 use super::{Failure, Judge, describe};
@@ -7,7 +7,7 @@ use crate::run::Rows;
 use standstill_trace::Cell;
 use std::ops;
 
-/// So many scans are named where a claim fails in several.
+/// Most scans that are named if a claim fails in several.
 const SCANS_NAMED: usize = 5;
 
 /// All conditions hold in `scan`; each that does not is a failure of its own.
@@ -36,7 +36,7 @@ impl Judge for At<'_> {
             if stretch.next.contains(&self.scan) && !rows.holds(demand.condition, self.scan) {
                 demand.unmet = Some((self.scan, demand.values(rows, self.scan)));
             }
-            // Where it held there is nothing to tell.
+            // If it held there is nothing to report.
             if demand.unmet.is_some() || self.scan >= stretch.next.end {
                 demand.seek(rows, &stretch.next);
             }
@@ -137,7 +137,7 @@ impl Judge for By<'_> {
     fn failures(&self, rows: &Rows<'_>, path: &str, range: Range) -> Vec<Failure> {
         let deadline = match within_run(rows, path, range) {
             Ok(scans) => *scans.end(),
-            // What came before the end of the run came in time, however far the range goes.
+            // A value before the end of the run came in time, however long the range is.
             Err(_) if range.from < rows.count() && self.held.is_some() => return Vec::new(),
             Err(failure) => return vec![failure],
         };
@@ -401,10 +401,10 @@ fn unmet(
     failure(&format!("{path}.{key}.{}", condition.text), Some(scan), text)
 }
 
-/// Where something holds nearest to a scan, as far as rows have come.
+/// The scan nearest to a given one in which something holds, among the rows so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Nearest {
-    /// The scan; while there is none, it is one that is still to come.
+    /// The given scan; `None` while it is still to come.
     pub(super) to: Option<u64>,
     /// The last one before it.
     earlier: Option<u64>,
@@ -420,7 +420,7 @@ impl Nearest {
         }
     }
 
-    /// Looks at the next rows. Cost: what lies between the scan and the nearest ones.
+    /// Reads the next rows. Cost: the rows between the scan and the nearest ones.
     pub(super) fn look(&mut self, next: &ops::Range<u64>, holds: impl Fn(u64) -> bool) {
         let to = self.to.unwrap_or(u64::MAX);
         let mut before = next.start..next.end.min(to);

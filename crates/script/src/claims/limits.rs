@@ -24,17 +24,17 @@ use std::ops;
 /// Relative accuracy of limits.
 const RELATIVE: f64 = 1e-9;
 
-/// d1 to d4 of the axis stay within its limits times `factor`, and what positions resolve.
+/// d1 to d4 of the axis stay within its limits times `factor`, plus the resolution of positions.
 pub(super) struct WithinLimits {
     axis: usize,
     factor: f64,
     reach: Reach,
-    /// By order, and by the least unit in the last place at which a scan would keep the limit: that of the run is only known at its
-    /// end. None does where there is a NaN.
+    /// By order, and by the least unit in the last place with which a scan would keep the limit; the unit
+    /// of the run is known only at its end. With a NaN no unit is enough.
     broken: [BTreeMap<Unit, Broken>; 4],
 }
 
-/// A power of two, or infinity; its bits, which are in the same order. Greater than all is [`NEVER`].
+/// A power of two, or infinity; its bits, which have the same order. [`NEVER`] is greater than all.
 type Unit = u64;
 
 const NEVER: Unit = u64::MAX;
@@ -130,9 +130,9 @@ impl Judge for WithinLimits {
     }
 }
 
-/// The limits of d1 to d4 in a scan. Where the speed falls the deceleration limit holds; where the velocity
-/// changes sign or begins, the larger one, since the difference is a mean over both. It may do so within a scan:
-/// then its mean there is at most what one scan of acceleration changes.
+/// The limits of d1 to d4 in a scan. While the speed falls the deceleration limit applies. If the
+/// velocity changes sign or begins, the larger one applies, because the difference is a mean over both.
+/// This may happen within a scan; its mean there is at most the change by one scan of acceleration.
 fn limits(rows: &Rows<'_>, axis: usize, derivatives: &Derivatives) -> [f64; 4] {
     let Some(axis) = rows.script.axes.get(axis) else {
         return [0.0; 4];
@@ -151,8 +151,8 @@ fn limits(rows: &Rows<'_>, axis: usize, derivatives: &Derivatives) -> [f64; 4] {
     [limits.velocity, acceleration, limits.jerk, limits.snap]
 }
 
-/// The largest position of the run so far. On a modulo axis it is the largest one of the unwrapped positions, and no less than a
-/// turn: from there and back to the first turn a plan may lead.
+/// The largest position of the run so far. On a modulo axis it is the largest of the unwrapped positions,
+/// and at least a turn, because a plan may go from there back to the first turn.
 #[derive(Clone, Copy, Debug, Default)]
 struct Reach {
     /// Unwrapped.
@@ -194,7 +194,7 @@ impl Reach {
     }
 }
 
-/// What positions resolve in d1 to d4 at this unit in the last place: 2^k of them over cycle^k.
+/// The resolution of d1 to d4 with this unit in the last place: 2^k of them over cycle^k.
 fn resolved(unit: f64, cycle: f64) -> [f64; 4] {
     let mut slack = [0.0; 4];
     let mut scale = unit;

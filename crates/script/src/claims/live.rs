@@ -1,13 +1,13 @@
-//! Claims while the run goes on: which are decided already, and how.
+//! Claims during the run: which are already decided, and how.
 //!
-//! A claim is decided in the scan after which no other can change its verdict. The verdicts themselves come from
-//! [`judge`](super::judge) alone, at the end; this only says earlier what they will be.
+//! A claim is decided in the scan after which no other can change its verdict. Only
+//! [`judge`](super::judge) gives the verdicts, at the end; this module predicts them.
 
 use super::judge::raised;
 use crate::model::{Claim, ClaimKind, Range, Script, Window};
 use crate::run::Rows;
 
-/// How a claim stands.
+/// Rows still to come decide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
     /// What is to come decides.
@@ -18,7 +18,7 @@ pub enum Standing {
     Failed(u64),
 }
 
-/// How the claims of a script stand after some scans.
+/// The state of the claims of a script after some scans.
 #[derive(Clone, Debug)]
 pub(crate) struct Standings {
     /// Scans looked at.
@@ -40,7 +40,7 @@ impl Standings {
         }
     }
 
-    /// Looks at the rows that have come; `over` says that no more will.
+    /// Reads the rows that have come; `over` says that no more will.
     pub(crate) fn look(&mut self, rows: &Rows<'_>, over: bool) -> &[Standing] {
         while self.scans < rows.count() {
             let scan = self.scans;
@@ -69,18 +69,18 @@ impl Standings {
     }
 }
 
-/// How a claim that was open before stands after `scan`.
+/// The state after `scan` of a claim that was open before.
 fn after(rows: &Rows<'_>, claim: &Claim, scan: u64, times: &mut u32) -> Standing {
     let inside = |range: &Range| range.from <= scan && range.to.is_none_or(|to| scan <= to);
     // A range that ends before it begins is judged at the end.
     let ends = |range: &Range| range.to == Some(scan) && range.from <= scan;
-    // What may fail in every scan of its range, and holds when that is through.
+    // A claim that may fail in every scan of its range, and holds when the range is over.
     let unless = |range: &Range, fails: bool| match (fails, ends(range)) {
         (true, _) => Standing::Failed(scan),
         (false, true) => Standing::Held(scan),
         (false, false) => Standing::Open,
     };
-    // Where its scans begin may be still to come.
+    // The scan where its range begins may be still to come.
     if claim.window != Window::default() {
         return Standing::Open;
     }
@@ -114,8 +114,8 @@ fn after(rows: &Rows<'_>, claim: &Claim, scan: u64, times: &mut u32) -> Standing
         ClaimKind::Exclusive(range, points) => {
             unless(range, inside(range) && raised(rows, points, scan).len() > 1)
         }
-        // What positions resolve depends on the largest one, which may be still to come; a row is judged to follow when the next
-        // has come; the others are judged at the end.
+        // The resolution of positions depends on the largest one, which may be still to come. A row of
+        // `follows` is judged when the next one has come. The others are judged at the end.
         ClaimKind::WithinLimits { .. }
         | ClaimKind::Follows { .. }
         | ClaimKind::Answered { .. }

@@ -1,4 +1,4 @@
-//! Claims: what a script's author says of the run, judged on its trace.
+//! Claims: the statements of a script's author about the run, judged on its trace.
 
 mod describe;
 mod exact;
@@ -24,9 +24,9 @@ pub struct Verdict {
     pub path: String,
     /// Where it stands in the script.
     pub span: Span,
-    /// What it says, in one line.
+    /// The claim in one line.
     pub says: String,
-    /// The first and the last scan of the run it speaks of.
+    /// The first and the last scan of the run that it covers.
     pub scans: Option<[u64; 2]>,
     /// The scan in which a claim that needs only one came true.
     pub held: Option<u64>,
@@ -46,9 +46,9 @@ impl Verdict {
 pub struct Failure {
     /// Path of the claim or of the condition in it, such as `expect[2].that.second.Done`.
     pub path: String,
-    /// The scan it shows in; `None` if it is about the run as a whole.
+    /// The scan it refers to; `None` if it is about the run as a whole.
     pub scan: Option<u64>,
-    /// The values that were there, what was expected, and the nearest scan in which it held.
+    /// The actual values, the expected ones, and the nearest scan in which it held.
     pub text: String,
 }
 
@@ -60,19 +60,21 @@ impl std::fmt::Display for Failure {
 
 /// Judges every claim of a script on all rows of its run, in file order.
 ///
-/// Cost: a claim looks at each scan a constant number of times.
+/// Cost: a claim reads each scan a constant number of times.
 pub(crate) fn judge(rows: &Rows<'_>) -> Vec<Verdict> {
     let mut judges = Judges::new(rows.script);
     judges.look(rows);
     judges.verdicts(rows)
 }
 
-/// What judges a kind of claim. It is shown every row once, in order, and keeps what does not grow with their number.
+/// The judge of a kind of claim. It gets every row once, in order, and its memory does not grow with
+/// their number.
 trait Judge {
-    /// Looks at the next rows; a few before them are still there, enough for every condition.
+    /// Reads the next rows. A few rows before them are still held, enough for every condition.
     fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch);
 
-    /// What speaks against the claim, after the last row, which is still there; `range` are the scans that it speaks of.
+    /// The reasons against the claim, after the last row, which is still held; `range` are the scans that
+    /// it covers.
     fn failures(&self, rows: &Rows<'_>, path: &str, range: Range) -> Vec<Failure>;
 
     /// The scan in which a claim that needs only one came true.
@@ -87,26 +89,26 @@ pub(crate) struct Judges<'a> {
     scans: u64,
     /// In file order.
     claims: Vec<Judged<'a>>,
-    /// Of each expression the first scan in which it had no value.
+    /// For each expression, the first scan in which it had no value.
     faults: Vec<Faults<'a>>,
 }
 
-/// A claim, and what its rows told so far.
+/// A claim, and its state after the rows so far.
 struct Judged<'a> {
     claim: &'a Claim,
     place: Place,
     judge: Box<dyn Judge + Send + Sync + 'a>,
-    /// Why the program faulted that the claim is about.
+    /// The reason of the fault of the program that the claim is about.
     reason: Option<String>,
 }
 
-/// When an expression had no value first, and why.
+/// When an expression first had no value, and why.
 struct Faults<'a> {
     formula: &'a Formula,
-    /// The claim it stands in, by its place.
+    /// The claim that contains it, by index.
     claim: Option<usize>,
     first: Option<(u64, String)>,
-    /// In the scans that the claim speaks of.
+    /// In the scans that the claim covers.
     asked: Option<(u64, String)>,
 }
 
@@ -208,7 +210,8 @@ impl Faults<'_> {
         self.asked = self.asked.take().or_else(|| of(&asked?));
     }
 
-    /// An expression without a value is a failure of the claim it stands in; of a step or a wire it is one by itself.
+    /// An expression without a value is a failure of its claim; in a step or a wire it is a failure by
+    /// itself.
     fn tell(&self, rows: &Rows<'_>, verdicts: &mut Vec<Verdict>) {
         let formula = self.formula;
         let verdict = self.claim.and_then(|claim| verdicts.get_mut(claim));
@@ -235,7 +238,7 @@ impl Faults<'_> {
     }
 }
 
-/// Why a program faulted, which its claim that it does not has to tell.
+/// The reason of a program's fault, which the claim that it has none reports.
 fn fault_reason(rows: &Rows<'_>, path: &str) -> Option<String> {
     const FAULTS: &str = "faults: ";
     let program = path.strip_prefix("programs.")?;
@@ -244,7 +247,7 @@ fn fault_reason(rows: &Rows<'_>, path: &str) -> Option<String> {
     Some(format!("; {}", note.text.strip_prefix(FAULTS)?))
 }
 
-/// What every claim says, in one line each.
+/// Every claim in one line of text.
 pub(crate) fn say(rows: &Rows<'_>) -> Vec<String> {
     let claims = rows.script.claims.iter();
     claims.map(|claim| describe::claim(rows, &claim.kind)).collect()

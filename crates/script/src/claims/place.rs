@@ -1,4 +1,4 @@
-//! Which scans a claim speaks of, found while rows come.
+//! The scans that a claim covers, found while rows come.
 
 use super::judge::beyond;
 use super::{Failure, judge};
@@ -6,7 +6,7 @@ use crate::model::{Claim, ClaimKind, Range};
 use crate::run::Rows;
 use std::ops::{self, RangeInclusive};
 
-/// The scans a claim speaks of, as far as rows tell.
+/// The scans that a claim covers, as far as the rows define them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     /// The first one; `None` while the condition that begins it has not held.
@@ -24,7 +24,7 @@ impl Place {
         }
     }
 
-    /// Looks for begin and end in the next rows.
+    /// Searches begin and end in the next rows.
     pub(super) fn look(&mut self, rows: &Rows<'_>, claim: &Claim, next: &ops::Range<u64>) {
         if let (None, Some(begin)) = (self.from, &claim.window.from) {
             self.from = next.clone().find(|&scan| rows.hold(begin, scan));
@@ -49,8 +49,8 @@ impl Place {
         }
     }
 
-    /// The scans it speaks of in a run whose rows were all looked at; `None` if it never begins, or begins by a condition after
-    /// its end.
+    /// The scans it covers in a finished run. `None` if it never begins, or if it begins by a condition
+    /// after its end.
     pub(super) fn range(&self, claim: &Claim) -> Option<Range> {
         let Self { from, to } = *self;
         let from = from?;
@@ -71,9 +71,9 @@ pub(super) struct Stretch {
     pub(super) next: ops::Range<u64>,
     /// Those of them that the claim speaks of.
     pub(super) inside: ops::Range<u64>,
-    /// The first scan that the claim speaks of, once it is known.
+    /// The first scan that the claim covers, once it is known.
     pub(super) from: Option<u64>,
-    /// The last scan that the claim speaks of, where it is not the end of the run, as far as it is known.
+    /// The last scan that the claim covers, if it is not the end of the run, as far as it is known.
     pub(super) deadline: Option<u64>,
 }
 
@@ -98,7 +98,7 @@ fn range(kind: &ClaimKind) -> Range {
     }
 }
 
-/// The scans of the run that a claim speaks of.
+/// The scans of the run that a claim covers.
 pub(super) fn of_run(range: Range, count: u64) -> Option<[u64; 2]> {
     let last = count.checked_sub(1)?;
     let to = range.to.unwrap_or(last).min(last);

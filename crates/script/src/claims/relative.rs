@@ -1,4 +1,4 @@
-//! Claims that speak of events. Their semantics, with examples, stand in `docs/claims.md`.
+//! Claims about events. Their semantics, with examples, are in `docs/claims.md`.
 
 use super::judge::{Listed, Nearest, failure};
 use super::place::{Place, Stretch};
@@ -8,7 +8,7 @@ use crate::run::Rows;
 use std::collections::VecDeque;
 use std::ops::RangeInclusive;
 
-/// What speaks against a claim whose window never begins: those fail that ask for something to happen.
+/// The failure of a claim whose window never begins: those fail that require an event.
 pub(super) fn without_scans(rows: &Rows<'_>, claim: &Claim, place: &Place) -> Vec<Failure> {
     let wants = match &claim.kind {
         ClaimKind::By(..) | ClaimKind::Once(..) => true,
@@ -28,7 +28,8 @@ pub(super) fn without_scans(rows: &Rows<'_>, claim: &Claim, place: &Place) -> Ve
     vec![failure(&claim.path, None, text)]
 }
 
-/// Why a claim asks for nothing in the run: its window never begins, or nothing rises in it.
+/// The reason why a claim checks nothing in the run: its window never begins, or no condition in it
+/// becomes true.
 pub(crate) fn asks_nothing(rows: &Rows<'_>, claim: &Claim) -> Option<String> {
     let mut place = Place::new(claim);
     place.look(rows, claim, &(0..rows.count()));
@@ -61,7 +62,7 @@ pub(crate) fn asks_nothing(rows: &Rows<'_>, claim: &Claim) -> Option<String> {
     .then(|| "the claim asks for nothing: what it waits for never rises".to_owned())
 }
 
-/// The most scans on end in which `holds`.
+/// The most consecutive scans in which `holds`.
 fn longest_run(scans: RangeInclusive<u64>, holds: impl Fn(u64) -> bool) -> u64 {
     let (mut longest, mut run) = (0, 0);
     for scan in scans {
@@ -93,7 +94,7 @@ pub(super) struct Answered<'a> {
     that: &'a [Condition],
     only_first: bool,
     rose: bool,
-    /// Risings that wait for their answer and may still have it in time: of the last `within` scans.
+    /// Risings whose answer may still come in time: those of the last `within` scans.
     waiting: VecDeque<u64>,
     /// The first rising without an answer, and how many more there are.
     unanswered: Option<(u64, u64)>,
@@ -161,7 +162,7 @@ impl Judge for Answered<'_> {
     }
 
     fn failures(&self, rows: &Rows<'_>, path: &str, _: Range) -> Vec<Failure> {
-        // What still waits has no answer before the end of the run.
+        // A rising that still waits has no answer before the end of the run.
         let waiting = self.waiting.len() as u64;
         let (rose, more) = match (self.unanswered, self.waiting.front()) {
             (Some((rose, more)), _) => (rose, more + waiting),
@@ -184,7 +185,7 @@ impl Judge for Answered<'_> {
     }
 }
 
-/// The conditions do not hold in so many rows on end.
+/// The conditions do not hold in this many consecutive rows.
 pub(super) struct NeverFor<'a> {
     during: &'a [Condition],
     that: &'a [Condition],
@@ -233,7 +234,7 @@ impl Judge for NeverFor<'_> {
     }
 }
 
-/// From each rising of one thing, or the first, to the next of another it takes so long.
+/// The time from each rising of one thing, or the first, to the next of another.
 pub(super) struct Duration<'a> {
     during: &'a [Condition],
     ends: &'a [Vec<Condition>; 2],
@@ -264,8 +265,8 @@ impl<'a> Duration<'a> {
         }
     }
 
-    /// Forgets those behind the first one that will not be too short whenever the end comes: if one of them is too long, the
-    /// first one is, too.
+    /// Drops those behind the first one that will not be too short at any end: if one of them is too
+    /// long, the first one is, too.
     fn forget(&mut self, scan: u64) {
         let least = self.bounds.ge.unwrap_or(0);
         while self
@@ -320,7 +321,7 @@ impl Judge for Duration<'_> {
     }
 }
 
-/// It becomes true so many times.
+/// It becomes true this many times.
 pub(super) struct Count<'a> {
     during: &'a [Condition],
     that: &'a [Condition],

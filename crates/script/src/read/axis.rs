@@ -7,7 +7,7 @@ use crate::error::{Code, Diagnostic};
 use crate::model::{Axis, Span};
 use standstill_axis::{AxisConfig, AxisState, Limits, keys};
 
-/// The keys of an axis that are none of its configuration.
+/// The keys of an axis that are not part of its configuration.
 pub(crate) const OTHERS: [&str; 3] = ["unit", "drive", "vacuous"];
 
 impl Reader {
@@ -23,7 +23,7 @@ impl Reader {
     }
 
     fn axis(&mut self, index: usize, key: &Key, node: &Node) -> Option<Axis> {
-        // Without limits nothing below could be compared with them, but its own mistakes still show.
+        // Without limits no check below is possible, but the mistakes in its other keys still show.
         let mut config = AxisConfig::new(Limits::NONE);
         let good = self.keys(node, &keys::AXIS, &OTHERS, &mut config);
         let Json::Map(members) = &node.json else {
@@ -81,7 +81,7 @@ impl Reader {
         names.iter().position(|known| *known == name)
     }
 
-    /// An axis that goes half a turn in a scan could have gone either way.
+    /// An axis that moves half a turn in a scan could have moved either way.
     fn check_turn(&mut self, axis: &Fields<'_>, config: &AxisConfig) -> Option<()> {
         let (Some(node), Some(length), Some(cycle_ns)) = (axis.get("modulo"), config.modulo, self.cycle_ns)
         else {
@@ -102,8 +102,8 @@ impl Reader {
     }
 }
 
-/// Where the configuration key `path`, such as `limits.jerk`, stands in the axis `node`: its value, or the
-/// name of the axis if it was left out.
+/// The place of the configuration key `path`, such as `limits.jerk`, in the axis `node`: its value, or
+/// the name of the axis if it was left out.
 fn place_of(axis: &Key, node: &Node, path: &str) -> Span {
     let mut place = node;
     for part in path.split('.') {

@@ -10,12 +10,14 @@ use crate::model::{Instance, Span, Task};
 use standstill_fb::{BlockInfo, Direction, Pin, PinType};
 use std::collections::BTreeMap;
 
-/// Whether a pin must be connected: the in_outs that stand for something there is. Others have a variable of their own.
+/// Whether a pin must be connected: in_outs that refer to something existing. Others have a variable of
+/// their own.
 pub(crate) fn is_needed(pin: &Pin) -> bool {
     pin.direction == Direction::InOut && matches!(pin.ty, PinType::Axis(_))
 }
 
-/// The blocks of the standard that are not built. A test of `standstill-xtask` holds the list against its catalogue.
+/// The blocks of the standard that are not implemented. A test of `standstill-xtask` compares the list
+/// with its catalogue.
 pub const NOT_BUILT: [&str; 0] = [];
 
 impl Reader {
@@ -101,7 +103,7 @@ impl Reader {
             .enumerate()
             .find(|(index, pin)| is_needed(pin) && !seen.contains_key(index));
         match unconnected {
-            // With a slip in a name, the in_out may well be the pin that was meant.
+            // With a misspelled name, the missing in_out may be the pin that was meant.
             _ if !good => None,
             None => Some(()),
             Some((_, pin)) => {

@@ -1,8 +1,8 @@
 //! Circles of wires.
 //!
-//! A wire reads its source as it stands when its block is called, so a circle through a block's outputs is
-//! an ordinary feedback that takes a scan, and one of inputs into which a variable or an output also feeds
-//! is a latch. A circle of inputs into which nothing feeds is neither: no value ever gets in.
+//! A wire reads its source at the time when its block is called. So a circle through a block's outputs is
+//! an ordinary feedback that takes a scan, and a circle of inputs that a variable or an output also feeds
+//! is a latch. A circle of inputs that nothing feeds is neither: it never gets a value.
 
 use crate::error::{Code, Diagnostic};
 use crate::model::{Instance, Point, Span, Wire};
@@ -22,12 +22,12 @@ pub(super) fn sources(wire: &Wire) -> Vec<Point> {
     }
 }
 
-/// The first circle of inputs into which nothing feeds, in the direction of reading. Every wire is followed
+/// The first circle of inputs that nothing feeds, in the direction of reading. Every wire is followed
 /// once.
 pub(super) fn dead(wires: &Wires) -> Option<Vec<Place>> {
     let wired = |point: &Point| match point {
         Point::Pin(instance, pin) => Some((*instance, *pin)).filter(|place| wires.contains_key(place)),
-        // What an expression reads may feed it.
+        // Signals that an expression reads may feed it.
         Point::Input(_) | Point::Symbol(..) | Point::Formula(_) => None,
     };
     let mut readers: BTreeMap<Place, Vec<Place>> = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! Conditions: signals and what they must be.
+//! Conditions: signals and their required values.
 
 use super::formula::{Reads, expression};
 use super::json::{Json, Key, Node};
@@ -29,7 +29,7 @@ pub(crate) const AXIS_NUMBERS: [(&str, AxisNumber); 11] = [
     ("Shadow", AxisNumber::Shadow),
 ];
 
-/// What values a signal has.
+/// The kind of values a signal has.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Kind {
     Pin(PinType),
@@ -103,7 +103,7 @@ impl Reader {
             return None;
         }
         let conditions: Vec<Condition> = conditions.into_iter().collect::<Option<_>>()?;
-        // Keys that are the same to the letter were told before; case makes no difference to a name.
+        // Equal keys were reported before; names do not distinguish case.
         let mut known = BTreeSet::new();
         let twice = conditions
             .iter()
@@ -161,7 +161,7 @@ impl Reader {
         }
     }
 
-    /// A value as it is: what the signal must be, exactly.
+    /// A plain value: the exact value that the signal must have.
     fn plain(&mut self, node: &Node, kind: Kind, what: &str) -> Option<Test> {
         match kind {
             Kind::State => {
@@ -313,7 +313,7 @@ impl Reader {
         }
     }
 
-    /// The signal and the number that a `near` is of.
+    /// The signal and the number of a `near`.
     fn near_to(&mut self, node: &Node, kind: Kind) -> Option<(String, Signal, f64)> {
         let fields = self.fields(node, &shape::NEAR_TO)?;
         let plus = fields
@@ -330,7 +330,7 @@ impl Reader {
         None
     }
 
-    /// Comparisons that no value meets.
+    /// Comparisons that no value satisfies.
     fn contradiction(&mut self, comparisons: &[Comparison], span: Span, what: &str) {
         let mut low = (f64::NEG_INFINITY, false);
         let mut high = (f64::INFINITY, false);
@@ -373,7 +373,8 @@ impl Reader {
         None
     }
 
-    /// Whether two signals can be equal to the bit: of one type, or numbers of Structured Text and others.
+    /// Whether two signals can be equal to the bit: of one type, or numbers of Structured Text and
+    /// others.
     fn comparable(&self, one: Kind, other: Kind) -> bool {
         let enumeration = |kind| {
             self.variable_of(kind)

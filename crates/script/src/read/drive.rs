@@ -85,7 +85,7 @@ impl Reader {
         let (setup, fields) = self.simulated(node, &keys::PLANT, PlantSetup::NONE, |setup| setup.switches)?;
         let cycle = self.cycle_ns? as f64 / 1e9;
         let setup = setup.with_gains(cycle);
-        // What is wrong with it shows when it is made.
+        // Its faults show when it is made.
         let made = Mechanism::new(setup.plant, 0.0, cycle)
             .and_then(|made| setup.stops.map_or(Ok(made), |stops| made.between(stops, cycle)))
             .and_then(|made| Servo::new(made, setup.gains, cycle));
@@ -102,7 +102,7 @@ impl Reader {
         let Some(motor) = setup.motor else {
             return Some(setup);
         };
-        // A thousandth of the rated torque is the smallest the bus can say, 32767 the most.
+        // The smallest value on the bus is a thousandth of the rated torque, the largest 32767 of them.
         let range = 0.001 * motor.rated_torque..=f64::from(i16::MAX) / 1000.0 * motor.rated_torque;
         if range.contains(&motor.max_torque) {
             return Some(setup);
@@ -116,7 +116,7 @@ impl Reader {
         None
     }
 
-    /// Of two places the first is not above the second.
+    /// The first of two places must not be above the second.
     fn check_switches(&mut self, fields: &Fields<'_>, switches: &Switches) -> Option<()> {
         let pairs = [
             ("limit_switches", ["negative", "positive"], switches.limits),

@@ -1,4 +1,4 @@
-//! Claims: what the author says of the run.
+//! Claims: the author's statements about the run.
 
 use super::json::{Json, Node};
 use super::names::nearest;
@@ -204,7 +204,7 @@ impl Reader {
         Some((follow, during?))
     }
 
-    /// A position of the master, and where the slave is then.
+    /// A position of the master, and the place of the slave then.
     fn anchor(&mut self, node: &Node) -> Option<[f64; 2]> {
         let fields = self.fields(node, &shape::ANCHOR)?;
         let master = self.require(&fields, "master", shape::ANCHOR.what);

@@ -1,4 +1,5 @@
-//! Expressions: a string that begins with `=` is one in Structured Text over the signals of the script.
+//! Expressions: a string that begins with `=` is an expression in Structured Text over the signals of the
+//! script.
 
 use super::Reader;
 use super::condition::Kind;
@@ -20,17 +21,17 @@ const SIGN: char = '=';
 /// Where an expression stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reads {
-    /// In a wire: what stands there when its block is called.
+    /// In a wire: the value at the call of its block.
     Now,
     /// In a condition: a row of the trace.
     Row,
 }
 
-/// The text of an expression with the names of its variables in the place of signals.
+/// The text of an expression with its signals replaced by the names of variables.
 #[derive(Default)]
 struct Body {
     text: String,
-    /// Pieces: where each begins here and in the original, its length here and there.
+    /// Pieces: the begin of each here and in the original, its length here and there.
     pieces: Vec<[usize; 4]>,
 }
 
@@ -154,7 +155,7 @@ impl Reader {
         Some(self.formulas.len() - 1)
     }
 
-    /// The text with variables in the place of signals, which are declared.
+    /// The text with declared variables in the place of signals.
     fn body(
         &mut self,
         text: &str,
@@ -167,7 +168,8 @@ impl Reader {
         let (mut at, mut good) = (0, true);
         for reference in references {
             let root = reference.path.split(['.', '[']).next().unwrap_or_default();
-            // What is no name of the script may be one of an enumeration; if not, the compiler says so.
+            // A name that the script does not have may belong to an enumeration; if not, the compiler
+            // reports it.
             if self.names.get(root).is_none() {
                 continue;
             }
@@ -255,7 +257,7 @@ impl Reader {
         Some(variable(declared.inputs.len() - 1))
     }
 
-    /// Tells what is wrong with an expression, in the words of the compiler.
+    /// Reports the faults of an expression in the words of the compiler.
     fn refused(
         &mut self,
         report: &st::Report,
@@ -331,7 +333,7 @@ impl Declared {
         lines.collect()
     }
 
-    /// Declares an enumeration; one of two programs with one name gets another.
+    /// Declares an enumeration. If two programs have one of the same name, one of them gets another name.
     fn enumeration(&mut self, name: &str, elements: &[(String, i128)]) -> String {
         let same = |(_, known): &&(String, Vec<(String, i128)>)| known == elements;
         if let Some((known, _)) = self.taken.iter().find(same) {
@@ -359,7 +361,7 @@ impl Declared {
     }
 }
 
-/// Where the text of an expression stands.
+/// The place of an expression's text.
 #[derive(Clone, Copy)]
 struct Place {
     span: Span,

@@ -1,6 +1,6 @@
-//! What a newcomer meant: remedies for mistakes that are not slips of a letter.
+//! Remedies for newcomers' mistakes that are not misspellings.
 
-/// Words for keys from elsewhere, and what they are called here.
+/// Keys of other systems, and their names here.
 const KEYS: [(&str, &str); 22] = [
     ("before", "by"),
     ("until", "by"),
@@ -26,7 +26,7 @@ const KEYS: [(&str, &str); 22] = [
     ("approx", "near"),
 ];
 
-/// The remedy for a key that is called otherwise here.
+/// The remedy for a key that has another name here.
 pub(super) fn key<'a>(key: &str, mut known: impl Iterator<Item = &'a str>) -> Option<String> {
     let word = key.trim().to_ascii_lowercase();
     if matches!(word.as_str(), "=" | "==" | "eq" | "equals") && known.any(|known| known == "ge") {
@@ -38,7 +38,7 @@ pub(super) fn key<'a>(key: &str, mut known: impl Iterator<Item = &'a str>) -> Op
         .then(|| format!("`{meant}` is what it is called here"))
 }
 
-/// The remedy for logic in a string where a wire or a signal is wanted.
+/// The remedy for logic in a string where a wire or a signal is expected.
 pub(super) fn logic(text: &str) -> Option<String> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let is = |word: &str, names: &[&str]| names.iter().any(|name| name.eq_ignore_ascii_case(word));
@@ -68,7 +68,7 @@ pub(super) fn logic(text: &str) -> Option<String> {
     }
 }
 
-/// The remedy for a number in a string, or with what JSON does not have.
+/// The remedy for a number in a string, or in a form that JSON does not have.
 pub(super) fn number(text: &str) -> Option<String> {
     let plain = |text: &str| text.trim().parse::<f64>().is_ok_and(f64::is_finite);
     if plain(text) {
@@ -98,7 +98,7 @@ pub(super) fn number(text: &str) -> Option<String> {
     None
 }
 
-/// The value of an IEC literal with its type, `LREAL#4.0`, where JSON has the same.
+/// The value of an IEC literal with its type, `LREAL#4.0`, if JSON has the same value.
 pub(super) fn typed(text: &str) -> Option<&str> {
     let (name, value) = text.split_once('#')?;
     let is_type = name.chars().all(|letter| letter.is_ascii_alphabetic())
@@ -107,7 +107,7 @@ pub(super) fn typed(text: &str) -> Option<&str> {
     (is_type && known).then_some(value)
 }
 
-/// The remedy for a word where TRUE or FALSE is wanted.
+/// The remedy for a word where TRUE or FALSE is expected.
 pub(super) fn truth(text: &str) -> Option<&'static str> {
     let word = text.rsplit('#').next().unwrap_or(text).trim();
     match word.to_ascii_uppercase().as_str() {

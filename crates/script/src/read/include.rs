@@ -1,8 +1,8 @@
-//! `include`: what a script shares with others, read from machine files and put below its own.
+//! `include`: the shared part of scripts, read from machine files and put below the script's own.
 //!
-//! A machine file is a part of a script: axes, inputs, tasks, blocks and parameters. They are put together before
-//! anything is read, so the reader never knows where an entry came from; its place does, see
-//! [`ScriptError`](crate::ScriptError).
+//! A machine file is a part of a script: axes, inputs, tasks, blocks and parameters. The parts are merged
+//! before anything else is read, so the reader does not know the file of an entry. The entry's place
+//! does, see [`ScriptError`](crate::ScriptError).
 
 use super::json::{self, Json, Key, Node};
 use super::{Reader, shape, without_mark};
@@ -22,7 +22,7 @@ type Members = Vec<(Key, Node)>;
 /// The names of `override`, with their places, by the name in capitals; those of one name in their order.
 type Overrides = BTreeMap<String, VecDeque<(String, Span)>>;
 
-/// Gives the text of a file, named relative to the script's folder, or says why not.
+/// Returns the text of a file, named relative to the script's folder, or the reason why not.
 pub(super) type Load<'a> = &'a mut dyn FnMut(&str) -> Result<String, String>;
 
 /// The texts of a script. Places count on through all of them.
@@ -177,7 +177,7 @@ impl Reader {
         members
     }
 
-    /// Lays a section over those that are there. An override that was used is taken from the list.
+    /// Lays a section over the existing ones. A used override is removed from the list.
     fn lay(&mut self, below: &mut Members, key: Key, node: Node, overrides: &mut Overrides) {
         let Some((_, there)) = below.iter_mut().find(|(other, _)| other.text == key.text) else {
             below.push((key, node));
@@ -225,7 +225,8 @@ impl Reader {
                     }
                 }
             }
-            // Of the wrong type, or about to be laid over something that is: the reader says so.
+            // It has the wrong type, or is about to be laid over something that has: the reader reports
+            // it.
             (there, json @ (Json::Map(_) | Json::List(_)))
                 if !matches!(there, Json::Map(_) | Json::List(_)) =>
             {
@@ -240,7 +241,7 @@ impl Reader {
         }
     }
 
-    /// Whether the entry may be laid over one of an included file; reports it if not.
+    /// Whether the entry may be laid over one of an included file; reports an error if not.
     fn permitted(&mut self, name: &str, span: Span, other: Span, overrides: &mut Overrides) -> bool {
         let wanted = overrides.get_mut(&name.to_ascii_uppercase());
         if wanted.is_some_and(|wanted| wanted.pop_front().is_some()) {
@@ -272,7 +273,7 @@ impl Places {
         places
     }
 
-    /// The place of a name; if it has none, `free` is its place from now on.
+    /// The place of a name. A name without a place gets the place `free`.
     fn of(&mut self, name: &str, free: usize) -> Option<usize> {
         match self.0.entry(name.to_ascii_uppercase()) {
             Entry::Occupied(place) => Some(*place.get()),

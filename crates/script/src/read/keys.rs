@@ -1,4 +1,4 @@
-//! Objects whose keys stand in a table: those of axes and drives.
+//! Objects with their keys in a table: those of axes and drives.
 
 use super::Reader;
 use super::json::{Json, Node};
@@ -7,7 +7,7 @@ use crate::error::{Code, Diagnostic};
 use crate::format::number_text;
 use standstill_axis::keys::{Bounds, Holds, Key, Object};
 
-/// What a key is called in messages: with the object it stands in.
+/// The name of a key in messages: with its object.
 fn called<T>(key: &Key<T>) -> String {
     match key.path.rsplit_once('.') {
         Some((above, name)) => format!("`{}.{name}`", above.rsplit('.').next().unwrap_or(above)),
@@ -16,8 +16,8 @@ fn called<T>(key: &Key<T>) -> String {
 }
 
 impl Reader {
-    /// Reads the keys of `object` in `node` into `to`, and gives all its members. All mistakes are reported before it gives up.
-    /// `others` are keys that are read elsewhere.
+    /// Reads the keys of `object` in `node` into `to`, and returns all its members. All mistakes are
+    /// reported before it fails. `others` are keys that are read elsewhere.
     pub(super) fn keys<'n, T>(
         &mut self,
         node: &'n Node,
@@ -104,7 +104,8 @@ impl Reader {
         self.choice(node, what, &places)
     }
 
-    /// Refuses numbers and scans outside the ranges of their keys. An axis has words of its own for that, a drive has not.
+    /// Refuses numbers and scans outside the ranges of their keys. An axis has its own messages for that,
+    /// a drive has not.
     pub(super) fn in_range<T>(&mut self, fields: &Fields<'_>, object: &Object<T>, of: &T) -> Option<()> {
         let mut good = Some(());
         for key in object.keys {

@@ -1,4 +1,5 @@
-//! From text to a checked [`Map`]: how `standstill compare` holds a trace against the recording of a machine.
+//! From text to a checked [`Map`]: how `standstill compare` compares a trace with the recording of a
+//! machine.
 
 use super::names::suggestion;
 use super::shape::machine as shape;
@@ -14,7 +15,7 @@ use std::collections::BTreeMap;
 /// The version of the format that is read.
 pub(crate) const MAP_VERSION: u32 = 1;
 
-/// The most columns a recording is looked at for.
+/// Most columns of a recording that are searched.
 pub(crate) const COLUMNS_MAX: i64 = 10_000;
 
 /// Units of a column of times.
@@ -32,12 +33,13 @@ pub(crate) const DELIMITERS: [(&str, char); 4] = [(",", ','), (";", ';'), ("tab"
 /// Marks before decimals.
 pub(crate) const DECIMALS: [(&str, char); 2] = [(".", '.'), (",", ',')];
 
-/// Reads a map for this trace, whose signals it must name.
+/// Reads a map for this trace, which must have the signals that it names.
 ///
-/// `file_name` only goes into messages. The work is bounded by the lengths of the text and of the list of signals.
+/// `file_name` is used in messages only. The work is bounded by the lengths of the text and of the list
+/// of signals.
 ///
 /// # Errors
-/// [`ScriptError`] with everything that is wrong; after a syntax error only that.
+/// [`ScriptError`] with all faults; after a syntax error only that one.
 pub fn read_map(text: &str, file_name: &str, trace: &Trace) -> Result<Map, ScriptError> {
     let plain = without_mark(text);
     let error = |diagnostics| ScriptError::new(file_name, plain, diagnostics);

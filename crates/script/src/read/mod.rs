@@ -1,8 +1,9 @@
 //! From text to a checked [`Script`].
 //!
-//! Two passes over the parsed text: the first declares the names of axes, inputs and instances, the second
-//! reads the rest, so that a wire may look at a block further down. Every function reports what it finds
-//! wrong and goes on, so that one run shows all mistakes; a script is only given out if there was none.
+//! There are two passes over the parsed text. The first declares the names of axes, inputs and instances;
+//! the second reads the rest, so that a wire may refer to a block further down. Every function reports
+//! the faults it finds and goes on, so that one run shows all mistakes. A script is returned only if
+//! there were none.
 
 pub(crate) mod axis;
 pub(crate) mod block;
@@ -46,10 +47,11 @@ use value::Fields;
 /// Most scans of one run; 10^7 are 2 h 46 min at 1 ms.
 pub const SCANS_MAX: u64 = 1_000_000_000;
 
-/// Most cells, that is rows times columns, of one run's trace.
+/// Most cells (rows times columns) of one run's trace.
 pub const CELLS_MAX: u64 = 100_000_000;
 
-/// Most looks at rows that the conditions of a script's claims and steps may take, each in every scan: some minutes of work.
+/// Most reads of rows by the conditions of a script's claims and steps, each in every scan: some minutes
+/// of work.
 pub const LOOKS_MAX: u64 = 10_000_000_000;
 
 /// Most slots of the store of cams, and most pieces; a million of those take 120 MB.
@@ -64,7 +66,7 @@ pub const ENTITIES_MAX: usize = 65_000;
 /// The version of the format that is read.
 pub const VERSION: u32 = 1;
 
-/// What is collected while a script is read.
+/// The data collected while a script is read.
 #[derive(Default)]
 struct Reader {
     parameters: BTreeMap<String, f64>,
@@ -79,12 +81,12 @@ struct Reader {
     wires: circle::Wires,
     /// The numbers of the tables read so far.
     tables: Vec<f64>,
-    /// Those of the script by name: none where it was no good.
+    /// Those of the script by name; none for a table that was refused.
     named_tables: BTreeMap<String, (Option<TableRef>, TableInfo)>,
     /// The guest programs read so far.
     programs: Vec<Option<Program>>,
     terms: Terms,
-    /// Names may be missing because of another mistake, so a name that is not known tells nothing.
+    /// Names may be missing because of another mistake, so an unknown name is no evidence.
     lacks_names: bool,
     /// The script's folder, with the `/` behind it; empty if none.
     folder: String,
@@ -105,8 +107,9 @@ struct Reader {
 
 /// Reads a scan script.
 ///
-/// `file_name` only goes into messages. `overrides` replace values of the script's parameters; the last one
-/// of a name counts. A byte order mark and CRLF are accepted. The work is bounded by the length of the text.
+/// `file_name` is used in messages only. `overrides` replace values of the script's parameters; the last
+/// one of a name counts. A byte order mark and CRLF are accepted. The work is bounded by the length of
+/// the text.
 ///
 /// # Errors
 /// [`ScriptError`] with everything that is wrong; after a syntax error only that.
@@ -116,8 +119,9 @@ pub fn read(text: &str, file_name: &str, overrides: &[(String, f64)]) -> Result<
     })
 }
 
-/// As [`read`], for a script that may include machine files: `load` gives the text of a file, named relative to
-/// the script's folder, or says why not. It is asked for each file once, and for 63 at most.
+/// As [`read`], for a script that may include machine files. `load` returns the text of a file, named
+/// relative to the script's folder, or the reason why not. It is called once for each file, and for at
+/// most 63.
 ///
 /// # Errors
 /// As [`read`]; messages about an included file name that file.
@@ -132,8 +136,8 @@ pub fn read_with(
     })
 }
 
-/// As [`read_with`], for a script that may have guest programs: `guest` gives the bytes of one, named relative to the
-/// script's folder, or says why not. Together they may have [`GUEST_MEMORY`].
+/// As [`read_with`], for a script that may have guest programs. `guest` returns the bytes of one, named
+/// relative to the script's folder, or the reason why not. Together they may have [`GUEST_MEMORY`].
 ///
 /// # Errors
 /// As [`read_with`].
@@ -147,14 +151,15 @@ pub fn read_with_programs(
     read_within(text, file_name, overrides, load, guest, Terms::default())
 }
 
-/// On which terms programs run.
+/// The conditions under which programs run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Terms {
     /// Memory that all guests may have together (bytes).
     pub guest_memory: u64,
     /// Whether programs in Structured Text count their statements.
     pub coverage: bool,
-    /// Whether the rows of the run are given up on the way, so that they may be more than the cells of one trace.
+    /// Whether the rows of the run are dropped on the way, so that they may be more than the cells of one
+    /// trace.
     pub long: bool,
 }
 
@@ -168,7 +173,7 @@ impl Default for Terms {
     }
 }
 
-/// As [`read_with_programs`], on other terms.
+/// As [`read_with_programs`], under other conditions.
 ///
 /// # Errors
 /// As [`read_with`].
@@ -183,7 +188,7 @@ pub(crate) fn read_within(
     Parsed::new(text, file_name, load)?.script(overrides, guest, terms)
 }
 
-/// A script with what it includes as far as no parameter has a say.
+/// A script with its includes, as far as parameters do not affect it.
 #[derive(Clone, Debug)]
 pub(crate) struct Parsed {
     root: Node,
@@ -197,7 +202,7 @@ impl Parsed {
     /// Parses a script and the files that it includes; arguments as for [`read_with`].
     ///
     /// # Errors
-    /// [`ScriptError`]: a syntax error, or a file that could not be had.
+    /// [`ScriptError`]: a syntax error, or a file that could not be read.
     pub(crate) fn new(
         text: &str,
         file_name: &str,
@@ -209,7 +214,7 @@ impl Parsed {
         let mut reader = Reader::default();
         let mut files = include::Files::new(file_name, plain, load);
         let root = reader.with_includes(root, &mut files);
-        // What is missing may stand in a file that could not be had.
+        // A missing name may be in the file that could not be read.
         if !reader.errors.is_empty() {
             return Err(ScriptError::of(files.read, reader.errors));
         }
@@ -228,7 +233,7 @@ impl Parsed {
     /// The script with these parameters; arguments as for [`read_with_programs`].
     ///
     /// # Errors
-    /// [`ScriptError`] with everything that is wrong.
+    /// [`ScriptError`] with all faults.
     pub(crate) fn script(
         &self,
         overrides: &[(String, f64)],
@@ -275,7 +280,7 @@ impl Reader {
         guest: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
     ) -> Option<Script> {
         let fields = self.fields(root, &shape::SCRIPT)?;
-        // One that is missing is not the only key that is.
+        // A missing key is not the only one.
         if self.version(&fields, "a script").is_none() && fields.get("standstill").is_some() {
             return None;
         }
@@ -293,7 +298,7 @@ impl Reader {
         let covers = self.covers(&fields);
         let axes = self.axes(&fields);
         let inputs = self.inputs(&fields);
-        // Before whatever may name a variable of theirs.
+        // Before anything that may name one of their variables.
         let programs = self.programs(&fields, guest);
         let tables = self.tables(&fields, guest);
         let cams = self.cams(&fields);
@@ -375,7 +380,7 @@ impl Reader {
             .and_then(|node| self.map(node, "`parameters`"));
         for (key, node) in declared.iter().flat_map(Fields::iter) {
             let value = match &node.json {
-                // A parameter of a parameter would need an order; nobody needs it.
+                // A parameter of a parameter would need an order, and has no use.
                 Json::Map(_) => {
                     let diagnostic = self.wrong_type(node, &quoted(&key.text), "a number");
                     self.report(diagnostic);
@@ -383,7 +388,7 @@ impl Reader {
                 }
                 _ => self.number(node, &quoted(&key.text)),
             };
-            // A refused value is already reported; its uses need not be.
+            // A refused value is already reported, so its uses need not be.
             self.parameters.insert(key.text.clone(), value.unwrap_or(1.0));
         }
         for (name, value) in overrides {
@@ -451,7 +456,7 @@ impl Reader {
         None
     }
 
-    /// Leaves out what other mistakes bring about: names that are not known where some could not be read.
+    /// Removes the consequences of other mistakes: unknown names, if some names could not be read.
     fn leave_out_what_follows(&mut self) {
         let follows = |error: &Diagnostic| matches!(error.code, Code::UnknownSignal | Code::UnknownAxis);
         if self.lacks_names && !self.errors.iter().all(follows) {
@@ -652,14 +657,14 @@ impl Reader {
         inputs.into_iter().collect()
     }
 
-    /// Whether the author says that this may test nothing.
+    /// Whether the author says that this item may test nothing.
     fn may_be_vacuous(&mut self, fields: &Fields<'_>) -> bool {
         fields
             .get("vacuous")
             .is_some_and(|node| self.choice(node, "`vacuous`", &[("allowed", true)]).is_some())
     }
 
-    /// The place of something, with what the author says of it.
+    /// The place of an item, with the author's note on it.
     fn stands_at(&mut self, span: Span, fields: &Fields<'_>) -> Place {
         Place {
             span,
@@ -740,7 +745,7 @@ impl Reader {
 /// What `clamps` may say.
 pub(crate) const CLAMPS: [(&str, bool); 1] = [("expected", true)];
 
-/// The initial value of an input variable that says more than that.
+/// The initial value of an input variable that is declared by an object.
 fn initial_of(node: &Node) -> Option<&Node> {
     let Json::Map(members) = &node.json else {
         return None;
@@ -749,12 +754,12 @@ fn initial_of(node: &Node) -> Option<&Node> {
     members.find(|(key, _)| key.text == "value").map(|(_, node)| node)
 }
 
-/// The note of a map of names, which is no name: see the contract's rule that any object may carry one.
+/// The note of a map of names, which is not a name. By the contract any object may have one.
 fn is_note(key: &Key, node: &Node) -> bool {
     key.text == "note" && matches!(node.json, Json::Text(_))
 }
 
-/// What stands at a pin of a block.
+/// The value at a pin of a block.
 fn pin_of<'a>(pins: &'a Node, pin: &str) -> Option<&'a Node> {
     let Json::Map(members) = &pins.json else {
         return None;

@@ -1,4 +1,4 @@
-//! Names: which are legal, what they stand for, and what was probably meant.
+//! Names: which are legal, what they refer to, and which was probably meant.
 
 use standstill_fb::{BlockInfo, PinType};
 use std::collections::BTreeMap;
@@ -136,7 +136,7 @@ pub(crate) const KEYWORDS: &[&str] = &[
     "XOR",
 ];
 
-/// Why `name` is no IEC 61131-3 identifier that may be declared.
+/// The reason why `name` is not an IEC 61131-3 identifier that may be declared.
 pub(crate) fn identifier_error(name: &str) -> Option<&'static str> {
     let legal_first = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
     let legal_rest = name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
@@ -152,7 +152,7 @@ pub(crate) fn identifier_error(name: &str) -> Option<&'static str> {
     None
 }
 
-/// What a name of the script stands for; the number is its index among its kind.
+/// The item that a name of the script refers to; the number is its index among its kind.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Entity {
     Axis(usize),
@@ -171,7 +171,7 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// Adds `name`, unless it already stands for something.
+    /// Adds `name`, unless it is already in use.
     pub(crate) fn add(&mut self, name: &str, entity: Entity) {
         self.by_name
             .entry(name.to_ascii_uppercase())
@@ -184,7 +184,7 @@ impl Names {
             .map(|(_, entity)| *entity)
     }
 
-    /// The names as written of everything `filter` takes.
+    /// The names as written of all items that `filter` accepts.
     pub(crate) fn of(&self, filter: fn(&Entity) -> bool) -> impl Iterator<Item = &str> + Clone {
         self.by_name
             .values()
@@ -193,19 +193,19 @@ impl Names {
     }
 }
 
-/// Longest name (characters) that is looked at for slips.
+/// Longest name (characters) that is checked for misspellings.
 const NAME_WITH_SLIPS: usize = 100;
 
 /// The remedy for a name that is nearly one of `candidates`.
 pub(crate) fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
     let wanted = name.to_ascii_lowercase();
     let length = wanted.chars().count();
-    // The work grows with the product of the lengths, and nobody has a slip of one letter in mind there.
+    // The work grows with the product of the lengths, and a long name with one wrong letter is unlikely.
     if length > NAME_WITH_SLIPS {
         return None;
     }
-    // One slip in three letters still lets one guess what was meant, and one in a word shorter than three; a
-    // single letter that differs says nothing.
+    // With one wrong letter in three the meaning can still be guessed, and with one in a word shorter
+    // than three. A single letter that differs says nothing.
     let slips = if length < 2 { 0 } else { (length / 3).max(1) };
     candidates
         .filter(|candidate| candidate.len() <= 8 * NAME_WITH_SLIPS)
@@ -220,7 +220,7 @@ pub(crate) fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>)
         .map(|(_, candidate)| format!("did you mean `{candidate}`?"))
 }
 
-/// The remedy for a name that is not among `candidates`: the nearest one, else all if they are few.
+/// The remedy for a name that is not among `candidates`: the nearest one, otherwise all if they are few.
 pub(crate) fn suggestion<'a>(
     name: &str,
     candidates: impl Iterator<Item = &'a str> + Clone,

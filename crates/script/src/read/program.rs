@@ -11,8 +11,8 @@ use crate::model::{Claim, ClaimKind, Condition, Place, Program, Range, Signal, S
 use standstill_fb::{PinType, Value};
 use standstill_guest::{INSTANCES_MOST, LoadError, Settings, SymbolType};
 
-/// Whether programs and expressions are run. Where not, none is compiled either, so that a build without them is without the
-/// compiler.
+/// Whether programs and expressions are run. If not, none is compiled either, so that a build without
+/// them does not contain the compiler.
 pub(super) const ARE_RUN: bool = cfg!(feature = "guest");
 
 /// Most guest programs of a script; their instances have numbers of 16 bits with those of the script.
@@ -24,7 +24,7 @@ const SYMBOLS_MAX: usize = 256;
 /// Most fuel of a call.
 pub(crate) const FUEL_MAX: i64 = 1_000_000_000;
 
-/// Most bytes of memory: what 32 bits reach.
+/// Most bytes of memory: the range of 32 bits.
 pub(crate) const MEMORY_MAX: i64 = 1 << 32;
 
 /// Memory that all guest programs of a script may have together unless the caller allows more (bytes).
@@ -44,7 +44,7 @@ pub(crate) const SYMBOL_TYPES: [&str; SymbolType::ALL.len()] = {
 /// The signal of a program that the runtime writes.
 pub(crate) const FAULT: &str = "Fault";
 
-/// Gives the bytes of a module, or says why not.
+/// Returns the bytes of a module, or the reason why not.
 pub(super) type LoadGuest<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, String>;
 
 impl Reader {
@@ -79,15 +79,15 @@ impl Reader {
         self.programs.iter().all(Option::is_some).then_some(())
     }
 
-    /// The memory of a program that does not say how much it needs (bytes): as usual, or what is left for each of them. All
-    /// together may have no more than the caller allows.
+    /// The memory of a program that does not say how much it needs (bytes): the usual amount, or an equal
+    /// share of the rest. All together may have no more than the caller allows.
     fn memory_share(&mut self, members: &Fields<'_>, node: &Node) -> Option<u64> {
         let said = |node: &Node| match &node.json {
             Json::Map(inner) => inner
                 .iter()
                 .find(|(key, _)| key.text == "memory")
                 .map(|(_, node)| {
-                    // What is no number of bytes is told where the program is read.
+                    // An invalid number of bytes is reported where the program is read.
                     match node.json {
                         Json::Number(bytes) if (0.0..=MEMORY_MAX as f64).contains(&bytes) => bytes as u64,
                         _ => 0,
@@ -290,7 +290,7 @@ impl Reader {
         })
     }
 
-    /// Whether the variable at a point holds a value; a report if not.
+    /// Whether the variable at a point can have a value; reports an error if not.
     pub(super) fn symbol_holds(&mut self, point: Point, value: Value, span: Span, what: &str) -> bool {
         let Point::Symbol(program, symbol) = point else {
             return true;
@@ -312,7 +312,7 @@ impl Reader {
         own.holds(value)
     }
 
-    /// A claim for each program that may not fault: that it does not.
+    /// For each program that may not fault: a claim that it does not.
     pub(super) fn fault_claims(&mut self, fields: &Fields<'_>) -> Option<Vec<Claim>> {
         let Some(Json::Map(members)) = fields.get("programs").map(|node| &node.json) else {
             return Some(Vec::new());

@@ -1,4 +1,4 @@
-//! Claims that speak of events: answers, durations, counts, and windows by condition.
+//! Claims about events: answers, durations, counts, and windows by condition.
 
 use super::expect::is_edge;
 use super::json::{Json, Node};
@@ -8,7 +8,7 @@ use crate::error::{Code, Diagnostic};
 use crate::model::{Bounds, ClaimKind, Conditions, Window};
 
 impl Reader {
-    /// A claim with `when`, `after`, `duration` or `count`; `value` is what stands there.
+    /// A claim with `when`, `after`, `duration` or `count`; `value` is its value.
     pub(super) fn relative(
         &mut self,
         key: &str,
@@ -89,7 +89,7 @@ impl Reader {
         Some([begin?, end?])
     }
 
-    /// `eq`, `le` and `ge`, of which there is at least one.
+    /// `eq`, `le` and `ge`; at least one is given.
     fn bounds(
         &mut self,
         fields: &Fields<'_>,
@@ -143,7 +143,7 @@ impl Reader {
         None
     }
 
-    /// Where the scans of a claim begin and end by conditions.
+    /// The conditions at which the scans of a claim begin and end.
     pub(super) fn claim_window(&mut self, claim: &Node) -> Option<Window> {
         let Json::Map(members) = &claim.json else {
             return Some(Window::default());

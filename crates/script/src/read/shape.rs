@@ -1,10 +1,11 @@
-//! Which keys stand in which object of a script, and what each may hold. The reader and the JSON Schema both read this; the
-//! keys of axes and drives stand beside what they set up ([`standstill_axis::keys`], [`standstill_drives::keys`]).
+//! The keys of each object of a script, and their permitted values. The reader and the JSON Schema both
+//! use this; the keys of axes and drives are described with their structures ([`standstill_axis::keys`],
+//! [`standstill_drives::keys`]).
 
 use crate::schema::of::*;
 use serde_json::Value;
 
-/// A key, and what it may hold: its schema.
+/// A key, and the schema of its value.
 pub(crate) type Field = (&'static str, fn() -> Value);
 
 /// The keys of one kind of object.
@@ -86,7 +87,7 @@ pub(crate) const TABLE: Shape = shape(
         ("note", text),
     ],
 );
-/// Where a pin takes it.
+/// The use of a table at a pin.
 pub(crate) const TABLE_USE: Shape = shape("a table's use", &[("table", text), ("note", text)]);
 /// The store of cams.
 pub(crate) const CAMS: Shape = shape(
@@ -426,14 +427,14 @@ pub(crate) const CLAIM_COUNT: Shape = shape(
         ("note", text),
     ],
 );
-/// Where a window begins or ends.
+/// The begin or the end of a window.
 pub(crate) const WINDOW_EDGE: Shape = shape(
     "the begin or end of a window",
     &[("when", conditions), ("note", text)],
 );
 pub(crate) const NEAR_TO: Shape = shape("`near`", &[("of", text), ("plus", bound), ("note", text)]);
 
-/// The kinds of claims; the first key of each names it. One with `after` has a `by`, too.
+/// The kinds of claims; the first key of each names it. A claim with `after` also has a `by`.
 pub(crate) const CLAIMS: [Shape; 12] = [
     CLAIM_AFTER,
     CLAIM_WHEN,

@@ -1,4 +1,4 @@
-//! Steps: when, and what they do.
+//! Steps: when they apply, and what they do.
 
 use super::json::{Key, Node};
 use super::value::Fields;
@@ -272,7 +272,7 @@ impl Reader {
         })
     }
 
-    /// What a drive tells instead of what it measures.
+    /// The value a drive reports instead of the measured one.
     fn drive_report(&mut self, node: &Node, axis: Option<usize>) -> Option<Vec<DriveChange>> {
         let fields = self.fields(node, &shape::DRIVE_REPORT)?;
         let drive = axis.and_then(|axis| self.drives.get(axis).copied().flatten());
@@ -312,7 +312,8 @@ impl Reader {
         Some(changes)
     }
 
-    /// Whether the drive of `axis` knows the change; drives that could not be read were reported.
+    /// Whether the drive of `axis` supports the change; drives that could not be read were reported
+    /// before.
     fn knows_change(&mut self, key: &Key, axis: usize, change: &DriveChange) -> bool {
         let drive = self.drives.get(axis).copied().flatten();
         match (change, drive) {

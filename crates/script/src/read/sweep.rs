@@ -10,12 +10,12 @@ use crate::sweep::{CASES_MAX, Draw, Measure, Scale, Sweep, TAKES, Values, Varied
 /// The version of the format that is read.
 pub(crate) const SWEEP_VERSION: u32 = 1;
 
-/// How values may lie between two ends.
+/// The spacing of values between two ends.
 pub(crate) const SCALES: [(&str, Scale); 2] = [("linear", Scale::Linear), ("log", Scale::Log)];
 
 /// Reads a sweep file.
 ///
-/// `file_name` only goes into messages. The work is bounded by the length of the text.
+/// `file_name` is used in messages only. The work is bounded by the length of the text.
 ///
 /// # Errors
 /// [`ScriptError`] with everything that is wrong; after a syntax error only that.

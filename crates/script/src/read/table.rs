@@ -41,11 +41,11 @@ impl Reader {
             self.report(Diagnostic::new(Code::WrongType, node.span, message));
             return None;
         }
-        // One that is no good was reported where it stands.
+        // An invalid one was reported at its place.
         place
     }
 
-    /// The tables that the script names; `load` gives the bytes of a file.
+    /// The tables that the script names; `load` returns the bytes of a file.
     pub(super) fn tables(&mut self, fields: &Fields<'_>, load: LoadGuest<'_>) -> Option<()> {
         let Some(node) = fields.get("tables") else {
             return Some(());
@@ -63,7 +63,7 @@ impl Reader {
         good.then_some(())
     }
 
-    /// The tables that the script names, for whoever looks at one by itself.
+    /// The tables that the script names, for callers that need one by itself.
     pub(super) fn tables_by_name(&self) -> Vec<NamedTable> {
         let tables = self.named_tables.iter();
         let named = tables.filter_map(|(name, (place, info))| {

@@ -1,4 +1,4 @@
-//! Tasks: when they run, and which one a block belongs to.
+//! Tasks: when they run, and the task of each block.
 
 use super::json::Node;
 use super::names::identifier_error;

@@ -13,7 +13,8 @@ use standstill_guest::Settings;
 use standstill_st::{self as st, Compiled, Options, Source, Symbols};
 use std::sync::Arc;
 
-/// So many times the fuel has a program that counts its statements, at the least: counting one takes six instructions.
+/// A program that counts its statements has at least this many times the fuel: counting one takes six
+/// instructions.
 const COUNTING: u64 = 16;
 
 /// Most files of a program.
@@ -25,7 +26,7 @@ const COLUMNS_MAX: usize = 4096;
 /// Most instances of blocks whose names are known; a guest has fewer.
 const BLOCKS_MAX: usize = 4096;
 
-/// Most variables among which the one that was meant is looked for.
+/// Most variables among which the one that was meant is searched.
 const GUESSES_MAX: usize = 2000;
 
 /// Without a byte order mark.
@@ -34,7 +35,7 @@ fn text(bytes: &[u8]) -> String {
     text.strip_prefix('\u{FEFF}').unwrap_or(&text).to_owned()
 }
 
-/// The warnings of a report. What only other compilers refuse is no doubt about this run.
+/// The warnings of a report. A warning about other compilers is no doubt about this run.
 fn doubtful(report: &st::Report) -> Vec<Doubt> {
     let each = report.diagnostics().iter();
     let each = each.filter(|it| it.code != st::Code::Portability);
@@ -50,7 +51,7 @@ fn doubtful(report: &st::Report) -> Vec<Doubt> {
 }
 
 impl Reader {
-    /// A program that `st` gives the sources of.
+    /// A program with the sources in `st`.
     pub(super) fn text_program(
         &mut self,
         name: &str,
@@ -94,7 +95,7 @@ impl Reader {
         let text = ProgramText {
             blocks: blocks.into_iter().map(named).collect(),
             doubtful: doubtful(&compiled.report),
-            // What was compiled is UTF-8.
+            // A compiled text is UTF-8.
             sources: files
                 .into_iter()
                 .map(|(name, bytes)| (name, text(&bytes)))
@@ -112,7 +113,7 @@ impl Reader {
         })
     }
 
-    /// The files of `st`: their names in messages, and what stands in them.
+    /// The files of `st`: their names in messages, and their texts.
     fn sources(&mut self, node: &Node, load: LoadGuest<'_>) -> Option<Vec<(String, Vec<u8>)>> {
         let items = match &node.json {
             Json::List(items) => items.as_slice(),
@@ -158,7 +159,7 @@ impl Reader {
         bindings.into_iter().collect()
     }
 
-    /// Compiles; what is wrong with the sources is told by the report, which names their places.
+    /// Compiles. The report shows the faults of the sources with their places.
     fn compiled(
         &mut self,
         files: &[(String, Vec<u8>)],
@@ -232,7 +233,7 @@ impl Reader {
         Some(columns)
     }
 
-    /// The variable of a program in Structured Text at a path. One that is no column yet becomes one.
+    /// The variable of a program in Structured Text at a path. It becomes a column if it is none yet.
     pub(super) fn variable_point(
         &mut self,
         index: usize,
@@ -371,7 +372,7 @@ impl Reader {
         let nobody =
             fields.get("tasks").is_none() && matches!(blocks, Some(Json::List(items)) if items.is_empty());
         if nobody && there.interval == Some(1) {
-            // The task that is there by itself, and that nothing of the script runs in.
+            // The predefined task, in which nothing of the script runs.
             there.interval = interval;
             return Some(place);
         }
@@ -400,7 +401,8 @@ pub(super) fn fault_symbol() -> Symbol {
     }
 }
 
-/// A variable as a signal. One called like the runtime's own is known by its whole path.
+/// A variable as a signal. If the runtime's own has the same name, the variable is named by its whole
+/// path.
 fn column(symbols: &Symbols, symbol: &st::Symbol) -> Symbol {
     let short = symbols.short(&symbol.path);
     let own = short.eq_ignore_ascii_case(FAULT);

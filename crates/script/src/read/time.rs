@@ -1,6 +1,6 @@
 //! TIME literals of IEC 61131-3: `T#14ms`, `TIME#1h_30m`, `t#2.5s`.
 
-/// The units, largest first: name, nanoseconds, and how many of it the next larger unit has.
+/// The units, largest first: name, nanoseconds, and the number of it in the next larger unit.
 const UNITS: [(&str, i64, i64); 7] = [
     ("d", 86_400_000_000_000, i64::MAX),
     ("h", 3_600_000_000_000, 24),
@@ -11,11 +11,12 @@ const UNITS: [(&str, i64, i64); 7] = [
     ("ns", 1, 1_000),
 ];
 
-/// The nanoseconds of a literal, or why it is none. Without regard to case; only the last unit may have a
-/// fraction, and only the first may exceed its range (`T#25h`). Exact: nothing is rounded.
+/// The nanoseconds of a literal, or the reason why it is invalid. Case does not matter. Only the last
+/// unit may have a fraction, and only the first may exceed its range (`T#25h`). Exact: nothing is
+/// rounded.
 ///
 /// # Errors
-/// Why it is none, as the end of a sentence.
+/// The reason why it is invalid, as the end of a sentence.
 pub fn parse(text: &str) -> Result<i64, &'static str> {
     const TOO_LARGE: &str = "it does not fit in 64 bits of nanoseconds";
     let lower = text.to_ascii_lowercase();
@@ -64,7 +65,7 @@ pub fn parse(text: &str) -> Result<i64, &'static str> {
     Ok(if negative { -total } else { total })
 }
 
-/// Splits `12.5ms_..` into `12`, `5` (without trailing zeros), `ms` and what follows.
+/// Splits `12.5ms_..` into `12`, `5` (without trailing zeros), `ms` and the rest.
 fn part(text: &str) -> Result<(String, &str, &str, &str), &'static str> {
     let split = |text: &str, is_part: fn(char) -> bool| text.find(|c| !is_part(c)).unwrap_or(text.len());
     let (whole, rest) = text.split_at(split(text, |c| c.is_ascii_digit() || c == '_'));
@@ -90,7 +91,7 @@ fn fraction_ns(fraction: &str, size: i64) -> Result<i64, &'static str> {
     const NOT_WHOLE: &str = "it is no whole number of nanoseconds";
     let mut numerator = i128::from(size);
     let mut total = 0_i128;
-    // A day has 14 zeros and a few twos and fives: no whole result has more decimals than this.
+    // A day has 14 zeros and a few factors of two and five: no whole result has more decimals than this.
     if fraction.len() > 24 {
         return Err(NOT_WHOLE);
     }

@@ -52,7 +52,7 @@ impl<'n> Fields<'n> {
     }
 }
 
-/// The words a number may be written as.
+/// The words that are permitted for a number.
 pub(crate) const NUMBER_WORDS: [(&str, f64); 3] = [
     ("NaN", f64::NAN),
     ("Infinity", f64::INFINITY),
@@ -125,7 +125,7 @@ impl Reader {
         Some(fields)
     }
 
-    /// The value of a key that must be there.
+    /// The value of a required key.
     pub(super) fn require<'n>(&mut self, fields: &Fields<'n>, key: &str, what: &str) -> Option<&'n Node> {
         let node = fields.get(key);
         if node.is_none() {
@@ -210,7 +210,7 @@ impl Reader {
         value
     }
 
-    /// A number of the configuration: NaN and infinities have no meaning there.
+    /// A number of the configuration: NaN and infinities are not permitted there.
     pub(super) fn finite(&mut self, node: &Node, what: &str) -> Option<f64> {
         let value = self.number(node, what)?;
         if value.is_finite() {
@@ -232,7 +232,7 @@ impl Reader {
     /// A whole number within `range`.
     pub(super) fn whole(&mut self, node: &Node, what: &str, range: RangeInclusive<i64>) -> Option<i64> {
         let value = self.number(node, what)?;
-        // Casts saturate, and the range check below is on the float, so no value slips through.
+        // Casts saturate, and the range check below is on the float, so every wrong value is found.
         let (low, high) = (*range.start() as f64, *range.end() as f64);
         if value == value.trunc() && value >= low && value <= high {
             return Some(value as i64);
@@ -327,13 +327,14 @@ impl Reader {
         None
     }
 
-    /// The remedy for an unknown name among those `filter` takes.
+    /// The remedy for an unknown name among those that `filter` accepts.
     pub(super) fn name_help(&self, name: &str, filter: fn(&Entity) -> bool) -> Option<String> {
         self.help(name, self.names.of(filter))
     }
 
-    /// The remedy for a name that is none of `candidates`, of which there may be many. Only the first errors get one: in a
-    /// long script a slip in every line would be compared with every name.
+    /// The remedy for a name that is not one of `candidates`, of which there may be many. Only the first
+    /// errors get one: in a long script with a misspelling in every line, each would be compared with
+    /// every name.
     pub(super) fn help<'a>(
         &self,
         name: &str,

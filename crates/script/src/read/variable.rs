@@ -1,4 +1,4 @@
-//! What steps give to variables of Structured Text, and what conditions ask of them.
+//! The values that steps set in variables of Structured Text, and the tests of conditions on them.
 
 use super::Reader;
 use super::condition::Kind;
@@ -59,7 +59,8 @@ impl Reader {
         }
     }
 
-    /// A whole number that a variable holds. In digits within quotes it may be larger than a number of JSON can be.
+    /// A whole number that a variable can have. As digits in quotes it may be larger than a number of
+    /// JSON can be.
     fn variable_whole(&mut self, node: &Node, variable: &Variable, what: &str) -> Option<i128> {
         let (low, high) = variable.range()?;
         let number = match &node.json {
@@ -102,7 +103,7 @@ impl Reader {
             }
             return known.map(|(_, number)| *number);
         };
-        // `E_State#Idle` and `E_State.Idle` say the same as `Idle`.
+        // `E_State#Idle` and `E_State.Idle` mean the same as `Idle`.
         let name = text.rsplit(['#', '.']).next().unwrap_or(text);
         let known = elements
             .iter()
@@ -115,7 +116,7 @@ impl Reader {
         known.map(|(_, number)| *number)
     }
 
-    /// What a variable must be, exactly.
+    /// The exact value that a variable must have.
     pub(super) fn variable_test(&mut self, node: &Node, variable: &Variable, what: &str) -> Option<Test> {
         if let Some(elements) = variable.elements() {
             let number = self.element(node, variable, elements, what)?;
@@ -175,7 +176,7 @@ impl Reader {
         Some(Comparison::Whole(relation, number))
     }
 
-    /// What conditions know of the signal at a point.
+    /// The kind of the signal at a point, for conditions.
     pub(super) fn kind_of(&self, point: Point, ty: PinType) -> Kind {
         match (point, self.variable_at(point)) {
             (Point::Symbol(program, symbol), Some(_)) => Kind::Variable(program, symbol),

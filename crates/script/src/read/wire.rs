@@ -142,7 +142,7 @@ impl Reader {
     }
 }
 
-/// Objects at a pin are wires, but for the use of a parameter, and so are expressions.
+/// Objects at a pin are wires, except for the use of a parameter; so are expressions.
 pub(super) fn is_wire(node: &Node) -> bool {
     matches!(&node.json, Json::Text(text) if expression(text).is_some())
         || matches!(&node.json, Json::Map(members) if members.iter().all(|(key, _)| key.text != "param" && key.text != "table"))

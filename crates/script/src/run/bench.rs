@@ -21,12 +21,12 @@ use standstill_trace::{Note, Trace};
 /// The machine of a script: Standard planners over simulated drives.
 pub(crate) type ScriptMachine = Machine<Standard, ScriptDrive>;
 
-/// The number of an instance in records: 0 is nobody's, so that it can stand for the host.
+/// The number of an instance in records; 0 belongs to no instance and stands for the host.
 pub(crate) fn instance_id(index: usize) -> InstanceId {
     u16::try_from(index + 1).map_or(RUNTIME, InstanceId)
 }
 
-/// The axes and drives of a script as they stand before the first scan.
+/// The axes and drives of a script in their state before the first scan.
 pub(crate) fn machine(script: &Script) -> Result<ScriptMachine, RunError> {
     let mut machine = Machine::new();
     machine.tables_mut().clone_from(&script.tables);
@@ -66,7 +66,7 @@ fn fail(axis: usize, kind: FaultKind, code: u16, time: ScanTime, machine: &mut S
     }
 }
 
-/// The instances of a task, and its calls of guest programs: the program, and which of its calls.
+/// The instances of a task, and its calls of guest programs: the program, and the number of the call.
 type OfTask = (Vec<usize>, Vec<(usize, usize)>);
 
 /// What runs in each task.
@@ -88,10 +88,10 @@ fn by_task(script: &Script) -> Vec<OfTask> {
     tasks
 }
 
-/// Why the resource stops where an expression fails.
+/// The reason why the resource stops if an expression fails.
 const WIRE_FAULT: &str = "an expression in a wire has no value";
 
-/// What expressions see of an axis.
+/// The values of an axis that expressions see.
 fn reading(axis: &Axis<Standard>) -> Reading {
     Reading {
         state: axis.state(),
@@ -130,24 +130,24 @@ pub(crate) struct Bench<'a> {
     guests: Guests,
     formulas: Formulas,
     truths: Truths,
-    /// What expressions of a task's wire see of the axes: as they were latched.
+    /// The values of the axes that expressions in a task's wire see: as latched.
     readings: Vec<Reading>,
-    /// The scan that is being done.
+    /// The current scan.
     time: ScanTime,
     trace: Trace,
-    /// Where coordinates moved, for differences of positions.
+    /// The moves of coordinates, for differences of positions.
     shifts: Vec<Shift>,
-    /// How the cams lie that axes are on.
+    /// The places of the cams that axes are on.
     cams: Cams,
-    /// What the next latch writes after its steps.
+    /// The values that the next latch writes after its steps.
     changes: Vec<(Point, Value)>,
-    /// What the next latch makes fail after its steps, or heals.
+    /// The faults that the next latch raises or clears after its steps.
     faults: Vec<Action>,
     /// Last scan of the run, once `stop_when` has held.
     last_scan: Option<u64>,
     /// An expression in a wire had no value.
     wire_fault: bool,
-    /// What ended the run early. The executor's hooks return nothing, so it waits here.
+    /// The reason why the run ended early. The executor's hooks return nothing, so it is stored here.
     error: Option<RunError>,
 }
 
@@ -182,7 +182,7 @@ impl<'a> Bench<'a> {
         })
     }
 
-    /// Tells what went wrong in the last scan.
+    /// Returns the error of the last scan.
     pub(crate) fn check(&mut self) -> Result<(), RunError> {
         self.error.take().map_or(Ok(()), Err)
     }
@@ -259,7 +259,8 @@ impl<'a> Bench<'a> {
         self.values.read(point)
     }
 
-    /// Has the next latch make an axis or its drive fail, after its steps; without a fault the cause is gone.
+    /// The next latch makes an axis or its drive fail, after its steps; without a fault it removes the
+    /// cause.
     pub(crate) fn fail(&mut self, axis: usize, fault: Option<(FaultKind, u16)>) {
         self.faults.push(match fault {
             Some((kind, code)) => Action::Fault { axis, kind, code },
@@ -267,17 +268,17 @@ impl<'a> Bench<'a> {
         });
     }
 
-    /// Has the next latch write a value, after its steps.
+    /// The next latch writes a value, after its steps.
     pub(crate) fn change(&mut self, point: Point, value: Value) {
         self.changes.push((point, value));
     }
 
-    /// What claims are judged on.
+    /// The data for judging claims.
     pub(crate) fn into_rows(self) -> (Trace, Vec<Shift>, Truths) {
         (self.trace, self.shifts, self.truths)
     }
 
-    /// Lets go of all rows but the last few, and of what belongs to them.
+    /// Drops all rows except the last few, with their data.
     pub(crate) fn forget(&mut self) {
         self.trace.forget(ROWS_KEPT);
         let first = self.trace.first() as u64;
@@ -337,7 +338,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Writes a value where it is wanted; one that does not fit ends the run.
+    /// Writes a value to its point; a value that does not fit ends the run.
     fn write(&mut self, point: Point, value: Option<Value>, scan: u64) {
         if value.and_then(|value| self.values.write(point, value)).is_none() {
             let value = value.map_or_else(
@@ -376,7 +377,7 @@ impl Programs<Standard, ScriptDrive> for Bench<'_> {
             self.write(point, Some(value), time.scan);
         }
         self.time = time;
-        // Nobody else looks at them.
+        // No other code uses them.
         if script.tasks.iter().any(|task| task.single.is_some()) {
             self.readings.clear();
             self.readings.extend(machine.axes().iter().map(reading));
@@ -391,7 +392,7 @@ impl Programs<Standard, ScriptDrive> for Bench<'_> {
         let readings = std::mem::take(&mut self.readings);
         let computed = self.compute(single, self.time, &|axis| readings.get(axis).copied());
         self.readings = readings;
-        // What faults here stops the resource with the next program that runs.
+        // A fault here stops the resource with the next program that runs.
         computed.is_ok() && self.values.wire_bool(single).unwrap_or(false)
     }
 

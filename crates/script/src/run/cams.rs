@@ -1,4 +1,5 @@
-//! How the cams lie that axes are on, for the header of the trace: pictures draw the table's curve from it.
+//! The places of the cams that axes are on, for the header of the trace, so that pictures can draw the
+//! table's curve.
 
 use super::bench::ScriptMachine;
 use crate::model::Script;
@@ -8,9 +9,9 @@ use standstill_trace::{Cam, Trace};
 /// A curve is written at its first place of the master and at this number of further ones.
 const STEPS: u16 = 128;
 
-/// What of the last row is known, for each axis of the script.
+/// The known state after the last row, for each axis of the script.
 pub(super) struct Cams {
-    /// How its cam lies, and where in the header that is told.
+    /// The place of its cam, and its index in the header.
     known: Vec<Option<(CamLaid, Option<usize>)>>,
 }
 
@@ -22,7 +23,7 @@ impl Cams {
         }
     }
 
-    /// Tells of the cams as the last row left them. Cost: what is the same as in the row before is only compared.
+    /// Writes the cams as the last row left them. Cost: an unchanged one is only compared.
     pub(super) fn look(&mut self, machine: &mut ScriptMachine, trace: &mut Trace) {
         let Some(scan) = trace.scans().checked_sub(1) else {
             return;
@@ -43,10 +44,10 @@ impl Cams {
     }
 }
 
-/// The cam of an axis as it lies in this scan, in numbers; none if one of them is too large to draw.
+/// The cam of an axis at its place in this scan, in numbers; none if one of them is too large to draw.
 fn told(machine: &mut ScriptMachine, slave: usize, laid: CamLaid, scan: usize) -> Option<Cam> {
     let master = machine.axes().get(slave)?.coupled()?.master.index();
-    // The store is lent as a whole, so what is of the master is asked for first.
+    // The store is lent as a whole, so the values of the master are read first.
     let from = laid.turn_of(machine.axes().get(master)?);
     let cams = machine.cams();
     let cam = cams.cam(laid.cam)?;
@@ -68,7 +69,7 @@ fn told(machine: &mut ScriptMachine, slave: usize, laid: CamLaid, scan: usize) -
     (are_finite && told.begin.is_finite() && told.length.is_finite() && first.is_finite()).then_some(told)
 }
 
-/// The number with the digits that 32 bits have: enough to draw, and short as text.
+/// The number rounded to a 32-bit float: enough to draw, and short as text.
 fn rounded(place: f64) -> f64 {
     (place as f32).to_string().parse().unwrap_or(place)
 }

@@ -10,7 +10,7 @@ pub(crate) fn cells(script: &Script) -> Cells {
     Cells::new(script.axes.iter().map(|axis| axis.name.clone()))
 }
 
-/// A value as its cell reads in text; `ty` names the elements of an enum.
+/// A value in the text of its cell; `ty` names the elements of an enum.
 pub(crate) fn value_text(script: &Script, ty: Option<PinType>, value: Value) -> String {
     let mut cells = cells(script);
     let ty = ty.unwrap_or(PinType::Lreal);
@@ -18,7 +18,7 @@ pub(crate) fn value_text(script: &Script, ty: Option<PinType>, value: Value) -> 
     cell_text(cells.cell(ty, value))
 }
 
-/// A variable or pin as scripts name it.
+/// A variable or pin with its name in scripts.
 pub(crate) fn point_name(script: &Script, point: Point) -> String {
     match point {
         Point::Input(index) => script.inputs.get(index).map(|input| input.name.clone()),
@@ -35,7 +35,7 @@ pub(crate) fn point_name(script: &Script, point: Point) -> String {
     .unwrap_or_default()
 }
 
-/// The type of a variable of a guest that holds this.
+/// The type of a guest's variable with this value.
 pub(crate) fn type_of(value: Value) -> PinType {
     match value {
         Value::Bool(_) => PinType::Bool,
@@ -82,7 +82,7 @@ fn whole(value: Value) -> Option<i64> {
         Value::Time(ns) => Some(ns),
         Value::Enum(number) => Some(number.into()),
         Value::Lreal(value) => {
-            // The cast saturates, so what does not survive it there and back is no i64.
+            // The cast saturates, so a value that changes there and back is no i64.
             let cast = value as i64;
             (cast as f64 == value && cast != i64::MAX).then_some(cast)
         }

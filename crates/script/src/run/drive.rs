@@ -1,4 +1,4 @@
-//! The drive under an axis of a script: a simulated one, which a host may lead by the hand.
+//! The drive of a script's axis: a simulated one, whose position a host may override.
 
 use standstill_axis::{
     AxisConfig, Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, DriveRequest,
@@ -7,12 +7,13 @@ use standstill_axis::{
 use standstill_drives::mechanism::MechanismError;
 use standstill_drives::simulated::{DriveSetup, SimulatedDrive};
 
-/// What an axis asked of its drive, in the drive's own coordinates: MC_Home and MC_SetPosition do not move them.
+/// The order of an axis to its drive, in the drive's own coordinates: MC_Home and MC_SetPosition do not
+/// move them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ordered {
-    /// What it asks of the power stage.
+    /// The request to the power stage.
     pub request: DriveRequest,
-    /// Where the drive is to be at the end of the scan (u); it goes on past the turns of a modulo axis.
+    /// The set-point for the end of the scan (u); on a modulo axis it counts on over the turns.
     pub position: f64,
     /// With which velocity (u/s).
     pub velocity: f64,
@@ -23,13 +24,13 @@ pub struct Ordered {
 pub(crate) struct ScriptDrive {
     pub(crate) simulated: SimulatedDrive,
     scaling: Option<Scaling>,
-    /// What a host says of the position (u), in the drive's own coordinates.
+    /// The position that a host gives (u), in the drive's own coordinates.
     told: Option<f64>,
     request: DriveRequest,
-    /// The last command, in units as the axis calls them or in increments.
+    /// The last command, in units as the axis names them or in increments.
     commanded: DrivePosition,
     velocity: f64,
-    /// By how much positions are called more than at the start (u); increments never change their names.
+    /// The offset of positions from those at the start (u); increments never change their names.
     renamed: f64,
 }
 
@@ -55,12 +56,13 @@ impl ScriptDrive {
         self.told = Some(position);
     }
 
-    /// What it was told last; before the first scan where it starts.
+    /// Its last order; before the first scan its start.
     pub(crate) fn ordered(&self) -> Ordered {
         let position = match (self.commanded, self.scaling) {
             (DrivePosition::Units(position), _) => position - self.renamed,
             (DrivePosition::Increments(increments), Some(scaling)) => scaling.to_units(increments),
-            // A drive counts only under an axis with a scaling, or one increment a unit.
+            // A drive counts increments under an axis with a scaling; otherwise one increment is one
+            // unit.
             (DrivePosition::Increments(increments), None) => increments as f64,
         };
         Ordered {

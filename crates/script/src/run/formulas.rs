@@ -1,4 +1,4 @@
-//! Expressions at work: their values in wires, and on the rows of a trace.
+//! Running expressions: their values in wires, and on the rows of a trace.
 
 use super::RunError;
 use super::rows::Rows;
@@ -15,7 +15,7 @@ pub(crate) struct Formulas {
     guests: Vec<Guest>,
 }
 
-/// What an expression sees of an axis.
+/// The values of an axis that an expression sees.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reading {
     pub(crate) state: AxisState,
@@ -24,14 +24,14 @@ pub(crate) struct Reading {
     pub(crate) coupled: Option<Coupled>,
 }
 
-/// What the expressions of conditions were on each row; of the others nothing.
+/// The results of the expressions of conditions on each row; expressions of wires have none.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Truths {
-    /// The scan of the first row that is known.
+    /// The first scan with known results.
     first: u64,
     /// By expression, then by scan.
     all: Vec<Vec<bool>>,
-    /// The expression, the scan, and why it has no value.
+    /// The expression, the scan, and the reason why it has no value.
     faults: Vec<(usize, u64, String)>,
 }
 
@@ -50,7 +50,7 @@ impl Truths {
         self.all.get(formula)?.get(row).copied()
     }
 
-    /// Lets go of the rows before a scan.
+    /// Drops the rows before a scan.
     pub(crate) fn forget(&mut self, scan: u64) {
         let rows = usize::try_from(scan - self.first).unwrap_or(usize::MAX);
         for own in &mut self.all {
@@ -84,7 +84,7 @@ impl Formulas {
         Ok(Self { guests })
     }
 
-    /// The value of an expression, whose variables `source` gives.
+    /// The value of an expression; `source` returns its variables.
     ///
     /// # Errors
     /// Why it has none.
@@ -108,7 +108,7 @@ impl Formulas {
         guest.read(&formula.result).map_err(|error| error.to_string())
     }
 
-    /// What the expressions of conditions are on the row of a scan, which is there.
+    /// Evaluates the expressions of conditions on the row of a scan, which is held.
     pub(crate) fn look(&mut self, rows: &Rows<'_>, scan: u64, truths: &mut Truths) {
         let now_ns = rows.script.cycle_ns.saturating_mul(scan.cast_signed());
         for (index, _) in rows
@@ -133,11 +133,12 @@ impl Formulas {
     }
 }
 
-/// BOOL operands of an expression of which all ways are tried that they could be.
+/// Most BOOL operands of an expression for which all combinations are tried.
 const TURNED_MOST: usize = 8;
 
-/// The BOOL operands of an expression that stand in its way in a scan: of the fewest that, turned round together, make it what
-/// is `wanted`, all. Nothing where it is so already, where no turning does it, and where there are too many to try.
+/// The BOOL operands of an expression that are wrong in a scan: all operands of the smallest sets that
+/// make the expression `wanted` if inverted together. Empty if it is so already, if no set does it, or if
+/// there are too many operands to try.
 ///
 /// Cost: at most 2^[`TURNED_MOST`] evaluations.
 pub(crate) fn turned(rows: &Rows<'_>, index: usize, wanted: bool, scan: u64) -> Option<Vec<usize>> {
@@ -187,7 +188,7 @@ pub(crate) fn turned(rows: &Rows<'_>, index: usize, wanted: bool, scan: u64) -> 
     Some(places.map(|(_, place)| place).collect())
 }
 
-/// What a signal of an axis is now.
+/// The present value of an axis signal.
 pub(crate) fn of_reading(input: &FormulaInput, reading: &Reading) -> Option<Value> {
     let setpoint = &reading.setpoint;
     Some(match input.signal {
@@ -215,8 +216,8 @@ pub(crate) fn of_reading(input: &FormulaInput, reading: &Reading) -> Option<Valu
     })
 }
 
-/// The value of a variable or pin as the variable of the expression takes it; `whole` is its number, where its type is
-/// another one.
+/// The value of a variable or pin in the type of the expression's variable; `whole` is its number, if its
+/// type differs.
 pub(crate) fn of_value(input: &FormulaInput, value: Value, whole: Option<i128>) -> Value {
     match (value, whole) {
         (Value::Enum(number), _) => input.variable.of_whole(number.into()),
@@ -225,7 +226,7 @@ pub(crate) fn of_value(input: &FormulaInput, value: Value, whole: Option<i128>) 
     }
 }
 
-/// What stands in a cell as the variable of the expression takes it.
+/// The value of a cell in the type of the expression's variable.
 fn of_cell(input: &FormulaInput, cell: Cell<'_>) -> Option<Value> {
     Some(match cell {
         Cell::Bool(value) => Value::Bool(value),
@@ -239,7 +240,7 @@ fn of_cell(input: &FormulaInput, cell: Cell<'_>) -> Option<Value> {
     })
 }
 
-/// Why an expression has no value.
+/// The reason why an expression has no value.
 fn told(formula: &Formula, guest: &Guest, fault: &Fault) -> String {
     let site = guest.bits(FAULT_SITE, 4).unwrap_or_default();
     let kind = usize::try_from(site)

@@ -8,7 +8,7 @@ use standstill_guest::{Entry, Fault, Guest, Symbol, Told};
 use standstill_st::{FAULT_SITE, FAULT_VALUE, LOOP_SITE};
 use standstill_trace::{Note, Trace};
 
-/// Guests at work, in the order of the script.
+/// Running guests, in the order of the script.
 #[derive(Debug, Default)]
 pub(crate) struct Guests {
     all: Vec<Running>,
@@ -37,7 +37,7 @@ struct Running {
     /// The functions of its calls.
     entries: Vec<Entry>,
     fault: Option<Fault>,
-    /// Whether the fault stands in the trace.
+    /// Whether the fault has been written to the trace.
     told: bool,
 }
 
@@ -64,7 +64,7 @@ impl Guests {
         self.all.iter().zip(&script.programs).map(values).collect()
     }
 
-    /// How often the statements of Structured Text were executed so far.
+    /// The execution counts of the statements of Structured Text so far.
     pub(crate) fn counted(&self, script: &Script) -> Vec<Counted> {
         let mut all = Vec::new();
         for (running, program) in self.all.iter().zip(&script.programs) {
@@ -74,7 +74,7 @@ impl Guests {
                 line: counter.position.line,
                 column: counter.position.column,
                 branch: counter.branch,
-                // Memory never shrinks, so it is there.
+                // Memory never shrinks, so it exists.
                 count: running.guest.bits(counter.address, 8).unwrap_or(0),
             }));
         }
@@ -115,14 +115,14 @@ impl Guests {
             })
     }
 
-    /// Takes what stands in the symbols of a program now.
+    /// Takes the present values of a program's symbols.
     pub(crate) fn refresh(&self, index: usize, values: &mut [Value]) {
         let (Some(running), [fault, values @ ..]) = (self.all.get(index), values) else {
             return;
         };
         *fault = Value::Bool(running.fault.is_some());
         for (symbol, value) in running.symbols.iter().zip(values) {
-            // Memory never shrinks, so what was there at the start still is.
+            // Memory never shrinks, so the memory of the start still exists.
             if let Ok(now) = running.guest.read(symbol) {
                 *value = now;
             }
@@ -143,7 +143,7 @@ impl Guests {
         }
     }
 
-    /// Takes what guests told into the trace.
+    /// Takes the texts of guests into the trace.
     pub(crate) fn take_told(&mut self, script: &Script, notes: &mut Notes, trace: &mut Trace) {
         let scan = trace.scans().saturating_sub(1);
         for (running, program) in self.all.iter_mut().zip(&script.programs) {
@@ -159,7 +159,7 @@ impl Guests {
                     Told::Line(line) => note(format!("says: {line}")),
                     Told::LinesLost(lost) => note(format!("{lost} lines more are lost")),
                     Told::Made { id, key, .. } if instance(program, key).is_some() => {
-                        // It is there from the start; making it tells nothing.
+                        // It exists from the start, so creating it is no event.
                         notes.name(id.0, instance(program, key).unwrap_or_default());
                     }
                     Told::Made {
@@ -187,7 +187,7 @@ fn instance(program: &Program, key: u32) -> Option<String> {
     program.text.as_ref()?.blocks.get(&key).cloned()
 }
 
-/// Where in the sources a program faulted, and why.
+/// The place in the sources of a program's fault, and its reason.
 fn place(program: &Program, guest: &Guest, fault: &Fault) -> Option<String> {
     let text = program.text.as_ref()?;
     let site = match fault {
@@ -197,7 +197,7 @@ fn place(program: &Program, guest: &Guest, fault: &Fault) -> Option<String> {
     };
     let number = u32::try_from(guest.bits(site, 4)?).ok()?;
     let place = text.symbols.place(number)?;
-    // Notes are the same wherever the script is called from.
+    // Notes are the same from whatever folder the script is called.
     let file = place.file.strip_prefix(&text.folder).unwrap_or(&place.file);
     let (line, column) = (place.position.line, place.position.column);
     let mut says = format!("{file}:{line}:{column}: {}", place.kind.text());

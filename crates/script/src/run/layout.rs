@@ -1,4 +1,4 @@
-//! Where the signals of a script stand in a row of a trace, and the header of its own one.
+//! The columns of a script's signals in a row of a trace, and the header of its own trace.
 
 use super::cells;
 use crate::model::{Action, AxisNumber, Point, Program, Script, Symbol, Variable, WhichMaster};
@@ -14,9 +14,9 @@ use std::ops::Range;
 pub(crate) struct Layout {
     /// Columns of each axis.
     axes: Vec<Range<usize>>,
-    /// The column of what is superimposed on the law of each, if it has one.
+    /// The column of the superimposed distance of each, if it has one.
     superimposed: Vec<Option<usize>>,
-    /// That of the shadow of each, if it has one.
+    /// The column of the shadow of each, if it has one.
     shadows: Vec<Option<usize>>,
     /// First column of the input variables.
     variables: usize,
@@ -24,7 +24,7 @@ pub(crate) struct Layout {
     instances: Vec<usize>,
     /// First column of each guest program.
     programs: Vec<usize>,
-    /// Where a trace that has not all of these columns, or has others between them, has them.
+    /// The columns in a trace that lacks some of them, or has others between them.
     elsewhere: Option<Vec<Option<usize>>>,
     /// The trace is not of the script's own run.
     of_recording: bool,
@@ -78,7 +78,7 @@ impl Layout {
         }
     }
 
-    /// The columns of a script as a trace has them by name: those of the same name and kind.
+    /// The columns of a script in a trace, by name: those of the same name and kind.
     pub(crate) fn of(script: &Script, recording: &trace::Trace) -> Self {
         let place = |column: trace::Column| {
             let place = recording.column(&column.name)?;
@@ -92,7 +92,7 @@ impl Layout {
         }
     }
 
-    /// The columns of a script of which its trace has these only.
+    /// The columns of a script whose trace has only these.
     pub(crate) fn of_some(script: &Script, kept: &BTreeSet<usize>) -> Self {
         let end = kept.last().map_or(0, |last| last + 1);
         let mut places = vec![None; end];
@@ -105,7 +105,7 @@ impl Layout {
         }
     }
 
-    /// Whether the trace may begin amid motion: it is not of the script's own run.
+    /// Whether the trace may begin in motion: it is not of the script's own run.
     pub(crate) const fn is_of_recording(&self) -> bool {
         self.of_recording
     }
@@ -115,7 +115,7 @@ impl Layout {
         self.elsewhere.is_none()
     }
 
-    /// Where the trace has a column of the script.
+    /// The index of a column of the script in the trace.
     pub(super) fn place(&self, column: usize) -> Option<usize> {
         match &self.elsewhere {
             None => Some(column),
@@ -171,7 +171,7 @@ impl Layout {
     }
 }
 
-/// What a trace of the script says of itself before it has rows and verdicts.
+/// The header of the script's trace before it has rows and verdicts.
 pub(crate) fn header(script: &Script) -> trace::Header {
     trace::Header {
         runtime: env!("CARGO_PKG_VERSION").to_owned(),
@@ -207,7 +207,7 @@ pub(crate) fn header(script: &Script) -> trace::Header {
     }
 }
 
-/// The block instances, with the defaults of their pins and which inputs the script names.
+/// The block instances, with the defaults of their pins and the inputs that the script names.
 fn blocks(script: &Script) -> Vec<trace::Instance> {
     let actions = script.steps.iter().flat_map(|step| &step.actions);
     let set: BTreeSet<(usize, usize)> = actions
@@ -240,8 +240,8 @@ fn blocks(script: &Script) -> Vec<trace::Instance> {
     all
 }
 
-/// A guest program stands in a trace as an instance whose pins are its symbols. All are outputs, and zero before it writes
-/// them.
+/// A guest program is an instance in a trace, with its symbols as pins. All are outputs, and zero before
+/// it writes them.
 fn program(program: &Program) -> trace::Instance {
     let pin = |symbol: &Symbol| {
         let own = symbol.variable.as_ref().map(Variable::type_name);
@@ -272,7 +272,7 @@ fn written(program: &Program, symbol: &Symbol) -> Vec<trace::Written> {
     };
     let each = text.symbols.writers(&found).into_iter();
     each.map(|it| {
-        // The same wherever the script is called from.
+        // The same from whatever folder the script is called.
         let file = it.file.strip_prefix(&text.folder).unwrap_or(&it.file);
         trace::Written {
             at: format!("{file}:{}:{}", it.position.line, it.position.column),
@@ -282,7 +282,7 @@ fn written(program: &Program, symbol: &Symbol) -> Vec<trace::Written> {
     .collect()
 }
 
-/// What a variable of a guest has by itself.
+/// The default value of a guest's variable.
 fn zero(kind: Kind) -> Option<String> {
     let text = match kind {
         Kind::Bool => "FALSE",

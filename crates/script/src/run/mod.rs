@@ -33,7 +33,7 @@ use crate::why::Reason;
 use standstill_scan::{Executor, ProgramConfig, TaskConfig, Watchdog};
 use standstill_trace::{Claim, ClaimFailure, ClaimVerdict, Trace};
 
-/// Rows that a run may have which keeps them to be drawn.
+/// Most rows of a run that are kept for pictures.
 pub const ROWS_MAX: u64 = 1_000_000;
 
 /// Scans between two reports of progress.
@@ -42,11 +42,12 @@ const PROGRESS_EVERY: u64 = 1 << 14;
 /// What a run left.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// One row a scan; its header holds the verdicts. Of a run whose rows were given up on the way it has the last ones.
+    /// One row a scan; its header has the verdicts. If the rows of the run were dropped on the way, it
+    /// has the last ones.
     pub trace: Trace,
     /// The script's claims in file order, judged.
     pub verdicts: Vec<Verdict>,
-    /// Why claims fail, the likeliest first; empty where all hold.
+    /// The reasons why claims fail, the likeliest first; empty if all hold.
     pub why: Vec<Reason>,
     shifts: Vec<rows::Shift>,
     truths: formulas::Truths,
@@ -59,7 +60,7 @@ impl Outcome {
     }
 }
 
-/// Why a script could not be run to its end.
+/// The reason why a script could not be run to its end.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RunError {
     /// The trace would not fit.
@@ -73,12 +74,12 @@ pub enum RunError {
         /// Columns of a row.
         columns: usize,
     },
-    /// An axis cannot be set up like this.
+    /// The configuration of an axis is not valid.
     #[error("axes.{axis}: {reason}")]
     Axis {
         /// Name of the axis.
         axis: String,
-        /// What is wrong with it.
+        /// The fault of it.
         reason: String,
     },
     /// A guest program cannot be started.
@@ -89,7 +90,7 @@ pub enum RunError {
         /// What is wrong with it.
         reason: String,
     },
-    /// The tasks cannot be set up like this.
+    /// The configuration of the tasks is not valid.
     #[error("tasks: {0}")]
     Tasks(String),
     /// A pin was given a value it cannot hold.
@@ -97,7 +98,7 @@ pub enum RunError {
     Value {
         /// The scan.
         scan: u64,
-        /// The pin or task that was to take it.
+        /// The pin or task that the value was for.
         target: String,
         /// The value as text.
         value: String,
@@ -128,12 +129,12 @@ pub enum RunError {
 /// Runs a script to its end and judges its claims.
 ///
 /// # Errors
-/// [`RunError`]; a claim that fails is none, it is a verdict.
+/// [`RunError`]. A claim that fails is no error but a verdict.
 pub fn run(script: &Script) -> Result<Outcome, RunError> {
     run_with(script, |_| {})
 }
 
-/// As [`run`], telling from time to time how many scans are done.
+/// As [`run`]; reports from time to time how many scans are done.
 ///
 /// # Errors
 /// As [`run`].
@@ -148,8 +149,8 @@ pub fn run_with(script: &Script, mut progress: impl FnMut(u64)) -> Result<Outcom
     Ok(session.finish())
 }
 
-/// Whether the rows of a script's run fit into memory, and a person can look at them: at most [`ROWS_MAX`] of them with at most
-/// [`CELLS_MAX`] cells.
+/// Whether the rows of a script's run fit into memory and can be read by a person: at most [`ROWS_MAX`]
+/// of them with at most [`CELLS_MAX`] cells.
 pub fn keeps_rows(script: &Script) -> bool {
     let columns = layout::header(script).columns().len() as u64;
     script.scans <= ROWS_MAX && script.scans.saturating_mul(columns) <= CELLS_MAX
@@ -206,7 +207,7 @@ fn executor(script: &Script) -> Result<Executor, RunError> {
                 interval_ns,
                 priority: task.priority,
                 single: task.single.is_some(),
-                // Nobody counts what a script's programs take, so it is there but never fires.
+                // No code measures a script's programs, so it exists but never fires.
                 watchdog: task.watchdog.map(|sensitivity| Watchdog {
                     limit_ns: interval_ns.max(cycle_ns),
                     sensitivity,

@@ -1,5 +1,5 @@
-//! The columns that claims and steps read: what a recording must have to be judged, and all that a run has to keep whose rows
-//! nobody looks at.
+//! The columns that claims and steps read. A recording must have them to be judged, and a run without a
+//! reader needs to keep no others.
 
 use super::layout::{self, Layout};
 use crate::model::{AxisNumber, Claim, ClaimKind, Comparison, Condition, Point, Script, Signal, Test, When};
@@ -18,7 +18,7 @@ pub(super) fn columns(script: &Script, names: &[String]) -> BTreeSet<usize> {
     }
     for claim in &script.claims {
         read.extend(signals(claim));
-        // Where a recording lacks these, they are 0.
+        // If a recording lacks these, they are 0.
         if let ClaimKind::Follows { follow, .. } = &claim.kind {
             let numbers = [AxisNumber::Phase, AxisNumber::Superimposed];
             read.extend(numbers.map(|number| Signal::Axis(follow.slave, number)));
@@ -38,7 +38,7 @@ pub(super) fn columns(script: &Script, names: &[String]) -> BTreeSet<usize> {
     columns
 }
 
-/// Everything that conditions look at.
+/// All signals that conditions read.
 fn all_of<'c>(conditions: impl IntoIterator<Item = &'c Condition>, found: &mut Vec<Signal>) {
     for condition in conditions {
         found.push(condition.signal.clone());
@@ -46,7 +46,7 @@ fn all_of<'c>(conditions: impl IntoIterator<Item = &'c Condition>, found: &mut V
     }
 }
 
-/// The column a signal is taken from.
+/// The column of a signal.
 pub(super) fn column(layout: &Layout, signal: &Signal) -> Option<usize> {
     match *signal {
         Signal::Point(point) => layout.point(point),
@@ -58,7 +58,7 @@ pub(super) fn column(layout: &Layout, signal: &Signal) -> Option<usize> {
     }
 }
 
-/// Everything a claim looks at.
+/// All signals that a claim reads.
 pub(super) fn signals(claim: &Claim) -> Vec<Signal> {
     let mut found = Vec::new();
     match &claim.kind {

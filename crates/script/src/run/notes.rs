@@ -1,4 +1,4 @@
-//! What the axes recorded, as notes in the trace.
+//! The records of the axes, as notes in the trace.
 
 use super::bench::{ScriptMachine, instance_id};
 use super::rows::Shift;
@@ -8,14 +8,14 @@ use standstill_record::told::{Names, note};
 use standstill_scan::RUNTIME;
 use standstill_trace::{Note, Trace};
 
-/// The records of the scan, and what they speak of.
+/// The records of the scan, with the plans they refer to.
 #[derive(Clone, Debug)]
 pub(crate) struct Notes {
     /// Records taken from the ring so far.
     taken: u64,
     /// Those of this scan.
     records: Vec<Record>,
-    /// Those of this scan that the ring had lost before they were taken.
+    /// Records of this scan that the ring lost before they were taken.
     lost: u64,
     names: Names,
 }
@@ -54,8 +54,8 @@ impl Notes {
         self.taken = total;
     }
 
-    /// Takes this scan's records into the trace, and where coordinates moved, which claims need to know, from the axes
-    /// themselves: of a step with more records than the ring holds some are lost.
+    /// Takes this scan's records into the trace. The moves of coordinates, which claims need, come from
+    /// the axes themselves: a step with more records than the ring holds loses some.
     pub(crate) fn take(&mut self, machine: &ScriptMachine, trace: &mut Trace, shifts: &mut Vec<Shift>) {
         self.collect(machine.log());
         let (lost, records) = (std::mem::take(&mut self.lost), &self.records);
@@ -77,7 +77,7 @@ impl Notes {
                 axis: index,
                 by,
             });
-            // A trace is judged by its notes where there are no axes any more.
+            // Claims are judged by the notes of a trace when there are no axes any more.
             let left = by - told(records, axis.id());
             if lost > 0 && left != 0.0 {
                 let record = Record {
@@ -90,7 +90,7 @@ impl Notes {
             }
         }
         for (index, record) in records.iter().enumerate() {
-            // Only the last plan of an axis in a scan is still there to be told in full.
+            // Only the last plan of an axis in a scan is still available in full.
             let replaced = records
                 .iter()
                 .skip(index + 1)
@@ -107,7 +107,7 @@ impl Notes {
     }
 }
 
-/// By how much the records say that the coordinates of an axis moved (u).
+/// The shift of an axis's coordinates according to the records (u).
 fn told(records: &[Record], axis: AxisId) -> f64 {
     let own = records.iter().filter(|record| record.axis == axis);
     own.map(|record| match record.event {

@@ -12,7 +12,7 @@ use standstill_record::text::shift;
 use standstill_trace::Trace;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Why a recording cannot be judged.
+/// The reason why a recording cannot be judged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RecordingError {
     /// Its scans are of another length.
@@ -26,7 +26,7 @@ pub enum RecordingError {
         /// Of the recording (ns).
         found: u64,
     },
-    /// It lacks what claims speak of.
+    /// It lacks signals of claims.
     #[error(
         "{claim} speaks of {}, which the recording has not{}; columns go by name, as the script's own trace has them",
         .columns.join(", "),
@@ -35,21 +35,22 @@ pub enum RecordingError {
     Missing {
         /// Path of the first claim that cannot be judged.
         claim: String,
-        /// What it speaks of and the recording lacks, as columns.
+        /// The columns that it refers to and the recording lacks.
         columns: Vec<String>,
-        /// How many claims there are besides, in words.
+        /// The number of other claims, in words.
         others: String,
     },
 }
 
-/// Judges the claims of a script on a recording: what a flight recorder kept, or the trace of another run. Nothing is
-/// run; of the script its axes, blocks and variables count, by name, and its claims. Scans are rows of the recording.
+/// Judges the claims of a script on a recording: the contents of a flight recorder, or the trace of
+/// another run. Nothing is run. Only the script's axes, blocks and variables count, by name, and its
+/// claims. Scans are rows of the recording.
 ///
-/// What axes did before the first row is not known, so a difference of positions is first there in the row that has
-/// enough rows before it, and limits are looked at from there on.
+/// The motion before the first row is not known. So a difference of positions exists only from the row
+/// that has enough rows before it, and limits are checked from there on.
 ///
 /// # Errors
-/// [`RecordingError`]; a claim that fails is none, it is a verdict.
+/// [`RecordingError`]. A claim that fails is no error but a verdict.
 pub fn judge_recording(script: &Script, mut recording: Trace) -> Result<Outcome, RecordingError> {
     let (expected, found) = (script.cycle_ns.unsigned_abs(), recording.header().cycle_ns);
     if expected != found {
@@ -96,7 +97,7 @@ fn truths(script: &Script, layout: &Layout, trace: &Trace, shifts: &[Shift]) -> 
     truths
 }
 
-/// Where coordinates moved, which a trace tells in its notes.
+/// The moves of coordinates, from the notes of the trace.
 fn shifts(script: &Script, recording: &Trace) -> Vec<Shift> {
     let axes = script.axes.iter().zip(0..);
     let axes: BTreeMap<_, _> = axes.map(|(axis, index)| (axis.name.as_str(), index)).collect();

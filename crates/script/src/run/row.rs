@@ -1,5 +1,5 @@
-//! The row of a scan: what it is made of is prepared once. In a scan axes, variables, pins and symbols are taken as words, and
-//! only a cell whose word is another one than in the scan before is made anew.
+//! The row of a scan. Its structure is prepared once. In a scan, axes, variables, pins and symbols are
+//! read as words, and only cells whose word has changed are made anew.
 
 use super::bench::ScriptMachine;
 use super::cells;
@@ -12,7 +12,7 @@ use standstill_record::told::Cells;
 use standstill_record::{AXIS_WORDS, write_axis};
 use standstill_trace::{Cell, RowError, Trace};
 
-/// Words of what a slave has besides, in the order of their columns.
+/// Words of a slave in addition, in the order of their columns.
 const SLAVE_WORDS: usize = 7;
 
 /// Writes the rows of a script's run.
@@ -20,7 +20,7 @@ pub(super) struct RowWriter {
     parts: Vec<Part>,
     /// The last row.
     row: Vec<u64>,
-    /// Words of the part that is being looked at.
+    /// Words of the part that is being read.
     words: Vec<u64>,
     cells: Cells,
 }
@@ -45,7 +45,7 @@ enum Of {
 
 /// A column of the trace.
 struct Column {
-    /// Which of the words of its part it tells.
+    /// Which of the words of its part it shows.
     place: usize,
     /// What they are.
     told: Told,
@@ -59,7 +59,7 @@ enum Told {
     Symbol(usize),
 }
 
-/// What a row tells of.
+/// The source of a row.
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
     pub(super) script: &'a Script,
@@ -91,7 +91,7 @@ impl RowWriter {
         }
     }
 
-    /// Writes the row of a scan. It takes no memory but that of the trace, and for texts that were never there before.
+    /// Writes the row of a scan. It takes no memory except that of the trace, and that for new texts.
     pub(super) fn write(&mut self, source: &Source<'_>, trace: &mut Trace) -> Result<(), RowError> {
         let mut first = 0;
         for part in &mut self.parts {

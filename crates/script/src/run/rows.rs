@@ -8,8 +8,8 @@ use standstill_fb::{PinType, Value};
 use standstill_record::told::enum_number;
 use standstill_trace::{Cell, Trace};
 
-/// Rows before the next ones that conditions, claims and events may look back at: a difference of order 4, and that of the scan
-/// before, take six.
+/// Rows before the next ones that conditions, claims and events may read: a difference of order 4, and
+/// that of the last scan, take six.
 pub(super) const ROWS_KEPT: usize = 8;
 
 /// The rows of a run so far, reached by a script's signals.
@@ -29,7 +29,7 @@ pub(crate) struct Rows<'a> {
 pub(crate) struct Shift {
     pub(crate) scan: u64,
     pub(crate) axis: usize,
-    /// By how much its positions are called more from then on (u).
+    /// The shift of its positions from then on (u).
     pub(crate) by: f64,
 }
 
@@ -55,7 +55,8 @@ impl<'a> Rows<'a> {
         self.trace.cell(usize::try_from(scan).ok()?, column)
     }
 
-    /// Whether a scan is too near to the begin of a recording for the value of a signal: rows before it would tell it.
+    /// Whether a scan is too near to the begin of a recording for the value of a signal, because the
+    /// value needs earlier rows.
     pub(crate) fn too_early(&self, signal: &Signal, scan: u64) -> bool {
         match *signal {
             Signal::Difference(_, order) => self.layout.is_of_recording() && scan <= order.into(),
@@ -67,8 +68,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Published position of an axis (u) `back` scans before `scan`; before scan 0 it stood still where it
-    /// started. `None` past the end, and before the begin of a recording, which may be amid motion.
+    /// Published position of an axis (u) `back` scans before `scan`; before scan 0 it stood still where
+    /// it started. `None` past the end, and before the begin of a recording, which may be in motion.
     pub(crate) fn position(&self, axis: usize, scan: u64, back: u64) -> Option<f64> {
         let Some(scan) = scan.checked_sub(back) else {
             if self.layout.is_of_recording() {
@@ -83,11 +84,11 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Backward difference of published positions of this order (1 to 4) at `scan` over cycle^order, after
-    /// the one of the same order one scan earlier: [before, now]. On a modulo axis it is the difference of the
-    /// unwrapped positions, and coordinates that move are no motion.
+    /// Backward differences of published positions of this order (1 to 4) over cycle^order, one scan
+    /// before `scan` and at `scan`: [before, now]. On a modulo axis they are the differences of the
+    /// unwrapped positions; moves of coordinates are no motion.
     ///
-    /// Subtracts neighbours `order` times rather than weighing positions with binomial coefficients:
+    /// Subtracts neighbours `order` times instead of weighting positions with binomial coefficients:
     /// neighbours are close, so nearly every subtraction is exact.
     fn differences(&self, axis: usize, scan: u64, order: u8) -> Option<[f64; 2]> {
         let order = usize::from(order);
@@ -116,9 +117,9 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// The way of a difference of positions, the later of which is that of `back` scans before `scan`: without
-    /// what the coordinates moved in that scan, and on a modulo axis the shorter way round, since no axis goes
-    /// half a turn in a scan.
+    /// The difference between the position `back` scans before `scan` and the one before that. The move
+    /// of coordinates in that scan is removed. On a modulo axis it is the shorter way round, because no
+    /// axis goes half a turn in a scan.
     pub(crate) fn way(&self, axis: usize, scan: u64, back: u64, difference: f64) -> f64 {
         let mut difference = difference;
         if let Some(scan) = scan.checked_sub(back) {
@@ -179,7 +180,7 @@ impl<'a> Rows<'a> {
                 let Cell::Name(name) = cell else {
                     return false;
                 };
-                // What has a name is compared without making its text.
+                // A value with a name is compared without making its text.
                 match (*wanted, self.pin_type(signal)) {
                     (Value::Enum(number), Some(PinType::Enum(info))) if info.name_of(number).is_some() => {
                         info.name_of(number) == Some(name)
@@ -277,7 +278,7 @@ fn number(cell: Cell<'_>) -> Option<f64> {
     }
 }
 
-/// The same bits, but for the sign of zero and the payload of NaN, which a trace does not hold.
+/// The same bits, except for the sign of zero and the payload of NaN, which a trace does not store.
 fn same(one: f64, other: f64) -> bool {
     one == other || (one.is_nan() && other.is_nan())
 }

@@ -1,4 +1,4 @@
-//! Which steps apply in which scan.
+//! The steps that apply in each scan.
 
 use super::rows::Rows;
 use crate::model::{Script, When};
@@ -8,12 +8,12 @@ use std::collections::BinaryHeap;
 /// Most steps that may wait for their scan.
 pub(crate) const PENDING_MAX: usize = 1 << 22;
 
-/// The steps to come, and which of the conditional ones wait for their conditions.
+/// The steps to come, and the conditional ones that wait for their conditions.
 #[derive(Clone, Debug)]
 pub(crate) struct Schedule {
     /// Scans and the indices of the steps that apply then, the next one on top; steps of one scan apply in file order.
     due: BinaryHeap<Reverse<(u64, usize)>>,
-    /// Per step: it applies when its conditions hold next.
+    /// For each step: it applies when its conditions next hold.
     armed: Vec<bool>,
 }
 
@@ -47,8 +47,8 @@ impl Schedule {
         self.due.len() > PENDING_MAX
     }
 
-    /// Looks at the row of `scan`: conditions that hold on it bring their step `after` scans later than the
-    /// next latch.
+    /// Reads the row of `scan`: conditions that hold on it schedule their step `after` scans later than
+    /// the next latch.
     pub(crate) fn look(&mut self, rows: &Rows<'_>, scan: u64) {
         for (index, (step, armed)) in rows.script.steps.iter().zip(&mut self.armed).enumerate() {
             let When::Holds {
@@ -59,7 +59,7 @@ impl Schedule {
             else {
                 continue;
             };
-            // A step that applies once and has applied need not be looked at again.
+            // A step that applies once and has applied need not be checked again.
             if !*armed && !*every {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! A run that is taken scan by scan, and whose inputs may be changed on the way.
+//! A run that advances scan by scan, and whose inputs may be changed on the way.
 
 use super::bench::{self, Bench, ScriptMachine};
 use super::cells;
@@ -14,7 +14,7 @@ use standstill_fb::{Direction, PinType, Value};
 use standstill_scan::Executor;
 use standstill_trace::{Trace, shortest};
 
-/// Whether a trace of so many columns has room for the rows of a script.
+/// Whether a trace with this many columns has room for the rows of a script.
 fn fits(script: &Script, columns: usize) -> Result<(), RunError> {
     let scans = script.scans;
     if scans.saturating_mul(columns as u64) > CELLS_MAX {
@@ -23,7 +23,7 @@ fn fits(script: &Script, columns: usize) -> Result<(), RunError> {
     Ok(())
 }
 
-/// A run of a script that goes on when it is asked to.
+/// A run of a script that advances on request.
 pub struct Session<'a> {
     script: &'a Script,
     machine: ScriptMachine,
@@ -48,7 +48,7 @@ pub struct Change {
     pub point: Point,
     /// Its name in scripts.
     pub name: String,
-    /// The value as a script has it, in JSON.
+    /// The value in the JSON form of scripts.
     pub json: String,
 }
 
@@ -56,15 +56,15 @@ impl<'a> Session<'a> {
     /// A run before its first scan.
     ///
     /// # Errors
-    /// [`RunError`]: what the script asks for cannot be set up, or its rows are more than fit into one trace.
+    /// [`RunError`]: the script cannot be set up, or its rows are more than fit into one trace.
     pub fn new(script: &'a Script) -> Result<Self, RunError> {
         let session = Self::long(script)?;
         fits(script, session.trace().columns().len())?;
         Ok(session)
     }
 
-    /// As [`Session::new`], for a run whose rows nobody looks at but its claims and its steps: its trace has the columns that those
-    /// read, and those of these names. Why claims fail is not looked for.
+    /// As [`Session::new`], for a run whose rows only its claims and its steps read: its trace has the
+    /// columns that those read, and those of these names. The reasons of failed claims are not searched.
     ///
     /// # Errors
     /// Those of [`Session::new`].
@@ -78,11 +78,11 @@ impl<'a> Session<'a> {
         Ok(session)
     }
 
-    /// As [`Session::new`], for a run of any length, whose rows are looked at on the way and then given up by
+    /// As [`Session::new`], for a run of any length, whose rows are read on the way and then dropped by
     /// [`Session::forget`].
     ///
     /// # Errors
-    /// [`RunError`]: what the script asks for cannot be set up.
+    /// [`RunError`]: the script cannot be set up.
     pub fn long(script: &'a Script) -> Result<Self, RunError> {
         Self::with(script, Layout::new(script), Trace::new(layout::header(script)))
     }
@@ -102,14 +102,14 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Judges the claims on the rows that have come, then lets go of all but the last few. How claims stand on the way
-    /// ([`Session::standings`]) is not known from then on; their verdicts at the end are.
+    /// Judges the claims on the rows so far, then drops all but the last few. The state of claims on the
+    /// way ([`Session::standings`]) is not known from then on; their verdicts at the end are.
     pub fn forget(&mut self) {
         self.judges.look(&self.bench.rows());
         self.bench.forget();
     }
 
-    /// Does the next scan; FALSE if the run was over before.
+    /// Runs the next scan; FALSE if the run was over before.
     ///
     /// # Errors
     /// [`RunError`]; the run is over then.
@@ -117,11 +117,11 @@ impl<'a> Session<'a> {
         if self.over {
             return Ok(false);
         }
-        // Whatever ends this scan early ends the run.
+        // An early end of this scan ends the run.
         self.over = true;
         let scan = self.scans;
         let columns = self.trace().columns().len();
-        // The script's own scans were checked; those of a stop come on top.
+        // The script's own scans were checked; those of a stop are additional.
         if self.stopping && (scan + 1).saturating_mul(columns as u64) > CELLS_MAX {
             return Err(RunError::TooLarge {
                 scans: scan + 1,
@@ -149,17 +149,17 @@ impl<'a> Session<'a> {
         Ok(true)
     }
 
-    /// Makes room for the rows of the whole run, so that scans take no memory for them. It is at most that of
+    /// Makes room for the rows of the whole run, so that scans take no memory for them. It takes at most
     /// [`CELLS_MAX`] cells of 8 bytes.
     pub fn reserve(&mut self) {
         let left = self.script.scans.saturating_sub(self.scans);
         self.bench.reserve(usize::try_from(left).unwrap_or_default());
     }
 
-    /// Stops the programs for good: from the next scan on none is called, and every axis stops and switches off in its
-    /// configured way. [`Session::advance`] then goes on until all are off, past the script's own end, too; its steps
-    /// still apply, since what they say of drives stays true. `reason` becomes a note at the last scan. Without effect
-    /// on a run that is over or stops already.
+    /// Stops the programs for good: from the next scan on none is called, and every axis stops and
+    /// switches off in its configured way. [`Session::advance`] then continues until all are off, even
+    /// past the script's own end. Its steps still apply, because drives still need them. `reason` becomes
+    /// a note at the last scan. No effect on a run that is over or already stops.
     pub fn stop(&mut self, reason: &str) {
         if self.over || self.stopping {
             return;
@@ -178,14 +178,14 @@ impl<'a> Session<'a> {
         Some((&axis.name, on.state.name()))
     }
 
-    /// All variables of a program in Structured Text as they are now, at most 2000; none of another program. Cost: linear in
-    /// their number.
+    /// All variables of a program in Structured Text as they are now, at most 2000; none for another
+    /// program. Cost: linear in their number.
     #[must_use]
     pub fn variables(&self, program: usize) -> Vec<super::Shown> {
         self.bench.variables(program)
     }
 
-    /// How often statements of Structured Text were executed, where the script was read so that they are counted. Cost:
+    /// The execution counts of statements of Structured Text, if the script was read with counting. Cost:
     /// linear in the statements.
     #[must_use]
     pub fn counted(&self) -> Vec<super::Counted> {
@@ -210,14 +210,14 @@ impl<'a> Session<'a> {
         self.script
     }
 
-    /// The rows so far; the verdicts of claims come with [`Session::finish`].
+    /// The rows so far; [`Session::finish`] adds the verdicts of claims.
     #[must_use]
     pub fn trace(&self) -> &Trace {
         self.bench.rows().trace
     }
 
-    /// How every claim stands, in file order. Cost: proportional to the scans since the last call; at the end of the run
-    /// that of judging.
+    /// The state of every claim, in file order. Cost: proportional to the scans since the last call; at
+    /// the end of the run that of judging.
     pub fn standings(&mut self) -> &[Standing] {
         self.standings.look(&self.bench.rows(), self.over)
     }
@@ -228,7 +228,7 @@ impl<'a> Session<'a> {
         self.bench.value(point)
     }
 
-    /// The value at a point as a trace tells it; a TIME as a literal.
+    /// The value at a point in the form of a trace; a TIME as a literal.
     #[must_use]
     pub fn text(&self, point: Point) -> Option<String> {
         let value = self.value(point)?;
@@ -251,27 +251,27 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// What every claim says, in file order.
+    /// The text of every claim, in file order.
     #[must_use]
     pub fn claims(&self) -> Vec<String> {
         claims::say(&self.bench.rows())
     }
 
-    /// Writes a value, given as text, at the latch of the next scan, after the steps of the script. Values are those of
-    /// scripts: `TRUE`, numbers, `T#5ms`, names of enums.
+    /// Writes a value, given as text, at the latch of the next scan, after the steps of the script.
+    /// Values have the form of scripts: `TRUE`, numbers, `T#5ms`, names of enums.
     ///
     /// # Errors
-    /// Why it cannot be written there, for people.
+    /// The reason why it cannot be written there, for people.
     pub fn change(&mut self, point: Point, text: &str) -> Result<(), String> {
         let change = self.checked(point, text)?;
         self.enter(change);
         Ok(())
     }
 
-    /// Writes all of these as [`Session::change`] does, or none where one of them cannot be written.
+    /// Writes all of these as [`Session::change`] does, or none if one of them cannot be written.
     ///
     /// # Errors
-    /// As [`Session::change`], of the first.
+    /// As [`Session::change`], for the first one.
     pub fn change_all(&mut self, changes: &[(Point, String)]) -> Result<(), String> {
         let checked = changes.iter().map(|(point, text)| self.checked(*point, text));
         let checked: Vec<(Value, Change)> = checked.collect::<Result<_, _>>()?;
@@ -311,7 +311,7 @@ impl<'a> Session<'a> {
         Ok((value, change))
     }
 
-    /// Why a point cannot be written; `None` if it can.
+    /// The reason why a point cannot be written; `None` if it can.
     #[must_use]
     pub fn obstacle(&self, point: Point) -> Option<&'static str> {
         let (instance, pin) = match point {
@@ -351,7 +351,7 @@ impl<'a> Session<'a> {
         self.variable(point).is_some_and(Variable::is_wide)
     }
 
-    /// The value that a text stands for at a point, and as JSON.
+    /// The value of a text at a point, and as JSON.
     fn parse(&self, point: Point, text: &str) -> Result<(Value, String), String> {
         if let Some(obstacle) = self.obstacle(point) {
             return Err(obstacle.to_owned());
@@ -427,7 +427,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// The variable or pin that scripts call so; case does not count.
+    /// The variable or pin of this name in scripts; case does not count.
     #[must_use]
     pub fn point(&self, name: &str) -> Option<Point> {
         let same = |known: &str| known.eq_ignore_ascii_case(name);
@@ -470,17 +470,19 @@ impl<'a> Session<'a> {
             .collect()
     }
 
-    /// What an axis, by its place in the script, asked of its drive in the last scan; before the first one where it starts.
+    /// The order of an axis, given by its index in the script, to its drive in the last scan; before the
+    /// first one its start.
     #[must_use]
     pub fn ordered(&self, axis: usize) -> Option<Ordered> {
         Some(self.machine.drives().get(axis)?.ordered())
     }
 
-    /// Leads the drive of an axis by the hand: from the next scan on it is at this position (u), in the drive's own coordinates
-    /// (see [`Ordered`]), whatever its simulation does. Power and faults stay those of the simulation.
+    /// Overrides the position of an axis's drive, given by its index in the script: from the next scan on
+    /// it is this one (u), in the drive's own coordinates (see [`Ordered`]), whatever its simulation
+    /// does. Power and faults are still those of the simulation.
     ///
     /// # Errors
-    /// Why not, for people: it is no number, or there is no such axis.
+    /// The reason for people: it is not a number, or there is no such axis.
     pub fn lead(&mut self, axis: usize, position: f64) -> Result<(), String> {
         if !position.is_finite() {
             return Err(format!("the position is {position}: a drive is somewhere"));
@@ -490,8 +492,8 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Makes an axis or its drive fail at the latch of the next scan, as a step `fault` would; without a fault its cause is
-    /// gone, as by a step `clear`.
+    /// Makes an axis or its drive fail at the latch of the next scan, as a step `fault` does; without a
+    /// fault its cause is removed, as by a step `clear`.
     pub fn fail(&mut self, axis: usize, fault: Option<(FaultKind, u16)>) {
         self.bench.fail(axis, fault);
     }
@@ -502,7 +504,8 @@ impl<'a> Session<'a> {
         &self.changes
     }
 
-    /// Judges the claims on the rows so far. Why claims fail is only looked for where all rows are still there.
+    /// Judges the claims on the rows so far. The reasons of failed claims are searched only if all rows
+    /// are still held.
     #[must_use]
     pub fn finish(mut self) -> Outcome {
         let rows = self.bench.rows();
@@ -523,7 +526,8 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// The rows so far without judging the claims: those of a run that was stopped speak of scans that never came.
+    /// The rows so far without judging the claims: claims of a run that was stopped refer to scans that
+    /// never came.
     #[must_use]
     pub fn into_trace(self) -> Trace {
         self.bench.into_rows().0

@@ -1,24 +1,24 @@
-//! What input variables and pins hold, and what wires make of it.
+//! The values of input variables and pins, and of wires.
 
 use super::cells::{self, convert};
 use crate::model::{Point, Script, Wire};
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, PinType, Value};
 
-/// The values a script's wires read and its steps write, as they stand.
+/// The present values that a script's wires read and its steps write.
 #[derive(Clone, Debug)]
 pub(crate) struct Values {
     pub(crate) variables: Vec<Value>,
     pub(crate) instances: Vec<BlockInstance>,
-    /// Of guest programs: as they were after their last call, and what was written since.
+    /// Of guest programs: the values after their last call, and those written since.
     pub(crate) symbols: Vec<Vec<Value>>,
-    /// Of the expressions of wires, as they were read last.
+    /// Of the expressions of wires: the values read last.
     pub(crate) formulas: Vec<Option<Value>>,
 }
 
 impl Values {
     /// Variables at their initial values, pins at the script's constants. `None` if a block is not in the
-    /// registry or does not take one of the constants, which a checked script rules out.
+    /// registry or refuses one of the constants, which a checked script excludes.
     pub(crate) fn new(script: &Script) -> Option<Self> {
         let mut instances = Vec::with_capacity(script.blocks.len());
         for declared in &script.blocks {
@@ -51,7 +51,7 @@ impl Values {
         match point {
             Point::Input(index) => {
                 let variable = self.variables.get_mut(index)?;
-                // A variable keeps the type it was declared with.
+                // A variable keeps its declared type.
                 let ty = match variable {
                     Value::Bool(_) => PinType::Bool,
                     _ => PinType::Lreal,
@@ -73,7 +73,7 @@ impl Values {
         Some(())
     }
 
-    /// What a wire carries; a logical wire carries nothing if one of its points is no BOOL.
+    /// The value of a wire; a logical wire has none if one of its points is no BOOL.
     pub(crate) fn wire(&self, wire: &Wire) -> Option<Value> {
         // How many are TRUE; none if one of them is no BOOL.
         let count = |points: &[Point]| {

@@ -1,4 +1,4 @@
-//! All variables of a program in Structured Text, for those who look into a run.
+//! All variables of a program in Structured Text, for viewing a run.
 
 use crate::model::Program;
 use crate::read::time;
@@ -14,7 +14,7 @@ const MOST: usize = 2000;
 pub struct Shown {
     /// Its path: `Units[1].Mv.Done`.
     pub path: String,
-    /// As a trace shows it; TIME as a literal.
+    /// In the form of a trace; TIME as a literal.
     pub value: String,
 }
 

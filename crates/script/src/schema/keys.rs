@@ -5,7 +5,7 @@ use super::{add, required};
 use serde_json::{Map, Value, json};
 use standstill_axis::keys::{Bounds, Holds, Key, Object};
 
-/// An object of a table, with what each key means.
+/// An object of a table, with the meaning of each key.
 pub(super) fn object<T>(object: &Object<T>) -> Value {
     let property = |key: &Key<T>| {
         let mut schema = holds(key);

@@ -1,7 +1,7 @@
 //! The JSON Schema of scripts, made from the tables that the reader and the runtime use.
 //!
-//! With it an editor completes and checks keys, block names, pins and enum elements. What a schema cannot say
-//! (which names exist, the types of wires, multiples of the cycle) only the reader checks.
+//! With it an editor completes and checks keys, block names, pins and enum elements. Only the reader
+//! checks what a schema cannot express (which names exist, the types of wires, multiples of the cycle).
 
 mod keys;
 pub(crate) mod of;
@@ -18,10 +18,10 @@ use standstill_fb::{BlockInfo, Direction, PinType, TableInfo};
 
 /// The JSON Schema (draft 2020-12) of scan scripts, in the layout of [`format`](crate::format).
 ///
-/// It asks for the spelling of the tables, where the reader, like IEC 61131-3, takes any case.
+/// It requires the spelling of the tables, but the reader, like IEC 61131-3, accepts any case.
 pub fn schema() -> String {
     let mut document = document();
-    // The order of keys must not depend on which features of the JSON library other crates switch on.
+    // The order of keys must not depend on the features of the JSON library that other crates enable.
     document.sort_all_objects();
     let text = document.to_string();
     // A JSON writer made the text, so it can be laid out.
@@ -143,7 +143,7 @@ fn parts() -> Vec<(String, Value)> {
     defs.map(|(name, def)| (name.to_owned(), def)).into()
 }
 
-/// The keys of its configuration, and what an axis has besides.
+/// The keys of its configuration, and the other keys of an axis.
 fn axis() -> Value {
     let mut axis = keys::object(&AXIS);
     let others = [
@@ -156,7 +156,7 @@ fn axis() -> Value {
             add(properties, name, schema);
         }
     }
-    // Positions that come round have no end, and a CiA 402 drive counts increments.
+    // A modulo axis has no end, and a CiA 402 drive counts increments.
     add(
         &mut axis,
         "not",

@@ -1,4 +1,4 @@
-//! What a key may hold, as a schema each.
+//! The permitted values of a key, each as a schema.
 
 use super::{add, object, required};
 use crate::read::program::{FUEL_MAX, MEMORY_MAX, SYMBOL_TYPES};
@@ -52,7 +52,7 @@ pub(crate) fn names_of(each: Value) -> Value {
     json!({"type": "object", "propertyNames": definition("identifier"), "additionalProperties": each})
 }
 
-/// A count of scans in a range, or a time that may be one; above 0 a time is, too.
+/// A count of scans in a range, or a time that may be one; if the range is above 0 the time is, too.
 pub(crate) fn scans_in(least: u64, most: u64) -> Value {
     let mut time = definition("duration");
     if least > 0 {

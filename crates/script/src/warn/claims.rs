@@ -8,7 +8,7 @@ use standstill_trace::{Cell, shortest};
 
 /// Looks at every claim.
 pub(super) fn look(rows: &Rows<'_>, all: &mut Vec<Warning>) {
-    // Claims on faults of programs stand in no text of their own.
+    // Claims on faults of programs have no text of their own.
     let claims = rows
         .script
         .claims
@@ -28,7 +28,7 @@ pub(super) fn look(rows: &Rows<'_>, all: &mut Vec<Warning>) {
     }
 }
 
-/// Why a claim asks for nothing in any scan.
+/// The reason why a claim is never checked.
 fn never_asked(rows: &Rows<'_>, claim: &Claim) -> Option<String> {
     let last = rows.count().saturating_sub(1);
     let scans = |range: &Range| range.from..=range.to.unwrap_or(last).min(last);
@@ -45,7 +45,7 @@ fn never_asked(rows: &Rows<'_>, claim: &Claim) -> Option<String> {
     }
 }
 
-/// All conditions that a claim asks for, without those that say when.
+/// All conditions that a claim checks, without those that say when.
 fn conditions(kind: &ClaimKind) -> &[Condition] {
     match kind {
         ClaimKind::At(_, that)
@@ -63,7 +63,7 @@ fn conditions(kind: &ClaimKind) -> &[Condition] {
     }
 }
 
-/// Why a condition cannot change: nothing wires or sets what it looks at.
+/// The reason why a condition cannot change: nothing wires or sets its signal.
 fn constant(rows: &Rows<'_>, condition: &Condition) -> Option<String> {
     let is_constant = match condition.signal {
         Signal::Point(point) => is_constant(rows.script, point),
@@ -101,7 +101,7 @@ fn is_constant(script: &Script, point: Point) -> bool {
     is_input && !is_set
 }
 
-/// Why a tolerance lets every value pass that the signal has.
+/// The reason why a tolerance accepts every value of the signal.
 fn too_wide(rows: &Rows<'_>, condition: &Condition) -> Option<String> {
     let Test::Compare(comparisons) = &condition.test else {
         return None;

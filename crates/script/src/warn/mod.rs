@@ -1,6 +1,6 @@
-//! What is legal in a script and tests nothing, and what is changed without a word.
+//! Warnings: legal items of a script that test nothing, and values that are changed silently.
 //!
-//! Everything is read off the rows and notes of the run, after it. A warning never changes a verdict by itself.
+//! They are found from the rows and notes of the run, after it. A warning alone never changes a verdict.
 
 mod claims;
 mod subjects;
@@ -23,9 +23,9 @@ pub enum WarningKind {
     Vacuous,
     /// A value above its limit was lowered.
     Clamped,
-    /// Something in a program in Structured Text works, and is probably not meant.
+    /// An item of a program in Structured Text works, but is probably not meant.
     Doubtful,
-    /// It may be meant otherwise; no test fails for it.
+    /// It may mean something else than intended; no test fails because of it.
     Note,
 }
 
@@ -47,11 +47,11 @@ impl WarningKind {
 pub struct Warning {
     /// What it is about.
     pub kind: WarningKind,
-    /// JSON path of what it is about, such as `steps[2]`.
+    /// JSON path of its subject, such as `steps[2]`.
     pub path: String,
     /// Where that stands.
     pub span: Span,
-    /// What is the matter, one sentence without a full stop.
+    /// The problem, one sentence without a full stop.
     pub message: String,
     /// What to do about it.
     pub help: String,
@@ -69,7 +69,7 @@ impl Warning {
         }
     }
 
-    /// Whether a strict test fails for it.
+    /// Whether a strict test fails because of it.
     #[must_use]
     pub const fn counts(&self) -> bool {
         !matches!(self.kind, WarningKind::Note)
@@ -92,13 +92,13 @@ impl Warnings {
         (file(&self.files, warning.span).name(), line, column)
     }
 
-    /// Whether a strict test fails for one of them.
+    /// Whether a strict test fails because of one of them.
     #[must_use]
     pub fn count(&self) -> bool {
         self.all.iter().any(Warning::counts)
     }
 
-    /// Each that a strict test fails for, as a line with its place.
+    /// Each that makes a strict test fail, as a line with its place.
     pub fn lines(&self) -> impl Iterator<Item = String> + '_ {
         let counted = self.all.iter().filter(|warning| warning.counts());
         counted.map(|warning| {
@@ -136,12 +136,12 @@ impl fmt::Display for Warnings {
     }
 }
 
-/// What the run of a script shows to test nothing, and to be changed on its way; `has_golden` says that a golden is held
-/// against it besides.
+/// The items that test nothing according to the run, and the values that were changed in it; `has_golden`
+/// says that the run also has a golden.
 ///
-/// Of a run whose rows were given up on the way only what its text shows is told.
+/// If the rows of the run were dropped on the way, only the warnings of the script's text are found.
 ///
-/// Cost: some passes over the rows for what is suspicious, and few looks for everything else.
+/// Cost: some passes over the rows for suspicious items, and few reads for all others.
 #[must_use]
 pub fn warnings(script: &Script, outcome: &Outcome, has_golden: bool) -> Warnings {
     let mut all = Vec::new();
@@ -151,7 +151,7 @@ pub fn warnings(script: &Script, outcome: &Outcome, has_golden: bool) -> Warning
             all,
         };
     }
-    // What tests nothing shows in all rows; a shorter run of the same script has them.
+    // Whether an item tests nothing is decided by all rows; a shorter run of the same script has them.
     let has_rows = outcome.trace.first() == 0;
     rows_of(script, outcome, |rows| {
         if !has_rows {
@@ -177,7 +177,7 @@ pub fn warnings(script: &Script, outcome: &Outcome, has_golden: bool) -> Warning
         let span = Span { start: 0, end: 1 };
         all.push(Warning::vacuous("expect".to_owned(), span, message));
     }
-    // An included file is shared: what one script does not use of it, another one does.
+    // An included file is shared: an item that one script does not use, another one may.
     let own = script.files.first().map_or(0, File::after);
     all.retain(|warning| warning.kind != WarningKind::Vacuous || warning.span.start < own);
     all.sort_by_key(|warning| warning.span.start);
@@ -187,7 +187,7 @@ pub fn warnings(script: &Script, outcome: &Outcome, has_golden: bool) -> Warning
     }
 }
 
-/// Why a step was never applied.
+/// The reason why a step was never applied.
 fn not_applied(when: &When, rows: &crate::run::Rows<'_>) -> Option<String> {
     let count = rows.count();
     let last = count.saturating_sub(1);
@@ -267,7 +267,7 @@ fn doubts(script: &Script, all: &mut Vec<Warning>) {
     }
 }
 
-/// Simulated references that lie behind the search for them.
+/// Simulated references that are behind the search for them.
 fn references(script: &Script, all: &mut Vec<Warning>) {
     for axis in &script.axes {
         let homes = script.blocks.iter().any(|block| block.block.name == "MC_Home");

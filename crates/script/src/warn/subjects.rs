@@ -1,4 +1,4 @@
-//! Inputs that nobody reads, blocks that do nothing, axes that nobody commands.
+//! Inputs without a reader, blocks without effect, axes without commands.
 
 use super::Warning;
 use crate::model::{Action, Claim, ClaimKind, Condition, Instance, Point, Script, Signal, Test, When, Wire};
@@ -6,7 +6,7 @@ use crate::run::Rows;
 use standstill_trace::Cell;
 use std::collections::BTreeSet;
 
-/// Looks at every input variable, block, program and axis.
+/// Checks every input variable, block, program and axis.
 pub(super) fn look(rows: &Rows<'_>, all: &mut Vec<Warning>) {
     let script = rows.script;
     let read = read_inputs(script);
@@ -138,7 +138,7 @@ fn is_ever(rows: &Rows<'_>, point: Point) -> bool {
     (0..rows.count()).any(|scan| rows.cell(&signal, scan) == Some(Cell::Bool(true)))
 }
 
-/// Why a block has nothing to do in the whole run.
+/// The reason why a block has nothing to do in the whole run.
 fn never_commanded(rows: &Rows<'_>, index: usize, instance: &Instance) -> Option<String> {
     let triggers: Vec<(usize, &str)> = instance.triggers().collect();
     let any = triggers
@@ -155,7 +155,7 @@ fn never_commanded(rows: &Rows<'_>, index: usize, instance: &Instance) -> Option
     ))
 }
 
-/// Whether a block that does more than read has the axis, or a step or a program acts on it.
+/// Whether the axis is at a pin of a block that does more than read, or a step or a program acts on it.
 fn is_commanded(script: &Script, axis: usize) -> bool {
     let commands =
         |instance: &Instance| !instance.block.name.starts_with("MC_Read") && instance.has_axis(axis);

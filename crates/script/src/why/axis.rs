@@ -1,15 +1,15 @@
-//! Why an axis is where it is, and as it is.
+//! The reasons for the position and the state of an axis.
 
 use super::{Finding, Rank, Walk, words};
 use crate::model::{Action, AxisNumber, Point, Signal};
 use standstill_axis::{AxisState, ErrorId};
 use standstill_trace::{Cell, shortest};
 
-/// A value within this share of a limit is held by it.
+/// A value above this share of a limit is held by the limit.
 const AT_LIMIT: f64 = 0.999;
 
 impl Walk<'_> {
-    /// Why an axis is as it is in a scan.
+    /// The reason for the state of an axis in a scan.
     pub(super) fn axis(&mut self, axis: usize, scan: u64) -> Vec<Finding> {
         if !self.enter(3, axis, 0) {
             return Vec::new();
@@ -43,7 +43,7 @@ impl Walk<'_> {
                 } else if self.is_busy(instance, scan) {
                     found.push(self.follows(instance, rose, scan));
                 } else {
-                    // It may be what comes next that is missing.
+                    // The next motion may be what is missing.
                     let next = self.untriggered(&commanders, scan).into_iter();
                     found.extend(next.filter(|next| next.way.len() > 1 || next.rank != Rank::Stopped));
                     found.push(self.follows(instance, rose, scan));
@@ -77,8 +77,8 @@ impl Walk<'_> {
         found
     }
 
-    /// Of an axis that nothing has moved: two blocks that were given to another axis in one scan, one of which may be meant
-    /// for this one.
+    /// For an axis that nothing has moved: two blocks on another axis in one scan, one of which may be
+    /// meant for this axis.
     fn strayed(&mut self, axis: usize, scan: u64) -> Option<Finding> {
         let axes = 0..self.look.script().axes.len();
         let others = axes.filter(|other| *other != axis);
@@ -119,7 +119,7 @@ impl Walk<'_> {
         })
     }
 
-    /// Why those blocks have not begun that never did.
+    /// The reason why blocks that never began have not begun.
     fn untriggered(&mut self, instances: &[usize], scan: u64) -> Vec<Finding> {
         let mut found = Vec::new();
         for instance in instances.iter().copied() {
@@ -169,13 +169,13 @@ impl Walk<'_> {
         Some(Finding::new(rank, Some(entered), text))
     }
 
-    /// Whether the script itself makes the axis fail.
+    /// Whether a step of the script makes the axis fail.
     fn is_by_step(&self, axis: usize) -> bool {
         let mut actions = self.look.script().steps.iter().flat_map(|step| &step.actions);
         actions.any(|action| matches!(action, Action::Fault { axis: failing, .. } if *failing == axis))
     }
 
-    /// Refusals of blocks that no script knows: those of programs.
+    /// Refusals of blocks that the script does not have: those of programs.
     fn foreign(&self, axis: usize, scan: u64) -> Option<Finding> {
         let programs = &self.look.script().programs;
         let of_program = |subject: &str| {
@@ -193,7 +193,7 @@ impl Walk<'_> {
         Some(Finding::new(Rank::Stopped, Some(at), text).after(&way))
     }
 
-    /// Why the axis has no power in a scan; nothing if it has.
+    /// The reason why the axis has no power in a scan; nothing if it has.
     pub(super) fn unpowered(&mut self, axis: usize, scan: u64) -> Option<Finding> {
         if self.state(axis, scan) != Some(AxisState::Disabled.name()) {
             return None;
@@ -204,7 +204,7 @@ impl Walk<'_> {
         Some(found.after(&step))
     }
 
-    /// Why the power of an axis is not on.
+    /// The reason why the power of an axis is off.
     pub(super) fn power(&mut self, axis: usize, scan: u64) -> Vec<Finding> {
         let name = self.look.axis_name(axis);
         let all = self.look.script().blocks.iter().enumerate();
@@ -273,7 +273,7 @@ impl Walk<'_> {
         Some(Finding::new(Rank::Changed, Some(at), text))
     }
 
-    /// A motion that is still under way.
+    /// A motion that is still in progress.
     pub(super) fn under_way(&self, instance: usize, rose: u64, scan: u64) -> Finding {
         let mut finding = self.follows(instance, rose, scan);
         finding.rank = Rank::Slow;
@@ -307,7 +307,7 @@ impl Walk<'_> {
         finding
     }
 
-    /// What a block makes an axis do: its values, and the limit that holds it.
+    /// The values of a block's motion, and the limit that holds it.
     pub(super) fn follows(&self, instance: usize, rose: u64, scan: u64) -> Finding {
         let name = self.look.name(instance);
         let kind = self
@@ -336,7 +336,7 @@ impl Walk<'_> {
         Finding::new(Rank::Follows, Some(rose), text)
     }
 
-    /// The override that an axis has in a scan, where it is not 1.
+    /// The override of an axis in a scan, if it is not 1.
     fn slowed(&self, axis: usize, scan: u64) -> Option<String> {
         let all = self.look.script().blocks.iter().enumerate();
         let mut own = all.filter(|(_, found)| found.block.name == "MC_SetOverride" && found.has_axis(axis));
@@ -352,7 +352,7 @@ impl Walk<'_> {
         })
     }
 
-    /// What held the axis for most of the time: a limit or the Velocity of the block.
+    /// The limit that held the axis most of the time: an axis limit or the Velocity of the block.
     fn held_by(&self, axis: usize, instance: usize, from: u64, to: u64) -> Option<String> {
         let limits = self.look.rows.trace.header().axes.get(axis)?.limits;
         let name = self.look.axis_name(axis);
@@ -390,12 +390,12 @@ impl Walk<'_> {
         let shares = all
             .into_iter()
             .filter_map(|(number, bound)| bound.map(|(value, text)| (share(number, value), text)));
-        // Of those that hold equally long the one of the lower order.
+        // Of those with equal time, the one of the lower order.
         let most = shares.reduce(|best, next| if next.0 > best.0 { next } else { best })?;
         (most.0 > 0).then_some(most.1)
     }
 
-    /// Where the reference lies that a homing did not find.
+    /// The place of the reference that a homing did not find.
     pub(super) fn reference(&self, axis: usize, id: ErrorId) -> Option<String> {
         let looks = matches!(
             id,

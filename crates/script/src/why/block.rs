@@ -1,4 +1,4 @@
-//! Why the output of a block is not TRUE.
+//! The reasons why the output of a block is not TRUE.
 
 use super::{Finding, Rank, Walk, words};
 use crate::model::{Instance, Point};
@@ -6,11 +6,11 @@ use standstill_axis::{ErrorClass, ErrorId};
 use standstill_fb::Group;
 use standstill_trace::Cell;
 
-/// What is said of a command that takes the axis at once.
+/// The explanation of a command that takes the axis at once.
 const ABORTING: &str = " with BufferMode mcAborting";
 
 impl Walk<'_> {
-    /// Why an output (any, without `pin`) was not TRUE from `since` to `scan`.
+    /// The reason why an output (any, without `pin`) was not TRUE from `since` to `scan`.
     pub(super) fn block(
         &mut self,
         instance: usize,
@@ -36,7 +36,7 @@ impl Walk<'_> {
         }
     }
 
-    /// A block with Execute: not triggered, refused, aborted, waiting or under way.
+    /// A block with Execute: not triggered, refused, aborted, waiting or in progress.
     fn execute(&mut self, instance: usize, asked: Option<usize>, since: u64, scan: u64) -> Vec<Finding> {
         let Some(execute @ Point::Pin(_, trigger)) = self.look.pin(instance, "Execute") else {
             return Vec::new();
@@ -66,7 +66,7 @@ impl Walk<'_> {
             }
         }
         if !is_true(self, "Busy", scan) {
-            // It is through, and asked for once more.
+            // It has finished, and was expected once more.
             return self.feed(instance, trigger, rose + 1, scan);
         }
         if self.look.pin(instance, "Active").is_some() && !is_true(self, "Active", scan) {
@@ -75,7 +75,7 @@ impl Walk<'_> {
         vec![self.under_way(instance, rose, scan)]
     }
 
-    /// Whether a pin tells that a command has ended as it should.
+    /// Whether a pin shows that a command has ended properly.
     fn is_result(&self, point: Point) -> bool {
         !["Busy", "Active", "InVelocity", "InTorque"]
             .iter()
@@ -85,13 +85,13 @@ impl Walk<'_> {
             })
     }
 
-    /// Whether a block only tells what an axis does.
+    /// Whether a block only reads an axis.
     fn is_reader(&self, instance: usize) -> bool {
         let found = self.look.instance(instance);
         found.is_some_and(|found| found.block.name.starts_with("MC_Read"))
     }
 
-    /// Why a number at an output is another one.
+    /// The reason why a number at an output differs.
     pub(super) fn number(&mut self, instance: usize, scan: u64) -> Vec<Finding> {
         if !self.enter(4, instance, 0) {
             return Vec::new();
@@ -113,7 +113,7 @@ impl Walk<'_> {
         found
     }
 
-    /// An output that was TRUE, and is not any more.
+    /// An output that was TRUE and is not any more.
     fn passed_by(&self, instance: usize, asked: Point, came: u64, end: u64) -> Finding {
         let execute = self.look.pin(instance, "Execute");
         let fell = execute.map(|execute| {
@@ -134,7 +134,7 @@ impl Walk<'_> {
         Finding::new(Rank::Stopped, Some(came), text)
     }
 
-    /// Behind which command of the axis this one waits.
+    /// The command of the axis for which this one waits.
     fn waits(&mut self, instance: usize, rose: u64, scan: u64) -> Vec<Finding> {
         let name = self.look.name(instance);
         let axes = self.look.axes_of(instance);
@@ -213,7 +213,7 @@ impl Walk<'_> {
         vec![finding]
     }
 
-    /// A block that shows CommandAborted in a scan, and by what.
+    /// A block that shows CommandAborted in a scan, and the command that aborted it.
     pub(super) fn aborted(&mut self, instance: usize, aborted: Point, at: u64) -> Vec<Finding> {
         let name = self.look.name(instance);
         let expected = self.look.is_counted_on(aborted, at);
@@ -279,7 +279,7 @@ impl Walk<'_> {
         }
     }
 
-    /// A block that works as long as an input is TRUE.
+    /// A block that works while an input is TRUE.
     fn enabled(&mut self, instance: usize, since: u64, scan: u64) -> Vec<Finding> {
         let triggers = self.look.triggers(instance);
         let rose = triggers
@@ -330,7 +330,7 @@ impl Walk<'_> {
             .collect()
     }
 
-    /// The last input that set the block to work, and is not TRUE any more.
+    /// The last input that started the block and is no longer TRUE.
     fn let_go(&self, instance: usize, triggers: &[usize], scan: u64) -> Option<Finding> {
         let points = triggers.iter().map(|pin| Point::Pin(instance, *pin));
         let (rose, point) = points
@@ -345,7 +345,7 @@ impl Walk<'_> {
         (end < scan).then(|| Finding::new(Rank::Stopped, Some(end + 1), text))
     }
 
-    /// An output that is TRUE where it should not be, or a number that should be another.
+    /// An output that is TRUE and should not be, or a wrong number.
     pub(super) fn stands(&mut self, instance: usize, pin: usize, scan: u64) -> Vec<Finding> {
         let Some(found) = self.look.instance(instance) else {
             return Vec::new();

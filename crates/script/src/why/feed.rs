@@ -1,4 +1,4 @@
-//! Why an input did not get what it waits for: wires, steps, variables.
+//! The reasons why an input did not get its expected value: wires, steps, variables.
 
 use super::{Finding, Rank, Walk};
 use crate::model::{Action, Point, Signal, Step, When, Wire};
@@ -6,7 +6,7 @@ use crate::run::turned;
 use standstill_fb::Value;
 use standstill_trace::{Cell, cell_text};
 
-/// What a point did that is not TRUE in time.
+/// The course of a point that is not TRUE in time.
 fn missed(rose: Option<u64>, since: u64) -> String {
     match (rose, since) {
         (Some(later), _) => format!("rose only in scan {later}"),
@@ -16,7 +16,7 @@ fn missed(rose: Option<u64>, since: u64) -> String {
 }
 
 impl Walk<'_> {
-    /// Why a point was not TRUE from `since` to `scan`.
+    /// The reason why a point was not TRUE from `since` to `scan`.
     pub(super) fn point(&mut self, point: Point, since: u64, scan: u64) -> Vec<Finding> {
         match point {
             Point::Pin(instance, pin) => {
@@ -33,8 +33,8 @@ impl Walk<'_> {
         }
     }
 
-    /// Why an expression is not as it is wanted: those of its BOOL operands that would have to be the other way round, where
-    /// there are such; else everything it reads.
+    /// The reason why an expression does not have its expected value: the BOOL operands that would have
+    /// to be inverted, if there are such; otherwise all that it reads.
     pub(super) fn formula(&mut self, index: usize, wanted: bool, since: u64, scan: u64) -> Vec<Finding> {
         let script = self.look.script();
         let Some(formula) = script.formulas.get(index).filter(|_| self.enter(5, index, 0)) else {
@@ -50,7 +50,7 @@ impl Walk<'_> {
                 (signal, Some(Cell::Bool(true)), Some(true)) => {
                     found.extend(self.too_high(&formula.text, signal, scan));
                 }
-                // TRUE, and it may be meant so.
+                // It is TRUE, which may be intended.
                 (_, Some(Cell::Bool(true)), None) if since == 0 => {}
                 (Signal::Point(point), Some(Cell::Bool(_)), _) => {
                     found.extend(self.point(*point, since, scan));
@@ -61,7 +61,7 @@ impl Walk<'_> {
         found
     }
 
-    /// An operand that keeps an expression from being otherwise by being TRUE.
+    /// An operand that is TRUE and so keeps an expression from its expected value.
     fn too_high(&mut self, text: &str, signal: &Signal, scan: u64) -> Vec<Finding> {
         let Signal::Point(point) = *signal else {
             return self.standing(signal, scan);
@@ -84,13 +84,13 @@ impl Walk<'_> {
         vec![Finding::new(Rank::Stopped, Some(rose), told)]
     }
 
-    /// Why an input of a block was not TRUE.
+    /// The reason why an input of a block was not TRUE.
     pub(super) fn feed(&mut self, instance: usize, pin: usize, since: u64, scan: u64) -> Vec<Finding> {
         let input = Point::Pin(instance, pin);
         if !self.enter(0, instance, pin) {
             return Vec::new();
         }
-        // What never was at all did not fail to come again.
+        // A value that never existed did not fail to return.
         let since = if self.look.last_rise(input, scan).is_some() {
             since
         } else {
@@ -149,7 +149,7 @@ impl Walk<'_> {
         }
     }
 
-    /// A block that waits for itself. What was once on its way and stopped has another reason.
+    /// A block that waits for itself. A motion that was in progress and stopped has another reason.
     pub(super) fn ring(&self, instance: usize, since: u64) -> Option<Finding> {
         let mut way = self.path.iter().filter(|_| since == 0);
         let waits = way.find(|input| matches!(input, Point::Pin(other, _) if *other == instance))?;
@@ -158,7 +158,7 @@ impl Walk<'_> {
         Some(Finding::new(Rank::Follows, Some(since), text))
     }
 
-    /// What a wire to an input is, set off by commas: `, which is `not` enable,`; nothing where there is none.
+    /// The wire of an input, between commas: `, which is `not` enable,`; nothing if there is none.
     pub(super) fn wired(&self, instance: usize, pin: usize) -> String {
         let wire = self.look.wire(instance, pin);
         wire.map_or_else(String::new, |wire| match wire {
@@ -169,7 +169,7 @@ impl Walk<'_> {
         })
     }
 
-    /// Findings with a step in front of each; the step itself where there are none.
+    /// Findings with a step in front of each; the step itself if there are none.
     pub(super) fn behind(&self, found: Vec<Finding>, step: &str, scan: u64) -> Vec<Finding> {
         if found.is_empty() {
             return vec![Finding::new(Rank::Follows, Some(scan), step.to_owned())];
@@ -188,7 +188,7 @@ impl Walk<'_> {
             .map_or_else(|| "as it is".to_owned(), cell_text)
     }
 
-    /// Why an input that has no wire was not TRUE.
+    /// The reason why an input without a wire was not TRUE.
     fn unwired(&mut self, instance: usize, pin: usize, since: u64, scan: u64) -> Vec<Finding> {
         let point = Point::Pin(instance, pin);
         let what = self.look.called(point);
@@ -220,7 +220,7 @@ impl Walk<'_> {
         })
     }
 
-    /// Why no step set a variable or a pin in time.
+    /// The reason why no step set a variable or a pin in time.
     pub(super) fn steps(&mut self, point: Point, since: u64, scan: u64) -> Vec<Finding> {
         if !self.enter(1, usize::MAX, self.place_of(point)) {
             return Vec::new();
@@ -250,7 +250,7 @@ impl Walk<'_> {
         found
     }
 
-    /// A variable that a step set and another one set back before it was read or stayed long enough.
+    /// A variable that a step set, and another one reset before it was read or stayed long enough.
     fn set_back(&self, point: Point, step: usize, at: u64) -> Option<Finding> {
         if self.look.is_true(point, at) {
             return None;
@@ -261,7 +261,7 @@ impl Walk<'_> {
         Some(Finding::new(Rank::Stopped, Some(at), text))
     }
 
-    /// Why a step with `when` was not applied in time.
+    /// The reason why a step with `when` was not applied in time.
     fn conditional(
         &mut self,
         step: usize,
@@ -296,7 +296,8 @@ impl Walk<'_> {
         found
     }
 
-    /// Why conditions never held together: what kept the last of them, in the last scan in which all the others held.
+    /// The reason why conditions never held together: what kept the last of them FALSE, in the last scan
+    /// in which all others held.
     fn apart(
         &mut self,
         point: Point,
@@ -318,7 +319,7 @@ impl Walk<'_> {
         self.behind(found, way, scan)
     }
 
-    /// Who writes a variable that has no block behind it.
+    /// The writer of a variable that has no block behind it.
     pub(super) fn written(&mut self, point: Point, scan: u64) -> Option<Finding> {
         let name = self.look.called(point);
         if let Point::Symbol(program, symbol) = point {

@@ -1,4 +1,4 @@
-//! What the walk reads off rows, notes and the script.
+//! The reads of rows, notes and the script by the search for reasons.
 
 use super::words;
 use crate::claims::Verdict;
@@ -11,11 +11,11 @@ use standstill_trace::{Cell, Note, cell_text};
 use std::cell::Cell as Counter;
 use std::rc::Rc;
 
-/// A look at a run.
+/// Access to a run.
 #[derive(Clone)]
 pub(super) struct Look<'a> {
     pub(super) rows: Rows<'a>,
-    /// Points and scans at which claims that hold, or steps, count on something being TRUE.
+    /// Points and scans at which claims that hold, or steps, need something to be TRUE.
     counted_on: Rc<Vec<(Point, u64)>>,
     /// Looks that are left.
     left: Rc<Counter<u64>>,
@@ -37,12 +37,12 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// Counts looks at the trace.
+    /// Counts reads of the trace.
     fn spend(&self, looks: u64) {
         self.left.set(self.left.get().saturating_sub(looks));
     }
 
-    /// Whether all looks are used up.
+    /// Whether all reads are used up.
     pub(super) fn is_spent(&self) -> bool {
         self.left.get() == 0
     }
@@ -108,7 +108,7 @@ impl<'a> Look<'a> {
         self.of(&Signal::Point(point), scan)
     }
 
-    /// What a signal is in a scan.
+    /// The value of a signal in a scan.
     pub(super) fn of(&self, signal: &Signal, scan: u64) -> Option<Cell<'a>> {
         self.spend(1);
         self.rows.cell(signal, scan)
@@ -218,7 +218,7 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// Whether the script's author counts on this point being TRUE from `scan` on.
+    /// Whether the script's author needs this point to be TRUE from `scan` on.
     pub(super) fn is_counted_on(&self, point: Point, scan: u64) -> bool {
         let end = self.end_of(point, scan);
         let mut all = self.counted_on.iter();
@@ -248,7 +248,7 @@ impl<'a> Look<'a> {
         told.collect::<Vec<_>>().join(", ")
     }
 
-    /// Refusals, faults, clamps and raises up to a scan, as lines: what stands near any reason.
+    /// Refusals, faults, clamps and raises up to a scan, as lines: context for any reason.
     pub(super) fn told_by(&self, latest: u64) -> Vec<(u64, String)> {
         let notes = self.rows.trace.notes().iter();
         let notes = notes.take_while(|note| note.scan as u64 <= latest);
@@ -267,7 +267,7 @@ impl<'a> Look<'a> {
     }
 }
 
-/// What claims that hold, and steps, count on.
+/// The points that claims that hold, and steps, need.
 fn counted_on(rows: &Rows<'_>, verdicts: &[Verdict]) -> Vec<(Point, u64)> {
     let mut counted = Vec::new();
     let mut add = |conditions: &[Condition], scan: u64| {

@@ -1,7 +1,9 @@
-//! Why claims fail: the way from a failing claim back through wires, blocks, axes and steps, to where it stopped.
+//! The reasons why claims fail: a walk from a failing claim back through wires, blocks, axes and steps to
+//! the place where the process stopped.
 //!
-//! Everything is read off the rows and notes of the run, after it: a run whose claims hold pays nothing. No golden is
-//! needed. The first reason is the likeliest; where a run stops for one reason, the others are what stands near it.
+//! It reads the rows and notes of the run, after it, so a run whose claims hold pays nothing. No golden
+//! is needed. The first reason is the likeliest. If a run stops for one reason, the others are its
+//! context.
 
 mod axis;
 mod block;
@@ -23,43 +25,43 @@ const TOLD_MOST: usize = 6;
 /// Blocks, axes and wires that the walk from one claim visits at most.
 const VISITS_MOST: usize = 2_000;
 
-/// Inputs on one way back from a claim at most: so long may a chain of blocks be.
+/// Most inputs on one way back from a claim: the longest chain of blocks.
 const DEPTH_MOST: usize = 250;
 
-/// Failing claims that are walked back from at most.
+/// Most failing claims from which a walk starts.
 const CLAIMS_MOST: usize = 20;
 
-/// Cells and notes that all walks of a run look at, at most, before they end: so many, and [`PASSES_MOST`] for each row.
+/// Most cells and notes that all walks of a run read: this many, and [`PASSES_MOST`] for each row.
 const LOOKS_MOST: u64 = 50_000_000;
 
 /// See [`LOOKS_MOST`].
 const PASSES_MOST: u64 = 40;
 
-/// One thing that may be behind a failing test.
+/// A possible reason for a failing test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reason {
-    /// The scan it shows in first.
+    /// The first scan in which it shows.
     pub scan: Option<u64>,
-    /// What happened there, how it leads to the claim, and what to do about it, in one line.
+    /// The event, how it leads to the claim, and what to do about it, in one line.
     pub text: String,
     /// Paths of the failing claims it was found from.
     pub claims: Vec<String>,
 }
 
-/// How much a finding explains; the first explains most.
+/// How much a finding explains; the first rank explains most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Rank {
-    /// A wire is read one scan late, and the claim is missed by as much.
+    /// A wire is read one scan late, and the claim is missed by the same time.
     Order,
-    /// Here it went no further.
+    /// The process stopped here.
     Stopped,
-    /// A value was changed on its way.
+    /// A value was changed on the way.
     Changed,
-    /// It goes on, too slowly.
+    /// It continues, but too slowly.
     Slow,
     /// What the signal follows.
     Follows,
-    /// What the script's author counts on.
+    /// The expectation of the script's author.
     Expected,
 }
 
@@ -89,7 +91,7 @@ impl Finding {
         self
     }
 
-    /// The way, shortened in the middle, and what it leads to.
+    /// The way, shortened in the middle, and its end.
     fn line(&self) -> String {
         let mut parts: Vec<&str> = self.way.iter().map(String::as_str).collect();
         if parts.len() > 4 {
@@ -100,7 +102,7 @@ impl Finding {
     }
 }
 
-/// What a claim asks of a row.
+/// The requirement of a claim on a row.
 #[derive(Clone, Copy)]
 enum Asked<'c> {
     /// This condition must hold, and does not.
@@ -130,7 +132,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Whether this place is new, and there may be more.
+    /// Whether this place is new, and more places are permitted.
     fn enter(&mut self, kind: u8, place: usize, inner: usize) -> bool {
         self.visited.len() < VISITS_MOST
             && self.path.len() < DEPTH_MOST
@@ -138,7 +140,7 @@ impl<'a> Walk<'a> {
             && self.visited.insert((kind, place, inner))
     }
 
-    /// What `behind` finds, which is one step further on than `input`.
+    /// The findings of `behind`, which is one step further than `input`.
     fn deeper(&mut self, input: Point, behind: impl FnOnce(&mut Self) -> Vec<Finding>) -> Vec<Finding> {
         self.path.push(input);
         let found = behind(self);
@@ -160,7 +162,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Why a condition does not hold by `scan`, having been asked for since `since`.
+    /// The reason why a condition does not hold by `scan`, although it was required since `since`.
     fn condition(&mut self, condition: &Condition, since: u64, scan: u64) -> Vec<Finding> {
         match condition.signal {
             Signal::Point(Point::Pin(instance, pin)) if look::wants_false(condition) => {
@@ -178,7 +180,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Why a signal is as it is, where it should be otherwise.
+    /// The reason for the value of a signal that should be different.
     pub(super) fn standing(&mut self, signal: &Signal, scan: u64) -> Vec<Finding> {
         match *signal {
             Signal::Point(Point::Pin(instance, pin)) => self.stands(instance, pin, scan),
@@ -192,10 +194,11 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Why the failing claims fail, the likeliest reason first; nothing where all hold.
+/// The reasons why the failing claims fail, the likeliest first; empty if all hold.
 ///
-/// Cost: a constant number of passes over the rows for each of the blocks and axes that lead to a failing claim, and at most
-/// [`LOOKS_MOST`] looks and [`PASSES_MOST`] for each row in all, and one pass; where that is used up the walk ends.
+/// Cost: for each block and axis that leads to a failing claim, a constant number of passes over the
+/// rows. In all at most [`LOOKS_MOST`] reads, [`PASSES_MOST`] for each row, and one pass. When these are
+/// used up the walk ends.
 pub(crate) fn why(rows: &Rows<'_>, verdicts: &[Verdict]) -> Vec<Reason> {
     if verdicts.iter().all(Verdict::passed) || rows.count() == 0 {
         return Vec::new();
@@ -206,7 +209,7 @@ pub(crate) fn why(rows: &Rows<'_>, verdicts: &[Verdict]) -> Vec<Reason> {
     let failing = failing.filter(|(_, verdict)| !verdict.passed()).take(CLAIMS_MOST);
     let mut latest = 0;
     for (claim, verdict) in failing {
-        // The first claims say most.
+        // The first claims have most information.
         if look.is_spent() {
             break;
         }
@@ -216,9 +219,9 @@ pub(crate) fn why(rows: &Rows<'_>, verdicts: &[Verdict]) -> Vec<Reason> {
             found.extend(findings.into_iter().map(|finding| (finding, claim.path.as_str())));
         }
     }
-    // In file order where they explain as much and show in the same scan.
+    // In file order if they explain as much and show in the same scan.
     found.sort_by_key(|(finding, _)| {
-        // What goes on too slowly and what a signal follows are told as they come.
+        // Slow motions and the signals that follow others are listed in the order found.
         let class = match finding.rank {
             Rank::Follows => Rank::Slow,
             rank => rank,
@@ -228,7 +231,7 @@ pub(crate) fn why(rows: &Rows<'_>, verdicts: &[Verdict]) -> Vec<Reason> {
     let mut reasons: Vec<Reason> = Vec::new();
     let mut ends: Vec<String> = Vec::new();
     for (finding, claim) in found {
-        // What a block makes an axis do is told once.
+        // The motion of an axis by a block is listed once.
         let key = match (finding.rank, finding.text.split_once(") ")) {
             (Rank::Follows | Rank::Slow, Some((who, _))) => who.to_owned(),
             _ => finding.text.clone(),
@@ -267,7 +270,7 @@ pub(crate) fn why(rows: &Rows<'_>, verdicts: &[Verdict]) -> Vec<Reason> {
     reasons
 }
 
-/// What a failing claim asked for, since when, and in which scan it was missed.
+/// The requirement of a failing claim, since when, and the scan in which it was missed.
 fn targets<'c>(rows: &Rows<'_>, claim: &'c Claim, verdict: &Verdict) -> Vec<(Asked<'c>, u64, u64)> {
     let last = rows.count().saturating_sub(1);
     let shown = verdict.failures.iter().filter_map(|failure| failure.scan).min();

@@ -1,19 +1,19 @@
-//! Wires that are read one scan late, because their block is called later.
+//! Wires that are read one scan late, because the block that they read is called later.
 
 use super::{Finding, Rank, Walk};
 use crate::model::{Condition, Point, Signal, Wire};
 
-/// A claim that is missed by more scans is not missed because of the order of calls.
+/// A claim that is missed by more scans has another reason than the order of calls.
 const LATE_MOST: u64 = 3;
 
-/// Wires that one chain of cause and effect is followed through at most.
+/// Most wires through which one chain of cause and effect is followed.
 const WIRES_MOST: usize = 32;
 
-/// Wires that are told of what brought an edge about.
+/// Most wires that are listed for the cause of an edge.
 const TOLD_MOST: usize = 2;
 
 impl Walk<'_> {
-    /// The wire that is read late, where a condition comes true as late as that.
+    /// The wire that is read late, if a condition becomes true late by the same time.
     pub(super) fn late(&self, condition: &Condition, scan: u64) -> Option<Finding> {
         let rows = &self.look.rows;
         let came = (scan + 1..=scan + LATE_MOST).find(|&scan| rows.holds(condition, scan))?;
@@ -53,7 +53,7 @@ impl Walk<'_> {
         Some(Finding::new(Rank::Order, Some(scan), text))
     }
 
-    /// The points that a signal follows: itself, or the edges given to its axis.
+    /// The points that a signal depends on: itself, or the edges given to its axis.
     fn causes(&self, signal: &Signal, scan: u64) -> Vec<Point> {
         match *signal {
             Signal::Point(point) => vec![point],
@@ -82,8 +82,8 @@ impl Walk<'_> {
         }
     }
 
-    /// The wire whose edge brought about that a point is as it is in a scan: the input it feeds, what it reads, and when that
-    /// rose.
+    /// The wire whose edge caused the value of a point in a scan: the input it feeds, its source, and
+    /// when that rose.
     fn edge_behind(&self, point: Point, scan: u64) -> Option<(usize, usize, Point, u64)> {
         let Point::Pin(instance, pin) = point else {
             return None;
@@ -109,7 +109,8 @@ impl Walk<'_> {
 }
 
 impl Walk<'_> {
-    /// How an input came to rise, a phrase a wire: `back.Execute is held.Q, held.IN is not press.InTorque`.
+    /// How an input rose, a phrase for each wire:
+    /// `back.Execute is held.Q, held.IN is not press.InTorque`.
     pub(super) fn brought_by(&self, instance: usize, scan: u64) -> String {
         let mut told = Vec::new();
         let triggers = self.look.triggers(instance).into_iter();

@@ -1,4 +1,4 @@
-//! Why the output of a timer, counter, latch or edge detector is not TRUE.
+//! The reasons why the output of a timer, counter, latch or edge detector is not TRUE.
 
 use super::{Finding, Rank, Walk, words};
 use crate::model::{Point, Wire};
@@ -44,7 +44,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Why an output that a wire reads fell, if it did because its block's Execute had fallen.
+    /// The reason why an output that a wire reads fell, if its block's Execute had fallen.
     fn source_fell(&self, instance: usize, pin: usize, end: u64) -> Option<String> {
         let Some(Wire::From(Point::Pin(other, of))) = self.look.wire(instance, pin) else {
             return None;
@@ -61,7 +61,7 @@ impl Walk<'_> {
         })
     }
 
-    /// Any other standard block: what it still waits for.
+    /// Any other standard block: the input it still waits for.
     pub(super) fn standard(
         &mut self,
         instance: usize,

@@ -2,8 +2,8 @@
 
 use standstill_axis::ErrorId;
 
-/// An error with its remedy: `201 NotPowered: switch it on with MC_Power and wait for Status`. `told` are its number, its name
-/// and what else is known.
+/// An error with its remedy: `201 NotPowered: switch it on with MC_Power and wait for Status`. `told` has
+/// its number, its name and other known facts.
 pub(super) fn error(told: &str, id: ErrorId) -> String {
     format!("{told}: {}", phrase(id.remedy()))
 }
@@ -26,7 +26,7 @@ pub(super) fn error_of(told: &str) -> Option<ErrorId> {
     ErrorId::from_number(number.parse().ok()?)
 }
 
-/// A note as a line of its own, if it tells of a refusal, a fault or a value that was changed.
+/// A note as a line of its own, if it reports a refusal, a fault or a changed value.
 pub(super) fn noted(subject: &str, scan: u64, text: &str) -> Option<String> {
     if let Some(told) = text.strip_prefix("refused: ") {
         return Some(format!(
@@ -43,7 +43,7 @@ pub(super) fn noted(subject: &str, scan: u64, text: &str) -> Option<String> {
     changed(subject, scan, text)
 }
 
-/// `move.Velocity was clamped in scan 5: 25000.0 to 50.0`, with what may be behind it.
+/// `move.Velocity was clamped in scan 5: 25000.0 to 50.0`, with the likely cause.
 pub(super) fn changed(subject: &str, scan: u64, text: &str) -> Option<String> {
     let (how, told) = text.split_once(": ")?;
     if !matches!(how, "clamped" | "raised" | "slowed") {
@@ -62,7 +62,7 @@ pub(super) fn changed(subject: &str, scan: u64, text: &str) -> Option<String> {
     ))
 }
 
-/// A velocity sixty times too large is one for a minute.
+/// A velocity sixty times too large is probably per minute.
 fn per_minute(pin: &str, from: &str, to: &str) -> String {
     let numbers = from.parse::<f64>().ok().zip(to.parse::<f64>().ok());
     match numbers {

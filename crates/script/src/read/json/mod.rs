@@ -1,7 +1,7 @@
 //! Strict JSON (RFC 8259) with the place of every token.
 //!
-//! Our own, because messages need the place of keys and of values and the exact reason, and because the
-//! libraries at hand either give no places or also take what strict JSON refuses.
+//! Our own reader, because messages need the places of keys and values and the exact reason. Available
+//! libraries either give no places or also accept text that strict JSON refuses.
 
 mod string;
 
@@ -10,7 +10,7 @@ use crate::model::Span;
 use crate::read::hints;
 use std::collections::BTreeMap;
 
-/// Deepest nesting of objects and lists; scripts need about 8. It bounds the reader's own recursion.
+/// Deepest nesting of objects and lists; scripts need about 8. It bounds the recursion of the reader.
 pub(crate) const DEPTH_MAX: usize = 64;
 
 /// A value and its place.
@@ -39,7 +39,7 @@ pub(crate) struct Key {
 }
 
 impl Json {
-    /// What it is, in words.
+    /// Its kind in words.
     pub(crate) fn kind(&self) -> &'static str {
         match self {
             Self::Null => "null",
@@ -90,7 +90,7 @@ impl<'a> Parser<'a> {
         self.at += rest.len() - rest.trim_start_matches([' ', '\t', '\r', '\n']).len();
     }
 
-    /// Takes `token` if it stands here.
+    /// Takes `token` if it is here.
     fn take(&mut self, token: &str) -> bool {
         let there = self.rest().starts_with(token);
         if there {
@@ -184,7 +184,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// What stands where a key is wanted; after a number it may be what follows a decimal comma.
+    /// The text in place of a key; after a number it may be the rest of a decimal comma.
     fn no_key(&self, last: Option<&(Key, Node)>) -> Diagnostic {
         let diagnostic = self.unexpected("a key in double quotes");
         let digits = &self.rest()[..self
@@ -216,7 +216,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// After a member: takes `,` and says false, or takes `close` and says true.
+    /// After a member: takes `,` and returns FALSE, or takes `close` and returns TRUE.
     fn next_or_close(&mut self, close: &str, open: usize) -> Result<bool, Diagnostic> {
         self.skip_space();
         if self.take(close) {
