@@ -5,11 +5,11 @@ use standstill_axis::Planner;
 use standstill_fb::{Context, Value};
 use std::convert::Infallible;
 
-/// A program, of which there is none.
+/// The program type of this build, without values.
 #[derive(Clone, Debug)]
 pub struct Program(Infallible);
 
-/// A guest, of which there is none.
+/// The guest type of this build, without values.
 #[derive(Debug)]
 pub struct Guest(Infallible);
 
@@ -48,7 +48,7 @@ impl Program {
 
 #[allow(clippy::missing_errors_doc)]
 impl Guest {
-    /// Never called, like all that follow.
+    /// Never called, and neither are the functions that follow.
     pub fn scan<P: Planner>(&mut self, _: &mut Context<'_, P>) -> Result<u64, Fault> {
         match self.0 {}
     }

@@ -1,7 +1,8 @@
-//! The interpreter. Nothing outside this module names it.
+//! The interpreter. No code outside this module names it.
 //!
-//! A host function needs what a block may touch, which is borrowed for one scan only, and what the interpreter holds
-//! lives longer. So the scan lends it to [`crate::tick`], where the functions find it.
+//! A host function needs the context of a block, which is borrowed for one scan only, but the
+//! interpreter's data live longer. So the scan lends the context to [`crate::tick`], where the functions
+//! find it.
 
 use crate::host::{FUNCTIONS, FUNCTIONS_OF_TWO, Host, Import};
 use crate::tick::TICK;
@@ -38,15 +39,15 @@ fn stop(fault: Box<Fault>) -> Error {
     Error::host(Stop(fault))
 }
 
-/// What the interpreter keeps for the functions of a guest.
+/// The data that the interpreter keeps for the functions of a guest.
 struct Own {
     limits: StoreLimits,
     host: Host,
-    /// There is none only while the guest is made, when it cannot call.
+    /// `None` only while the guest is made, when it cannot call.
     memory: Option<Memory>,
 }
 
-/// The guest's memory, and what its functions work on.
+/// The guest's memory, and the data of its functions.
 #[inline]
 fn open<'c>(caller: &'c mut Caller<'_, Own>) -> (&'c mut [u8], &'c mut Host) {
     match caller.data().memory {
@@ -94,7 +95,7 @@ impl Module {
         }
         let mut config = Config::default();
         config
-            // Lazy compilation would take the fuel of the first scan.
+            // Lazy compilation would use the fuel of the first scan.
             .compilation_mode(CompilationMode::Eager)
             .consume_fuel(true)
             .allow_start_fn(false)
@@ -193,7 +194,7 @@ impl fmt::Debug for Machine {
     }
 }
 
-/// What stands in the exported variables that are no memory.
+/// The values of the exported variables that are not memory.
 pub(crate) type Globals = Vec<(String, Number)>;
 
 /// A number of the interpreter.
@@ -260,14 +261,14 @@ impl Machine {
         self.memory.data_mut(&mut self.store)
     }
 
-    /// Makes the memory this large, if it is smaller.
+    /// Grows the memory to this size, if it is smaller.
     pub(crate) fn grow_to(&mut self, bytes: usize) {
         let pages = bytes.saturating_sub(self.memory().len()) as u64 / PAGE;
-        // Where it does not fit the copy into it is short, which the caller looks at.
+        // If it does not fit, the copy into it is short, which the caller checks.
         let _size = self.memory.grow(&mut self.store, pages);
     }
 
-    /// What an exported constant or variable of type i32 holds.
+    /// The value of an exported constant or variable of type i32.
     pub(crate) fn address_of(&self, name: &str) -> Option<u32> {
         let global = self.instance.get_global(&self.store, name)?;
         Some(global.get(&self.store).i32()?.cast_unsigned())
@@ -303,7 +304,7 @@ impl Machine {
                 Number::F64(bits) => Val::F64(f64::from_bits(bits).into()),
             };
             if let Some(global) = self.instance.get_global(&self.store, name) {
-                // Of the same module, so of the same type.
+                // Of the same module, and so of the same type.
                 let _same = global.set(&mut self.store, value);
             }
         }
@@ -320,14 +321,14 @@ impl Machine {
             .map_err(|error| fault(&error, fuel))
     }
 
-    /// Makes an exported function of the type of `plc_scan` one that can be called; gives its number.
+    /// Makes an exported function of the type of `plc_scan` callable; returns its number.
     pub(crate) fn entry(&mut self, name: &str) -> Option<usize> {
         let function = self.instance.get_typed_func(&self.store, name).ok()?;
         self.entries.push(function);
         Some(self.entries.len() - 1)
     }
 
-    /// Calls a function, `plc_scan` is number 0, with a budget of `fuel`. Gives the fuel that was used.
+    /// Calls function number `entry` (`plc_scan` is 0) with a budget of `fuel`. Returns the fuel used.
     #[inline]
     pub(crate) fn scan(
         &mut self,
@@ -353,8 +354,8 @@ impl Machine {
 
 macro_rules! blocks {
     ($($group:ident :: $name:ident :: $block:ident)*) => {
-        /// What makes the functions of the blocks known, in the order of the registry: a closure for each, which calls
-        /// its block without a detour.
+        /// Links the functions of the blocks, in the order of the registry: a closure for each, which
+        /// calls its block directly.
         const LINK: &[Link] = &[$(|linker, from, name| {
             let function = |mut caller: Caller<'_, Own>, key: u32, inputs: u32, outputs: u32| {
                 let (memory, host) = open(&mut caller);
@@ -366,7 +367,7 @@ macro_rules! blocks {
     };
 }
 
-/// Every NaN of a guest is the same one.
+/// All NaNs of a guest are made equal.
 fn one_nan(number: f64) -> f64 {
     if number.is_nan() { f64::NAN } else { number }
 }

@@ -1,8 +1,8 @@
-//! Why a module is no guest, and what a guest did wrong.
+//! The reasons why a module is no guest, and the faults of guests.
 
 use std::fmt;
 
-/// Why a module cannot be used as a guest.
+/// The reason why a module cannot be used as a guest.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LoadError {
     /// There is no interpreter in this build.
@@ -16,17 +16,17 @@ pub enum LoadError {
         /// What is permitted.
         most: usize,
     },
-    /// No module, or one with features or sizes that are not permitted.
+    /// Not a module, or one with features or sizes that are not permitted.
     #[error("it is no module of WebAssembly that can be used here: {0}")]
     Module(String),
-    /// An import that nobody offers.
+    /// An import that the host does not have.
     #[error("it imports `{module}` `{name}`, which does not exist here{hint}")]
     Import {
         /// Module of the import.
         module: String,
         /// Its name.
         name: String,
-        /// What may be meant, from the first character on.
+        /// The probable meaning, from the first character on.
         hint: String,
     },
     /// An import or export of another type than that in the list of imports.
@@ -45,7 +45,7 @@ pub enum LoadError {
         /// What it must be.
         wanted: &'static str,
     },
-    /// Its memory begins larger than it may ever be.
+    /// Its memory begins larger than its limit.
     #[error(
         "its memory begins with {bytes} bytes, more than the {most} permitted: raise the limit of memory, or build \
          it with less"
@@ -66,10 +66,10 @@ pub enum LoadError {
     },
 }
 
-/// What a guest did wrong at work. It does not run again.
+/// A fault of a guest in a call. It does not run again.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// It did not come to its end within its budget of instructions.
+    /// It did not end within its budget of instructions.
     Fuel {
         /// The budget.
         most: u64,
@@ -89,7 +89,7 @@ pub enum Fault {
         /// Bytes of the memory.
         memory: u64,
     },
-    /// The interpreter refused to go on.
+    /// The interpreter refused to continue.
     Other(String),
     /// It had a fault before.
     Over,

@@ -32,10 +32,10 @@ pub struct Guest {
     faulted: bool,
 }
 
-/// A guest as it stood between two scans: its memory, the block instances it has, and its exported variables.
+/// The state of a guest between two scans: its memory, its block instances, and its exported variables.
 ///
-/// Variables of WebAssembly itself (globals) that are not exported are not in it; compilers keep the stack pointer there,
-/// which between scans is where it was at the start.
+/// WebAssembly variables (globals) that are not exported are not included. Compilers keep the stack
+/// pointer there, which between scans has its initial value.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
     memory: Vec<u8>,
@@ -49,7 +49,7 @@ impl Program {
     /// Checks and compiles a module, in its binary form or as text. Cost: proportional to the bytes.
     ///
     /// # Errors
-    /// [`LoadError`]: what is wrong with it.
+    /// [`LoadError`]: the fault.
     pub fn compile(bytes: &[u8], settings: Settings) -> Result<Self, LoadError> {
         Ok(Self {
             module: Module::compile(bytes, &settings)?,
@@ -57,7 +57,7 @@ impl Program {
         })
     }
 
-    /// What its guests may use up.
+    /// The limits of its guests.
     #[must_use]
     pub const fn settings(&self) -> &Settings {
         &self.settings
@@ -67,7 +67,7 @@ impl Program {
     /// [`Code::NotInTick`](crate::Code::NotInTick).
     ///
     /// # Errors
-    /// [`LoadError`]: memory that is not there, or a fault of these two.
+    /// [`LoadError`]: not enough memory, or a fault in these two.
     pub fn start(&self) -> Result<Guest, LoadError> {
         let mut guest = self.raw()?;
         for name in ["_initialize", "plc_init"] {
@@ -79,7 +79,7 @@ impl Program {
         Ok(guest)
     }
 
-    /// A guest as it stood when the snapshot was taken, of a guest of this program; it goes on from there.
+    /// A guest of this program in the state of a snapshot; it continues from there.
     ///
     /// # Errors
     /// [`LoadError`]: there is not enough memory.
@@ -115,7 +115,7 @@ impl Guest {
     /// One execution: `plc_scan` with the number and the instant of the scan. Cost: at most the fuel.
     ///
     /// # Errors
-    /// [`Fault`]: what it did wrong. What it told axes before stays told; the caller stops the resource.
+    /// [`Fault`]. Commands that it gave to axes before remain; the caller stops the resource.
     pub fn scan<P: Planner>(&mut self, context: &mut Context<'_, P>) -> Result<u64, Fault> {
         self.scan_entry(Entry::SCAN, context)
     }
@@ -154,15 +154,16 @@ impl Guest {
     /// computes. Cost: at most the fuel.
     ///
     /// # Errors
-    /// [`Fault`]: what it did wrong. It may be called again.
+    /// [`Fault`]. It may be called again.
     pub fn evaluate(&mut self, entry: Entry, scan: u64, now_ns: i64) -> Result<(), Fault> {
         let (machine, fuel) = (&mut self.machine, self.program.settings.fuel);
-        // A tick is the number of the scan, as far as 32 bits go.
+        // A tick is the number of the scan, in 32 bits.
         let outcome = tick::before(|| machine.scan(entry.0, scan as i32, now_ns, fuel));
         outcome.map(|_fuel| ()).map_err(|fault| *fault)
     }
 
-    /// The number of so many bytes, 8 at most, at an address, least significant first; `None` outside the memory.
+    /// The number in this many bytes, 8 at most, at an address, least significant first; `None` outside
+    /// the memory.
     #[must_use]
     pub fn bits(&self, address: u32, bytes: usize) -> Option<u64> {
         let place = self.machine.memory().get(address as usize..)?.get(..bytes)?;
@@ -176,7 +177,7 @@ impl Guest {
         self.fuel_used
     }
 
-    /// What it told since the last call of this.
+    /// Its texts and events since the last call of this function.
     pub fn take_told(&mut self) -> Vec<Told> {
         self.machine.host_mut().take_told()
     }
@@ -190,7 +191,7 @@ impl Guest {
         address.ok_or_else(|| SymbolError::Unknown(name.to_owned()))
     }
 
-    /// What stands in a variable.
+    /// The value of a variable.
     ///
     /// # Errors
     /// [`SymbolError::Outside`].
@@ -198,8 +199,9 @@ impl Guest {
         symbol.read(self.machine.memory())
     }
 
-    /// Writes a variable; `value` is of the type of its signal ([`SymbolType::signal`](crate::SymbolType::signal)). One
-    /// that the variable cannot hold becomes the nearest that it can.
+    /// Writes a variable; `value` is of the type of its signal
+    /// ([`SymbolType::signal`](crate::SymbolType::signal)). A value that the variable cannot have becomes
+    /// the nearest one.
     ///
     /// # Errors
     /// [`SymbolError::Outside`], [`SymbolError::Type`].
@@ -207,7 +209,7 @@ impl Guest {
         symbol.write(self.machine.memory_mut(), value)
     }
 
-    /// The guest as it stands now, to be gone on with by [`Program::restore`].
+    /// The present state of the guest, for [`Program::restore`].
     #[must_use]
     pub fn snapshot(&self) -> Snapshot {
         Snapshot {

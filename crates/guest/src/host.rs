@@ -1,4 +1,4 @@
-//! The functions a guest imports, done on its memory and on instances that stand here.
+//! The functions that a guest imports. They work on its memory and on instances stored here.
 
 use crate::{Fault, INSTANCES_MOST, Told};
 use standstill_axis::{InstanceId, Log, Planner};
@@ -8,13 +8,13 @@ use standstill_fb::ring::{FlatRecord, RECORD_SIZE};
 use standstill_fb::{AnyInstance, Block, BlockInfo, Context, Instance, PinType, TableRef, Value};
 use std::sync::LazyLock;
 
-/// Most lines that a guest can tell in one scan; further ones are counted.
+/// Most lines that a guest may write in one scan; further ones are counted.
 const LINES_MOST: usize = 16;
 
 /// Most bytes of a line; the rest is cut off.
 const LINE_MOST: u32 = 1024;
 
-/// What the functions of blocks give back; numbers and meanings are those of the C library.
+/// The results of the blocks' functions; numbers and meanings are those of the C library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum Code {
@@ -54,7 +54,8 @@ type OfOne = fn(f64) -> f64;
 
 type OfTwo = fn(f64, f64) -> f64;
 
-/// Functions of one number: their names, and what does them. In software, so that their bits are the same everywhere.
+/// Functions of one number: names and implementations. In software, so that their bits are the same
+/// everywhere.
 pub(crate) const FUNCTIONS: [(&str, OfOne); 9] = [
     ("math_acos", libm::acos),
     ("math_asin", libm::asin),
@@ -97,12 +98,12 @@ impl Import {
     }
 }
 
-/// Where the pins of a block lie, made once for all.
+/// The layout of a block's pins, computed once.
 struct Shape {
     info: &'static BlockInfo,
     inputs: Layout,
     outputs: Layout,
-    /// Numbers of its arrays when they are full.
+    /// Number of values of its arrays when they are full.
     cells: usize,
 }
 
@@ -122,11 +123,11 @@ static SHAPES: LazyLock<Vec<Shape>> = LazyLock::new(|| {
     REGISTRY.iter().map(shape).collect()
 });
 
-/// The instances of a guest, and what it told.
+/// The instances of a guest, and its messages.
 #[derive(Clone, Debug)]
 pub(crate) struct Host {
     first: u16,
-    /// With the place of their block in the registry; an instance's key is its place here, from 1.
+    /// With the index of their block in the registry; an instance's key is its index here, from 1.
     slots: Vec<(usize, BlockInstance)>,
     cells: Vec<f64>,
     told: Vec<Told>,
@@ -134,7 +135,7 @@ pub(crate) struct Host {
     lost: u64,
 }
 
-/// So many bytes of the guest's memory.
+/// A range of the guest's memory.
 struct Place {
     function: &'static str,
     what: &'static str,
@@ -201,7 +202,8 @@ impl Host {
         }
         self.lines += 1;
         let text = text.get(..bytes.min(LINE_MOST) as usize).unwrap_or(text);
-        // Notes are lines: what would end one, or move a terminal's cursor, is shown as what it is.
+        // Notes are single lines: characters that end a line or move a terminal's cursor are shown in
+        // escaped form.
         let text = String::from_utf8_lossy(text);
         let clean = |c: char| if c.is_control() { '\u{fffd}' } else { c };
         self.told.push(Told::Line(text.chars().map(clean).collect()));
@@ -229,13 +231,13 @@ impl Host {
         };
         let next = place("next", next, 8);
         let copied = place("copied", copied, 4);
-        // Both fit into 64 bits, and what a processor of 32 bits cannot count lies outside.
+        // Both fit into 64 bits; a value that a 32-bit processor cannot count is outside the memory.
         let bytes = usize::try_from(u64::from(stride) * u64::from(room)).unwrap_or(usize::MAX);
         let records = place("records", records, bytes);
         let from = u64::read(next.of(memory)?, 0);
         copied.of(memory)?;
         let rows = records.of_mut(memory)?.chunks_exact_mut(stride as usize);
-        // What is not held any more is skipped.
+        // Records no longer in the ring are skipped.
         let total = log.total();
         let first = total.saturating_sub(log.since(from).count() as u64);
         let mut count = 0_u32;
@@ -258,7 +260,7 @@ impl Host {
         }
     }
 
-    /// One call of a block in a scan: any block, whatever is wrong with the call.
+    /// One call of a block in a scan: any block, with all checks.
     pub(crate) fn block<P: Planner>(
         &mut self,
         block: usize,
@@ -328,8 +330,8 @@ impl Host {
         Ok(Ok(()))
     }
 
-    /// The instance with this key and its number in records, as a block of one kind: nothing if there is no such, or
-    /// the key is 0.
+    /// The instance with this key and its number in records, if it is of one kind of block. None if there
+    /// is no such instance, or the key is 0.
     #[inline]
     pub(crate) fn find<B>(
         &mut self,
@@ -401,13 +403,13 @@ impl Host {
     }
 }
 
-/// Tells a block where [`Host::load_tables`] put its records.
+/// Gives a block the places where [`Host::load_tables`] put its records.
 fn set_tables(shape: &Shape, instance: &mut BlockInstance, flat: &[u8]) {
     let mut first = 0_u32;
     for (index, pin) in shape.info.tables() {
         let PinType::Table(table) = pin.ty else { continue };
         let (_, count) = read_table(flat, shape.inputs.offset(index), Pointer::Bits32);
-        // Both were checked against the most records of the table.
+        // Both were checked against the largest number of records of the table.
         let place = TableRef {
             first,
             records: count as u16,

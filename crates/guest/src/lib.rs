@@ -49,5 +49,5 @@ pub const MODULE_MOST: usize = 16 << 20;
 /// Bytes of a page of memory.
 pub const PAGE: u64 = 1 << 16;
 
-/// What the functions of blocks are imported from unless [`Settings::module`] says otherwise.
+/// The module from which the functions of blocks are imported, unless [`Settings::module`] names another.
 pub const MODULE: &str = "standstill";

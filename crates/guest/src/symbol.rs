@@ -4,10 +4,11 @@
 use standstill_fb::flat::Flat;
 use standstill_fb::{PinType, Value};
 
-/// What a variable of a guest may be.
+/// The type of a guest's variable.
 ///
-/// Signals have fewer types than compilers use. A variable of a type that no signal has is seen as the next one that
-/// holds all of its values: SINT as INT, UINT, USINT and BYTE as WORD, UDINT as DWORD, DINT and REAL as LREAL.
+/// Signals have fewer types than compilers. A variable of a type that no signal has is seen as the next
+/// type that holds all of its values: SINT as INT, UINT, USINT and BYTE as WORD, UDINT as DWORD, DINT and
+/// REAL as LREAL.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum SymbolType {
@@ -83,7 +84,7 @@ impl SymbolType {
         }
     }
 
-    /// The whole numbers it holds, where its signal holds others, too.
+    /// Its range of whole numbers, if its signal has a larger one.
     #[must_use]
     pub const fn narrow(self) -> Option<(i32, i32)> {
         match self {
@@ -94,7 +95,7 @@ impl SymbolType {
         }
     }
 
-    /// Whether a variable can hold a value of the type of its signal. REAL takes every number, rounded.
+    /// Whether a variable can have a value of the type of its signal. REAL takes every number, rounded.
     #[must_use]
     pub fn holds(self, value: Value) -> bool {
         let Some((least, most)) = self.narrow() else {
@@ -131,7 +132,7 @@ pub struct Symbol {
     pub address: u32,
 }
 
-/// Why a variable cannot be reached.
+/// The reason why a variable cannot be accessed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SymbolError {
     /// No address was given and the guest exports none of this name.
@@ -185,11 +186,11 @@ impl Symbol {
         })
     }
 
-    /// Puts a value of the type of its signal there. One that it cannot hold becomes the nearest that it can.
+    /// Writes a value of the type of its signal. A value that it cannot have becomes the nearest one.
     pub(crate) fn write(&self, memory: &mut [u8], value: Value) -> Result<(), SymbolError> {
         self.place(memory)?;
         let at = self.address as usize;
-        // Casts from numbers with a point saturate; whole ones are brought into range first.
+        // Casts from floating-point numbers saturate; whole numbers are limited to the range first.
         match (self.ty, value) {
             (SymbolType::Bool, Value::Bool(value)) => u8::from(value).write(memory, at),
             (SymbolType::Sint, Value::Int(value)) => {

@@ -1,4 +1,4 @@
-//! What a guest may use up, and what it tells.
+//! The limits of a guest, and its messages.
 
 use crate::MODULE;
 use standstill_axis::InstanceId;
@@ -6,7 +6,7 @@ use standstill_axis::InstanceId;
 /// Most block instances of a guest.
 pub const INSTANCES_MOST: usize = 1024;
 
-/// What a guest may use up.
+/// The limits of a guest.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// Instructions of one call, counted by the interpreter; a call that needs more is a fault.
@@ -35,7 +35,7 @@ impl Default for Settings {
 pub enum Told {
     /// A line of `log`.
     Line(String),
-    /// So many lines more than a scan may have.
+    /// This many lines more than a scan may have.
     LinesLost(u64),
     /// It has a new instance.
     Made {

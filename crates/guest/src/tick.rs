@@ -1,7 +1,8 @@
-//! A scan, where the functions of a guest find what blocks may touch.
+//! A scan, in which the functions of a guest find the context of blocks.
 //!
-//! The interpreter keeps its functions for as long as the guest, and a scan lends its axes for one call of the guest. So
-//! they stand in a variable of the thread for as long as that call, without their planner, which functions do not know.
+//! The interpreter keeps its functions as long as the guest, but a scan lends its axes for one call of
+//! the guest. So the context is stored in a thread-local variable during the call, without the type of
+//! its planner, which functions do not know.
 
 use crate::Fault;
 use crate::engine::Machine;
@@ -16,13 +17,13 @@ use std::marker::PhantomData;
 
 scoped_thread_local!(pub(crate) static TICK: for<'a> &'a (dyn Tick + 'a));
 
-/// What a scan lends; taken out while a block has it.
+/// The context lent by a scan; a block takes it out while it uses it.
 struct Lent<'l, 'c, P: Planner>(Cell<Option<&'l mut Context<'c, P>>>);
 
-/// No scan: what stands there while a guest starts.
+/// No scan: the value while a guest starts.
 struct NoTick;
 
-/// Whether blocks can be called while `work` is at it: not.
+/// Runs `work` without a scan, so blocks cannot be called.
 pub(crate) fn before<R>(work: impl FnOnce() -> R) -> R {
     TICK.set(&NoTick, work)
 }
@@ -46,7 +47,7 @@ pub(crate) fn scan<P: Planner>(
     )
 }
 
-/// The same for every planner, so that it stands beside the variable and reaches it without a detour.
+/// The same for every planner, so that it is beside the variable and accesses it directly.
 fn during(
     lent: &dyn Tick,
     machine: &mut Machine,
@@ -66,7 +67,7 @@ pub(crate) fn log_read(host: &mut Host, memory: &mut [u8], given: [u32; 5]) -> A
     outcome.map(|code| code as i64).map_err(Box::new)
 }
 
-/// The structure at an address: so many of its bytes, if they are there and the size in front is as large.
+/// The structure at an address: this many of its bytes, if they exist and its size field is as large.
 #[inline]
 fn structure(memory: &[u8], address: u32, size: usize) -> Option<&[u8]> {
     let bytes = memory.get(address as usize..)?.get(..size)?;
@@ -84,7 +85,7 @@ impl<B: Block> Sizes<B> {
 /// Finds the instance of one kind of block.
 type Find<B> = fn(&mut BlockInstance) -> Option<&mut Instance<B>>;
 
-/// A call with good addresses of an instance that is there. If there is anything else about it, nothing happened.
+/// A call with valid addresses of an existing instance. In any other case nothing has happened.
 #[inline]
 fn call<B: Block + Described, P: Planner>(
     host: &mut Host,
@@ -107,7 +108,7 @@ fn call<B: Block + Described, P: Planner>(
     Some(())
 }
 
-/// The instance with the key at an address, and what it may touch.
+/// The instance with the key at an address, and its context.
 #[inline]
 fn instance<'h, B: Block, P: Planner>(
     host: &'h mut Host,
@@ -127,7 +128,7 @@ fn instance<'h, B: Block, P: Planner>(
     Some((instance, context))
 }
 
-/// A call with whatever there may be about it.
+/// A call with all checks.
 fn look<P: Planner>(
     block: usize,
     host: &mut Host,
@@ -141,7 +142,7 @@ fn look<P: Planner>(
 
 macro_rules! functions {
     ($($group:ident :: $name:ident :: $block:ident)*) => {
-        /// The scan of some planner, and what can be called in it.
+        /// The scan of some planner, and the calls that it permits.
         pub(crate) trait Tick {
             fn log_read(&self, _: &mut Host, _: &mut [u8], _: [u32; 5]) -> Result<Code, Fault> {
                 Ok(Code::NotInTick)

@@ -1,9 +1,9 @@
-//! One scan a period, and what happens when it cannot be.
+//! One scan in each period, and the handling of overruns.
 
 use crate::timing::Timing;
 use standstill_script::{RunError, Session};
 
-/// What tells the time and waits.
+/// A clock that can wait.
 pub trait Clock {
     /// Time since some fixed instant (ns); it never goes back.
     fn now_ns(&mut self) -> u64;
@@ -11,10 +11,10 @@ pub trait Clock {
     fn sleep_until_ns(&mut self, instant_ns: u64);
 }
 
-/// What an overrun leads to.
+/// The reaction to an overrun.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OnOverrun {
-    /// It is counted, and the scans go on: a move takes longer by the periods that were skipped.
+    /// It is counted, and the scans continue: a move takes longer by the skipped periods.
     #[default]
     Continue,
     /// The programs stop, and all axes stop and switch off.
@@ -35,7 +35,7 @@ pub enum Ended {
     },
 }
 
-/// Why a run was stopped.
+/// The reason why a run was stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stopped {
     /// Somebody asked for it.
@@ -44,18 +44,18 @@ pub enum Stopped {
     Overrun,
 }
 
-/// The longest a ramp down may take (ns of scans): a drive that never confirms must not keep the program alive.
+/// The longest ramp down (ns of scans): a drive that never confirms must not keep the program running.
 pub const RAMP_NS_MAX: u64 = 60_000_000_000;
 
 /// Runs a session, one scan in every period of `timing`, until the script ends or all axes are off after a stop.
 ///
-/// The scans know nothing of the clock: each one is one nominal interval of motion, so a late or skipped period
-/// stretches a move and never enlarges a step of a set-point. A scan that is not over when the next one is due is an
-/// overrun; the periods that have passed are skipped, so scans stay on the grid of the first one and never follow one
-/// another without a pause.
+/// The scans do not know the clock: each is one nominal interval of motion. So a late or skipped period
+/// stretches a move and never enlarges a step of a set-point. A scan that is not over when the next one
+/// is due is an overrun. The periods that have passed are skipped, so scans stay on the grid of the first
+/// one and never follow one another without a pause.
 ///
-/// `asked` is looked at after every scan; the first name it gives stops the run. Once stopped, further names and overruns
-/// change nothing, and after [`RAMP_NS_MAX`] worth of scans it returns with axes that are not off
+/// `asked` is called after every scan; the first name it returns stops the run. After that, further names
+/// and overruns change nothing. After [`RAMP_NS_MAX`] worth of scans it returns even if axes are not off
 /// ([`Session::not_off`]).
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! What Linux gives a cyclic task: a clock, a scheduling policy, locked memory, signals.
+//! The services of Linux for a cyclic task: a clock, a scheduling policy, locked memory, signals.
 
 use crate::pace::Clock;
 use rustix::mm::{MlockAllFlags, mlockall, munlockall};
@@ -16,7 +16,7 @@ use thread_priority::unix::{
 };
 use thread_priority::{ThreadPriority, ThreadPriorityValue};
 
-/// The priority asked for: above the interrupt threads of a PREEMPT_RT kernel (50), below what watches over it (99).
+/// The requested priority: above the interrupt threads of a PREEMPT_RT kernel (50), below watchdogs (99).
 const PRIORITY: u8 = 80;
 
 /// The signals that ask for a stop.
@@ -32,17 +32,17 @@ pub enum Scheduling {
         /// It was given from outside (chrt, systemd).
         kept: bool,
     },
-    /// Like any other program, because of this.
+    /// Like any other program, for this reason.
     Normal(String),
 }
 
-/// Which memory cannot be paged out.
+/// The memory that cannot be paged out.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Memory {
-    /// All, that of the future, too.
+    /// All of it, including future memory.
     All,
-    /// What the process had before its first scan, which is all a run is known to need. What comes later is not locked:
-    /// under a limit an allocation beyond it would fail instead.
+    /// The memory of the process before its first scan, which is all that a run is known to need. Later
+    /// memory is not locked, because under a limit an allocation beyond it would fail.
     Present,
     /// None, because of this.
     None(String),
@@ -59,8 +59,9 @@ pub struct System {
 }
 
 impl System {
-    /// Has signals wait for a scan instead of ending the process, then asks for real-time scheduling and locked memory.
-    /// What is not permitted is not there; it says why. Call it after memory for the run was reserved.
+    /// Makes signals wait for a scan instead of ending the process, then asks for real-time scheduling
+    /// and locked memory. A request that is not permitted is left out, with the reason. Call it after
+    /// memory for the run was reserved.
     ///
     /// # Errors
     /// A signal cannot be taken.
@@ -83,7 +84,7 @@ impl System {
         SIGNALS.get(number).map(|(_, name)| *name)
     }
 
-    /// What of real time is missing, for people.
+    /// The missing parts of real time, for people.
     #[must_use]
     pub fn lacks(&self) -> Vec<String> {
         let scheduling = match &self.scheduling {
@@ -101,7 +102,7 @@ impl System {
         scheduling.into_iter().chain(memory).collect()
     }
 
-    /// What the timing file tells of it.
+    /// Its entry in the timing file.
     #[must_use]
     pub fn to_json(&self) -> Value {
         let name = rustix::system::uname();
@@ -128,7 +129,7 @@ impl System {
 impl Drop for System {
     fn drop(&mut self) {
         if matches!(self.memory, Memory::All | Memory::Present) {
-            // Nothing depends on it: locked memory goes with the process.
+            // Nothing depends on it: locked memory ends with the process.
             munlockall().ok();
         }
     }
@@ -147,7 +148,7 @@ impl Clock for &System {
             tv_sec: (instant_ns / 1_000_000_000).cast_signed(),
             tv_nsec: (instant_ns % 1_000_000_000).cast_signed(),
         };
-        // A signal interrupts the sleep; what is left of it is the same instant.
+        // A signal interrupts the sleep; the rest has the same end.
         while clock_nanosleep_absolute(ClockId::Monotonic, &instant) == Err(rustix::io::Errno::INTR) {}
     }
 }

@@ -1,16 +1,16 @@
-//! When scans began and how long they took.
+//! The begin and the duration of scans.
 
 use serde_json::{Value, json};
 
-/// Overruns that are kept one by one; all are counted.
+/// Most overruns that are kept individually; all are counted.
 pub const OVERRUNS_KEPT: usize = 64;
 
-/// The largest time a histogram tells from larger ones (ns).
+/// The largest time that a histogram resolves (ns).
 const LARGEST_NS: u64 = 1 << 36;
 
-/// How often which time was measured; its memory is fixed from the start.
+/// A histogram of times; its memory is fixed from the start.
 ///
-/// Figures are within 1 % of what was measured, up to 68 s; the largest one is exact.
+/// Figures are within 1 % of the measured ones, up to 68 s; the largest one is exact.
 #[derive(Clone, Debug)]
 pub struct Histogram {
     counts: hdrhistogram::Histogram<u64>,
@@ -43,7 +43,7 @@ impl Histogram {
         self.max_ns
     }
 
-    /// The time (ns) that this share of the measured ones (0 to 1) does not exceed.
+    /// The time (ns) that this share (0 to 1) of the measured ones does not exceed.
     #[must_use]
     pub fn quantile_ns(&self, share: f64) -> u64 {
         self.counts.value_at_quantile(share).min(self.max_ns)
@@ -82,7 +82,7 @@ pub struct Overrun {
     pub skipped: u64,
 }
 
-/// What is measured of a run; nothing here takes memory while it runs.
+/// The measurements of a run; nothing here takes memory while it runs.
 #[derive(Clone, Debug)]
 pub struct Timing {
     period_ns: u64,
@@ -94,7 +94,7 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Nothing measured yet, for scans of this period (ns); 0 counts as 1.
+    /// No measurements yet, for scans of this period (ns); 0 counts as 1.
     #[must_use]
     pub fn new(period_ns: u64) -> Self {
         Self {
@@ -107,7 +107,8 @@ impl Timing {
         }
     }
 
-    /// Takes a scan that was due, began and ended at these instants (ns); the periods to be skipped after it.
+    /// Takes a scan with the instants (ns) when it was due, began and ended. Returns the number of
+    /// periods to skip after it.
     pub(crate) fn record(&mut self, scan: u64, due_ns: u64, woke_ns: u64, ended_ns: u64) -> u64 {
         let wake_latency_ns = woke_ns.saturating_sub(due_ns);
         let scan_time_ns = ended_ns.saturating_sub(woke_ns);
@@ -136,13 +137,13 @@ impl Timing {
         self.period_ns
     }
 
-    /// By how much scans began late.
+    /// The delays of the begin of scans.
     #[must_use]
     pub const fn wake_latency(&self) -> &Histogram {
         &self.wake_latency
     }
 
-    /// What scans took, their trace row included.
+    /// The durations of scans, including their trace row.
     #[must_use]
     pub const fn scan_time(&self) -> &Histogram {
         &self.scan_time

@@ -10,10 +10,10 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Most bytes of a file that is looked at: what the compiler takes at most, and one more.
+/// Most bytes of a file that are read: the compiler's limit, and one more.
 const BYTES_MOST: u64 = standstill_st::SOURCES_MOST as u64 + 1;
 
-/// Most scripts of a folder that are searched for the programs they name.
+/// Most scripts of a folder that are searched for the names of programs.
 const SCRIPTS_MOST: usize = 1000;
 
 /// A text that an editor has open.
@@ -31,7 +31,7 @@ pub(crate) enum Kind {
     Script,
 }
 
-/// All that are open, by their paths; those without a path by their URI.
+/// All open documents, by their paths; those without a path by their URI.
 #[derive(Debug, Default)]
 pub(crate) struct Documents {
     open: BTreeMap<PathBuf, Document>,
@@ -68,12 +68,12 @@ impl Documents {
         self.open.iter()
     }
 
-    /// The text of a document, or of the file where it is not open.
+    /// The text of a document, or of the file if it is not open.
     pub(crate) fn text(&self, path: &Path) -> Result<Rc<Text>, String> {
         if let Some(document) = self.open.get(path) {
             return Ok(document.text.clone());
         }
-        // A pipe would be waited for.
+        // Reading a pipe would block.
         let metadata = fs::metadata(path).map_err(|_| "there is no such file".to_owned())?;
         if !metadata.is_file() {
             return Err("it is no regular file".to_owned());
@@ -85,9 +85,9 @@ impl Documents {
         Ok(Rc::new(Text::new(text)))
     }
 
-    /// The file that a script or another file names, where it may be read.
+    /// The file that a script or another file names, if it may be read.
     pub(crate) fn beside(&self, outer: &Path, inner: &str) -> Result<PathBuf, String> {
-        // What is open is known by its own path, which need not be the system's view of it.
+        // An open document is known by its own path, which may differ from the system's.
         let plain = outer.parent().unwrap_or(Path::new("")).join(inner);
         let inside = !Path::new(inner)
             .components()
@@ -99,8 +99,9 @@ impl Documents {
         Ok(if inside { plain } else { real })
     }
 
-    /// The files of the program that a file in Structured Text belongs to, as a script of its folder or of one above it names
-    /// them; if none does, all `.st` files of its folder. The file itself is among them.
+    /// The files of the program that a file in Structured Text belongs to, as named by a script of its
+    /// folder or of one above it. If no script names it, all `.st` files of its folder. The file itself
+    /// is among them.
     pub(crate) fn project(&self, path: &Path) -> Vec<PathBuf> {
         const FOLDERS_UP: usize = 3;
         for folder in path.ancestors().skip(1).take(FOLDERS_UP) {
@@ -124,7 +125,7 @@ impl Documents {
         scripts
     }
 
-    /// Files of a folder on the disk and among the documents, in the order of their names.
+    /// Files of a folder on the disk and among the documents, sorted by name.
     fn listed(&self, folder: Option<&Path>, wanted: impl Fn(&Path) -> bool) -> Vec<PathBuf> {
         let Some(folder) = folder.filter(|folder| folder.is_absolute()) else {
             return Vec::new();
@@ -147,7 +148,7 @@ impl Documents {
     /// The files of the program of a script that names this file.
     fn named_with(&self, script: &Path, path: &Path) -> Option<Vec<PathBuf>> {
         let text = self.text(script).ok()?;
-        // Reading all of a script takes longer than looking for the name in it.
+        // Reading the whole script takes longer than searching the name in it.
         if !text.as_str().contains(path.file_name()?.to_str()?) {
             return None;
         }

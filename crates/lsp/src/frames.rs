@@ -1,5 +1,5 @@
-//! Frames of the protocol: a header that says how many bytes follow, and so many bytes of JSON. Ours beside that of
-//! `lsp-server`, which takes any length that a header asks for.
+//! Frames of the protocol: a header with the number of bytes, then that many bytes of JSON. We read them
+//! ourselves, because `lsp-server` accepts any length that a header asks for.
 
 use lsp_server::Message;
 use std::fmt;
@@ -14,12 +14,12 @@ const LINE_MOST: u64 = 4096;
 /// Most lines of a header.
 const LINES_MOST: usize = 16;
 
-/// Why no further frame can be found.
+/// The reason why no further frame can be found.
 #[derive(Debug)]
 pub enum FrameError {
-    /// What stands in the place of a header.
+    /// The text in place of a header.
     Header(String),
-    /// A header asks for so many bytes.
+    /// A header asks for this many bytes.
     TooLarge(u64),
     /// The input ended within a frame, or failed.
     Io(io::Error),
@@ -86,7 +86,7 @@ fn frame(input: &mut impl BufRead) -> Result<Option<Vec<u8>>, FrameError> {
 
 /// Where messages go.
 pub(crate) trait Sink {
-    /// Whether somebody still takes them.
+    /// Whether the messages are still received.
     fn put(&self, message: Message) -> bool;
 }
 
@@ -96,8 +96,8 @@ impl<F: Fn(Message) -> bool> Sink for F {
     }
 }
 
-/// Reads messages until the input ends or nobody takes them. A frame that holds no message is answered with the error
-/// that JSON-RPC has for it, and the next one is read.
+/// Reads messages until the input ends or nobody receives them. A frame without a message is answered
+/// with the JSON-RPC error for it, and the next one is read.
 pub(crate) fn read_all(input: &mut impl BufRead, to: &impl Sink) -> Result<(), FrameError> {
     while let Some(bytes) = frame(input)? {
         match serde_json::from_slice(&bytes) {

@@ -26,7 +26,7 @@ use std::thread;
 /// documents that it has open.
 ///
 /// # Errors
-/// [`FrameError`], where what is read is no frame of the protocol; what follows cannot be found again.
+/// [`FrameError`], if the input is no frame of the protocol; the next one cannot be found then.
 pub fn stdio(dialect: &Dialect) -> Result<Ended, FrameError> {
     let (ours, theirs) = Connection::memory();
     let outgoing = theirs.receiver;
@@ -37,7 +37,7 @@ pub fn stdio(dialect: &Dialect) -> Result<Ended, FrameError> {
         Ok(())
     });
     let incoming = theirs.sender;
-    // It ends with the process: a read of standard input cannot be called off.
+    // It ends with the process, because a read of standard input cannot be cancelled.
     let reader = thread::spawn(move || {
         let put = |message| incoming.send(message).is_ok();
         frames::read_all(&mut BufReader::new(io::stdin().lock()), &put)
@@ -45,7 +45,7 @@ pub fn stdio(dialect: &Dialect) -> Result<Ended, FrameError> {
     let ended = serve(&ours, dialect);
     drop(ours);
     match writer.join() {
-        // An editor that is gone hears nothing; that is no fault of the server.
+        // An editor that is gone receives nothing; that is no fault of the server.
         Ok(Ok(()) | Err(_)) | Err(_) => {}
     }
     if ended == Ended::Closed

@@ -31,8 +31,8 @@ impl Text {
         self.text.get(self.mark..).unwrap_or_default()
     }
 
-    /// The byte of [`as_str`](Self::as_str) at a position; a column behind the end of its line is that end, and one within a
-    /// character its beginning.
+    /// The byte of [`as_str`](Self::as_str) at a position. A column behind the end of its line is that
+    /// end, and one within a character is its begin.
     pub(crate) fn byte(&self, position: Position) -> usize {
         let Some(start) = self.lines.get(position.line as usize).copied() else {
             return self.text.len() - self.mark;
@@ -76,7 +76,7 @@ impl Text {
         }
     }
 
-    /// All of it, a byte order mark too.
+    /// The whole text, including a byte order mark.
     pub(crate) fn whole(&self) -> Range {
         Range {
             start: Position::default(),

@@ -17,7 +17,7 @@ use standstill_st::{Dialect, SOURCES_MOST};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// How a session came to its end.
+/// How a session ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
     /// By `shutdown` and `exit`.
@@ -46,23 +46,23 @@ struct Server<'c> {
     connection: &'c Connection,
     dialect: &'c Dialect,
     documents: Documents,
-    /// What was published last, by document.
+    /// The last published diagnostics, by document.
     told: BTreeMap<PathBuf, (Uri, Vec<Diagnostic>)>,
     /// Whether a document changed since diagnostics were published.
     changed: bool,
-    /// Whether `shutdown` was asked for.
+    /// Whether `shutdown` was received.
     shut: bool,
     /// Whether `initialize` was answered.
     ready: bool,
 }
 
-/// Why a request has no result.
+/// The reason why a request has no result.
 type Refusal = (ErrorCode, String);
 
 impl Server<'_> {
     fn serve(&mut self) -> Ended {
         loop {
-            // While changes wait to be read nothing is checked: what is found would be old.
+            // Nothing is checked while changes wait to be read, because the result would be out of date.
             let message = match self.connection.receiver.try_recv() {
                 Ok(message) => message,
                 Err(_) => {
@@ -86,7 +86,7 @@ impl Server<'_> {
     }
 
     fn send(&self, message: Message) {
-        // An editor that has gone hears nothing; the next read says so.
+        // An editor that is gone receives nothing; the next read reports it.
         let _gone = self.connection.sender.send(message);
     }
 
@@ -136,7 +136,7 @@ impl Server<'_> {
         }
     }
 
-    /// Answers what is asked of a place in a document; with nothing where the document is none of ours.
+    /// Answers a question about a place in a document; the answer is empty if the document is not ours.
     fn asked(
         &self,
         params: Value,
@@ -184,7 +184,8 @@ impl Server<'_> {
         json!(found)
     }
 
-    /// The whole document laid out; nothing where it cannot be read, since its mistakes are told already.
+    /// The whole document laid out; empty if it cannot be read, because its mistakes are already
+    /// published.
     fn formatting(&self, params: Value) -> Result<Value, Refusal> {
         #[derive(Deserialize)]
         #[serde(rename_all = "camelCase")]
@@ -211,7 +212,7 @@ impl Server<'_> {
         })
     }
 
-    /// Takes in what changed; a notification that is wrong or not ours changes nothing.
+    /// Takes a change. A notification that is invalid or not ours changes nothing.
     fn notification(&mut self, it: Notification) {
         if !self.ready || self.shut {
             return;
@@ -244,7 +245,7 @@ impl Server<'_> {
     }
 
     fn put(&mut self, uri: Uri, version: i32, text: String) {
-        // More than the compiler takes is told, and not kept.
+        // A text above the compiler's limit is reported and not kept.
         let text = if text.len() > SOURCES_MOST {
             self.too_large(&uri, text.len());
             String::new()
@@ -267,7 +268,7 @@ impl Server<'_> {
         )));
     }
 
-    /// Tells of every document what is wrong with it, where that is another thing than before.
+    /// Publishes the mistakes of every document, if they have changed.
     fn publish(&mut self) {
         if !std::mem::take(&mut self.changed) {
             return;
@@ -314,7 +315,7 @@ impl Server<'_> {
         )));
     }
 
-    /// What is wrong with the documents that are open; each project is checked once.
+    /// The mistakes of the open documents; each project is checked once.
     fn diagnostics(&self) -> BTreeMap<PathBuf, Vec<Diagnostic>> {
         let mut found: BTreeMap<PathBuf, Vec<Diagnostic>> = BTreeMap::new();
         for (path, _) in self.documents.iter() {
@@ -322,7 +323,8 @@ impl Server<'_> {
                 _ if found.contains_key(path) => {}
                 Some(Kind::StructuredText) => {
                     for (file, diagnostics) in self.project(path).diagnostics() {
-                        // Another project may have this file, too: that of a document that is open goes first.
+                        // Another project may contain this file, too; the project of an open document has
+                        // priority.
                         found.entry(file).or_insert(diagnostics);
                     }
                 }

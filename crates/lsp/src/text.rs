@@ -1,4 +1,4 @@
-//! Structured Text for an editor: the project of a file, its mistakes, and what is asked of a place.
+//! Structured Text for an editor: the project of a file, its mistakes, and the answers about a place.
 
 use crate::documents::Documents;
 use crate::position::Text;
@@ -23,7 +23,7 @@ pub(crate) struct Project {
 }
 
 impl Project {
-    /// The files that can be read; the one that is asked for is told of where it stands.
+    /// The files that can be read, and the index of the file in question.
     pub(crate) fn new(documents: &Documents, files: &[PathBuf], dialect: &Dialect) -> Self {
         let read = |path: &PathBuf| Some((path.clone(), documents.text(path).ok()?));
         let files: Vec<_> = files.iter().filter_map(read).collect();
@@ -54,7 +54,7 @@ impl Project {
         &self.options
     }
 
-    /// What is wrong and doubtful, by file.
+    /// Mistakes and doubts, by file.
     pub(crate) fn diagnostics(&self) -> BTreeMap<PathBuf, Vec<lsp_types::Diagnostic>> {
         let report = standstill_st::check(&self.sources(), &self.options);
         let mut found: BTreeMap<_, Vec<_>> = self
@@ -108,7 +108,7 @@ impl Project {
         })
     }
 
-    /// The number of a file, and the byte of it at a position.
+    /// The index of a file, and the byte of it at a position.
     fn place(&self, path: &Path, position: Position) -> Option<(usize, usize, &Text)> {
         let file = self.files.iter().position(|(it, _)| it == path)?;
         let (_, text) = self.files.get(file)?;
@@ -147,7 +147,7 @@ impl Project {
     }
 }
 
-/// Editors mark nothing where a range is empty.
+/// Editors mark nothing if a range is empty.
 pub(crate) fn at_least_a_character(mut range: Range) -> Range {
     if range.start == range.end {
         range.end.character += 1;
@@ -162,7 +162,7 @@ pub(crate) fn with_help(message: &str, help: Option<&str>) -> String {
     }
 }
 
-/// A declaration and what is said of it, as Markdown.
+/// A declaration and its description, as Markdown.
 pub(crate) fn shown(found: &Hover) -> MarkupContent {
     let mut value = format!("```iecst\n{}\n```", found.text);
     if !found.doc.is_empty() {
@@ -174,7 +174,7 @@ pub(crate) fn shown(found: &Hover) -> MarkupContent {
     }
 }
 
-/// Text that Markdown leaves as it is: nothing of a comment becomes a link or a picture.
+/// Text that Markdown does not change: nothing in a comment becomes a link or a picture.
 pub(crate) fn plain(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
@@ -197,7 +197,7 @@ fn item(index: usize, it: Completion, range: Range) -> CompletionItem {
             CompletionKind::Type => CompletionItemKind::STRUCT,
             _ => CompletionItemKind::KEYWORD,
         }),
-        // In our order: what is nearest comes first.
+        // In our order: the nearest first.
         sort_text: Some(format!("{index:05}")),
         detail: (!it.detail.is_empty()).then_some(it.detail),
         documentation: (!it.doc.is_empty()).then_some(Documentation::String(it.doc)),

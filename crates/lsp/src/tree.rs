@@ -1,5 +1,5 @@
-//! JSON as it stands while it is written: what can be read of it, with places, and never an error. What is wrong with it only
-//! the reader of scripts says.
+//! JSON while it is being written: the readable part of it, with places, and never an error. Only the
+//! reader of scripts reports mistakes.
 
 use std::ops::Range;
 
@@ -14,10 +14,10 @@ pub(crate) struct Node {
 
 #[derive(Clone, Debug, Default)]
 pub(crate) enum Json {
-    /// Nothing, or what is no value.
+    /// Nothing, or no valid value.
     #[default]
     Nothing,
-    /// What has no quotes: numbers and words.
+    /// Text without quotes: numbers and words.
     Word,
     Text(String),
     List(Vec<Node>),
@@ -41,12 +41,12 @@ pub(crate) enum Step {
     Item(usize),
 }
 
-/// What stands at a place.
+/// The item at a place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Spot {
-    /// A key, or where one may stand; the span of what is there.
+    /// A key, or a place for one; the span of the present text.
     Key(Range<usize>),
-    /// A value, or where one may stand.
+    /// A value, or a place for one.
     Value(Range<usize>),
 }
 
@@ -79,7 +79,7 @@ impl Node {
         }
     }
 
-    /// Itself if it is a text, or the texts in it if it is a list.
+    /// Itself if it is a text, or its texts if it is a list.
     pub(crate) fn texts(&self) -> impl Iterator<Item = &str> {
         let own = self.as_text();
         own.into_iter()
@@ -94,7 +94,7 @@ impl Node {
         })
     }
 
-    /// The way to a place, and what stands there.
+    /// The path to a place, and the item there.
     pub(crate) fn spot(&self, byte: usize) -> (Vec<Step>, Spot) {
         let mut path = Vec::new();
         let spot = self.descend(byte, &mut path);
@@ -180,7 +180,7 @@ impl Reader<'_> {
             Some(c) if c.is_alphanumeric() || "-+._".contains(c) => self.word(),
             _ => Json::Nothing,
         };
-        // What is not closed goes on behind the end of the text.
+        // An object or list that is not closed continues behind the end of the text.
         let open = matches!(json, Json::Map(_) | Json::List(_)) && self.open;
         Node {
             span: start..self.at + usize::from(open),
@@ -231,7 +231,7 @@ impl Reader<'_> {
                     self.at += 1;
                     break;
                 }
-                // It closes something further out.
+                // It closes an outer object or list.
                 Some(']') => break,
                 Some('"') => members.push(self.member(depth)),
                 Some(c) => self.at += c.len_utf8(),
@@ -346,7 +346,7 @@ mod tests {
         }
     }
 
-    /// Cut anywhere, and with anything in it.
+    /// Cut anywhere, and with any characters in it.
     #[test]
     fn nothing_stops_the_reader() {
         let text = r#"{"a": [1, -2.5e3, "ä\"x", {"b": null, "c": [true]}], "d": {"e": "\u00e4"}} ]}{ : , é"#;

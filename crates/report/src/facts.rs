@@ -1,14 +1,14 @@
-//! What the page says in words: facts, sources, failing claims. Everything here is markup that is ready to go out.
+//! The texts of the page: facts, sources, failing claims. All of it is ready markup.
 
 use crate::{Mark, Source};
 use standstill_trace::markup::escaped;
 use standstill_trace::{ClaimVerdict, Trace, time_literal};
 use std::fmt::Write;
 
-/// What stands for the traces of a page.
+/// The letters of a page's traces.
 const LETTERS: [&str; crate::TRACES_MAX] = ["A", "B", "C", "D", "E", "F"];
 
-/// Failing claims that are told in full.
+/// Failing claims that are shown in full.
 const FAILURES_TOLD: usize = 12;
 
 /// The title of the page.
@@ -108,7 +108,7 @@ pub fn sources(sources: &[Source<'_>]) -> String {
     text
 }
 
-/// The places to look at, each a button that goes there.
+/// The places of interest, each a button that moves there.
 pub fn marks(marks: &[Mark]) -> String {
     let mut text = String::new();
     for mark in marks {
@@ -128,7 +128,7 @@ pub fn marks(marks: &[Mark]) -> String {
     text
 }
 
-/// The claims that failed, with what was there instead.
+/// The claims that failed, with the actual values.
 pub fn failures(sources: &[Source<'_>]) -> String {
     let mut told = Vec::new();
     for (source, letter) in sources.iter().zip(LETTERS) {
@@ -160,7 +160,7 @@ pub fn failures(sources: &[Source<'_>]) -> String {
     text
 }
 
-/// The last line of the page: what made the traces and the page.
+/// The last line of the page: the programs that made the traces and the page.
 pub fn footer(sources: &[Source<'_>]) -> String {
     let Some(first) = sources.first() else {
         return String::new();

@@ -18,13 +18,13 @@ pub use page::about;
 use standstill_trace::Trace;
 use standstill_trace::time_literal;
 
-/// So many traces fit over each other: there are as many colours.
+/// Most traces over each other: the number of colours.
 pub const TRACES_MAX: usize = 6;
 
-/// A trace with the name it goes by, and what its file did not tell.
+/// A trace with its name, and the parts that its file lacks.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'a> {
-    /// What stands for it on the page, such as its file.
+    /// Its name on the page, such as its file.
     pub name: &'a str,
     /// The trace.
     pub trace: &'a Trace,
@@ -32,18 +32,18 @@ pub struct Source<'a> {
     pub lacks: &'a [String],
 }
 
-/// A place to look at first. Its line stands over all plots, and the cursor begins there.
+/// A place to look at first. Its line is drawn over all plots, and the cursor begins there.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mark {
     /// The scan, if it is about one; past the end of a trace is fine.
     pub scan: Option<usize>,
     /// A few words.
     pub title: String,
-    /// All there is to tell, in lines.
+    /// The full text, in lines.
     pub text: String,
 }
 
-/// Why there is no page of these traces.
+/// The reason why these traces make no page.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReportError {
     /// There is none, or there are too many.
@@ -70,7 +70,8 @@ pub enum ReportError {
     },
 }
 
-/// The page of these traces. Where they have different lengths the shorter ones end earlier, and the page says so.
+/// The page of these traces. If they have different lengths the shorter ones end earlier, and the page
+/// says so.
 ///
 /// Cost: that of [`standstill_trace::exact::encode`] for each trace.
 ///
@@ -80,7 +81,7 @@ pub fn html(sources: &[Source<'_>]) -> Result<String, ReportError> {
     html_marked(sources, &[])
 }
 
-/// As [`html`], with places to look at.
+/// As [`html`], with places of interest.
 ///
 /// # Errors
 /// As [`html`].
@@ -89,7 +90,7 @@ pub fn html_marked(sources: &[Source<'_>], marks: &[Mark]) -> Result<String, Rep
     Ok(page::page(sources, marks))
 }
 
-/// What [`html`] would refuse, without the work.
+/// The error that [`html`] would return, without its work.
 ///
 /// # Errors
 /// As [`html`].

@@ -1,4 +1,4 @@
-//! The parts of the page, put together.
+//! Puts the parts of the page together.
 
 use crate::{Mark, Source, facts};
 use base64::Engine;
@@ -33,13 +33,14 @@ const SCRIPT: &str = concat!(
     include_str!("../page/start.js"),
 );
 
-/// Source expressions of the content policy: this style and this script, and no other. A test has them when they are stale.
+/// Source expressions of the content policy: this style and this script, and no other. A test prints them
+/// when they are out of date.
 const STYLE_HASH: &str = "'sha256-tNc5wiG7ONEIOpffWZcwSuan1id+GyjiQQkFnffJ8Rg='";
 const SCRIPT_HASH: &str = "'sha256-dgKFpzBcwkBxEw2dNOEbVyAn4QpAzf90YZ0459cmWlI='";
 
 /// The whole page.
 pub fn page(sources: &[Source<'_>], marks: &[Mark]) -> String {
-    // One line a scan, also where two marks name it; the page begins at the first.
+    // One line a scan, even if two marks name it; the page begins at the first.
     let mut scans: Vec<usize> = Vec::new();
     for scan in marks.iter().filter_map(|mark| mark.scan) {
         if !scans.contains(&scan) {
@@ -66,7 +67,7 @@ pub fn page(sources: &[Source<'_>], marks: &[Mark]) -> String {
     })
 }
 
-/// The template with its places filled. What goes in is not looked at again.
+/// The template with its places filled. The inserted text is not expanded again.
 fn filled(text_of: impl Fn(&str) -> String) -> String {
     let mut page = String::new();
     let mut rest = TEMPLATE;
@@ -90,7 +91,7 @@ pub fn about(source: &Source<'_>) -> Value {
     json!({"name": source.name, "header": told(header), "events": events})
 }
 
-/// The header without what the rows tell anyway.
+/// The header without the parts that the rows show anyway.
 fn told(header: &Header) -> Value {
     let instances = header.instances.iter();
     let instances: Vec<Value> = instances

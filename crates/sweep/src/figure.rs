@@ -6,7 +6,7 @@ use standstill_trace::{Cell, Trace, cell_text};
 /// The figure of a measure so far.
 pub(crate) struct Figure {
     take: Take,
-    /// The signal's; none if the run has no such signal.
+    /// The signal's column; none if the run has no such signal.
     column: Option<usize>,
     /// Scans looked at.
     scans: usize,
@@ -14,7 +14,7 @@ pub(crate) struct Figure {
     last: String,
     /// The number that ranks first, and its rank.
     best: Option<(f64, Cell<'static>)>,
-    /// The first scan in which it is TRUE, and in how many it is.
+    /// The first scan in which it is TRUE, and the number of such scans.
     first: Option<usize>,
     count: usize,
 }
@@ -32,7 +32,7 @@ impl Figure {
         }
     }
 
-    /// Looks at the rows that the trace has got since the last call.
+    /// Reads the rows that the trace has got since the last call.
     pub(crate) fn look(&mut self, trace: &Trace) {
         let Some(column) = self.column else { return };
         for scan in self.scans..trace.scans() {
@@ -58,7 +58,7 @@ impl Figure {
         self.last = last.map(cell_text).unwrap_or_default();
     }
 
-    /// A NaN ranks before all: it must not stay unseen.
+    /// A NaN ranks before all, so that it is not overlooked.
     fn rank(&mut self, cell: Cell<'_>, rank: impl Fn(f64) -> f64) {
         let (value, cell) = match cell {
             Cell::Real(value) => (rank(value), Cell::Real(value)),
@@ -71,7 +71,7 @@ impl Figure {
         }
     }
 
-    /// As it stands in a table; empty where a signal never was TRUE.
+    /// In the form of a table; empty if a signal never was TRUE.
     pub(crate) fn text(&self) -> String {
         match self.take {
             _ if self.column.is_none() => String::new(),

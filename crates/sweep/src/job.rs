@@ -1,4 +1,4 @@
-//! A sweep that is ready to run, and what comes of one of its cases.
+//! A sweep that is ready to run, and the results of its cases.
 
 use crate::figure::Figure;
 use standstill_script::model::Script;
@@ -8,10 +8,10 @@ use standstill_script::{Failure, Outcome, RunError, ScriptError, Session, Verdic
 use standstill_trace::{Extreme, Extremes, digest, shortest};
 use std::path::{Path, PathBuf};
 
-/// What is told of every axis: the magnitudes of [`extremes`] and how far they stay from their limits.
+/// The columns of every axis: the magnitudes of [`extremes`] and their distance from the limits.
 const QUANTITIES: [&str; 5] = ["velocity", "acceleration", "deceleration", "jerk", "snap"];
 
-/// The signals of an axis that they are taken of.
+/// The signals of an axis from which they are taken.
 const SIGNALS: [&str; 4] = ["Velocity", "Acceleration", "Jerk", "Snap"];
 
 /// Columns before the parameters.
@@ -26,18 +26,18 @@ const DIGEST: &str = "digest";
 /// The column behind all others.
 const LAST: [&str; 1] = ["why"];
 
-/// Why a sweep cannot be run.
+/// The reason why a sweep cannot be run.
 #[derive(Debug, thiserror::Error)]
 pub enum SweepError {
-    /// The sweep file or the script is not usable, or could not be read.
+    /// The sweep file or the script is not valid, or could not be read.
     #[error(transparent)]
     Suite(#[from] SuiteError),
-    /// A table is none of this sweep.
+    /// A table does not belong to this sweep.
     #[error("{file}: {why}")]
     Table {
         /// The table.
         file: String,
-        /// What is wrong with it, and what to do.
+        /// The fault, and the remedy.
         why: String,
     },
 }
@@ -48,15 +48,15 @@ impl From<ScriptError> for SweepError {
     }
 }
 
-/// Rows of a case that are held before they are looked at and given up: few enough to stay in a processor's cache.
+/// Rows of a case that are held before they are read and dropped: few enough for a processor's cache.
 const ROWS_HELD: u64 = 256;
 
-/// What the run of a case left.
+/// The results of a case.
 struct Ran {
     scans: usize,
     verdicts: Vec<Verdict>,
     extremes: Vec<Extreme>,
-    /// Of the measures, as they stand in the table.
+    /// The figures of the measures, as written in the table.
     figures: Vec<String>,
     digest: Option<u64>,
 }
@@ -75,7 +75,7 @@ pub struct Job {
     script: PathBuf,
     axes: Vec<String>,
     columns: Vec<String>,
-    /// The signals that extremes and measures are taken of.
+    /// The signals from which extremes and measures are taken.
     signals: Vec<String>,
     key: u64,
 }
@@ -105,7 +105,7 @@ impl Judged {
     }
 }
 
-/// What came of a case.
+/// The row of a case.
 #[derive(Clone, Debug)]
 pub struct Row {
     /// Its number.
@@ -119,8 +119,9 @@ pub struct Row {
 }
 
 impl Job {
-    /// Reads the sweep at `path` and its script, and runs the script as it stands to see what signals it has. The
-    /// script lies below the folder of the sweep or where `allowed` says; so does what the script includes.
+    /// Reads the sweep at `path` and its script, and runs the script with its own parameters to find its
+    /// signals. The script must be below the folder of the sweep or where `allowed` says, and so must its
+    /// includes.
     ///
     /// # Errors
     /// [`SweepError::Suite`].
@@ -140,7 +141,7 @@ impl Job {
         key.write(env!("CARGO_PKG_VERSION").as_bytes());
         key.write(sweep.text().as_bytes());
         key.write(&script.hash.to_le_bytes());
-        // Whatever else a run depends on shows in this one.
+        // This run shows all other faults.
         key.write(&digest::whole(&outcome.trace).to_le_bytes());
         let of_axes = axes
             .iter()
@@ -167,7 +168,7 @@ impl Job {
         &self.columns
     }
 
-    /// A number that is another one for another sweep, script or version.
+    /// A number that differs for another sweep, script or version.
     pub fn key(&self) -> u64 {
         self.key
     }
@@ -175,7 +176,8 @@ impl Job {
     /// Runs a case.
     ///
     /// # Errors
-    /// A defect of this program; a script that cannot be run with these values is a row.
+    /// A defect of this program. A script that cannot be run with these values is no error; it gets a
+    /// row.
     pub fn case(&self, case: u64) -> Result<Row, SweepError> {
         let parameters = self.sweep.case(case);
         let refused = |why: String| Row {
@@ -210,8 +212,9 @@ impl Job {
         })
     }
 
-    /// Runs a script and takes what stands in a table. Where no digest does, only what is read is written down, and a case that
-    /// fails is run again with all of it: what is told of it is then the same.
+    /// Runs a script and takes the values for a table. If no digest is in the table, only the columns
+    /// that are read are written, and a case that fails is run again with all of them. The texts about
+    /// the failure are then the same.
     fn ran(&self, script: &Script) -> Result<Ran, RunError> {
         if !self.sweep.has_digest {
             let ran = self.take(Session::lean(script, &self.signals)?)?;
@@ -222,7 +225,7 @@ impl Job {
         self.take(Session::new(script)?)
     }
 
-    /// Takes what stands in a table; rows are given up on the way.
+    /// Takes the values for a table; rows are dropped on the way.
     fn take(&self, mut session: Session<'_>) -> Result<Ran, RunError> {
         let mut digest = self.sweep.has_digest.then(digest::Whole::default);
         let mut extremes = Extremes::new(session.trace());
@@ -258,7 +261,7 @@ impl Job {
         row.len() == self.columns.len() && fields.all(|((_, value), field)| shortest(*value) == field)
     }
 
-    /// The verdict that stands in a row.
+    /// The verdict in a row.
     pub fn judged(&self, fields: &[String]) -> Option<Judged> {
         let word = fields.get(FIRST.len() + self.sweep.parameters().count())?;
         Judged::ALL.into_iter().find(|judged| judged.word() == word)
@@ -296,14 +299,14 @@ impl Job {
             fields.extend(ran.figures.iter().cloned());
             fields.extend(ran.digest.map(|digest| format!("{digest:016x}")));
         }
-        // A case that did not run has nothing to tell between its verdict and the reason.
+        // A case that did not run has no values between its verdict and the reason.
         fields.resize(self.columns.len() - 1, String::new());
         fields.push(why.replace(['\n', '\r'], " "));
         fields
     }
 }
 
-/// The columns of a table; without those that the sweep file names itself, if so.
+/// The columns of a table; optionally without those that the sweep file names itself.
 fn columns(sweep: &Sweep, axes: &[String], all: bool) -> Vec<String> {
     let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
     let mut columns = owned(&FIRST);
@@ -328,7 +331,7 @@ fn columns(sweep: &Sweep, axes: &[String], all: bool) -> Vec<String> {
     columns
 }
 
-/// The first thing that is wrong, in one line.
+/// The first fault, in one line.
 fn first_of(error: &ScriptError) -> String {
     let Some(diagnostic) = error.diagnostics().first() else {
         return String::new();

@@ -1,4 +1,4 @@
-//! What an interrupted run left: the rows it had, in the order they came.
+//! The remainder of an interrupted run: its rows, in the order they came.
 
 use crate::job::{Job, Row, SweepError};
 use crate::shard::Shard;
@@ -8,13 +8,13 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-/// A table that is being filled. Its file, `NAME.part`, begins with a line that says what it is a part of; every
-/// row goes out whole, so that an interruption costs the last one at most.
+/// A table that is being filled. Its file, `NAME.part`, begins with a line that names its table. Every
+/// row is written whole, so that an interruption costs the last one at most.
 #[derive(Debug)]
 pub struct Part {
     path: PathBuf,
     file: File,
-    /// What an interrupted run left.
+    /// The rows that an interrupted run left.
     pub rows: Rows,
 }
 
@@ -22,8 +22,8 @@ impl Part {
     /// Opens the part of the table at `table`, or begins one.
     ///
     /// # Errors
-    /// [`SweepError::Suite`] for what the system says; [`SweepError::Table`] for a part of another sweep, script,
-    /// shard or version.
+    /// [`SweepError::Suite`] for errors of the system; [`SweepError::Table`] for a part of another sweep,
+    /// script, shard or version.
     pub fn open(job: &Job, shard: Shard, table: &Path) -> Result<Self, SweepError> {
         let mut path = table.as_os_str().to_owned();
         path.push(".part");
@@ -34,7 +34,7 @@ impl Part {
             Err(error) if error.kind() == ErrorKind::NotFound => String::new(),
             other => other.map_err(failed)?,
         };
-        // What was cut off by an interruption is as if it had never been.
+        // A row cut off by an interruption is ignored.
         let whole = &text[..text.rfind('\n').map_or(0, |end| end + 1)];
         let mut rows = Rows::new();
         if !whole.is_empty() {
@@ -72,13 +72,13 @@ impl Part {
     /// Adds a row.
     ///
     /// # Errors
-    /// [`SweepError::Suite`] with what the system says.
+    /// [`SweepError::Suite`] with the error of the system.
     pub fn add(&mut self, row: &Row) -> Result<(), SweepError> {
         self.append(&row.fields)
             .map_err(|source| io_error(&self.path, source))
     }
 
-    /// The row goes out in one piece.
+    /// Writes the row in one piece.
     fn append(&mut self, fields: &[String]) -> io::Result<()> {
         let mut line = csv::Writer::from_writer(Vec::new());
         line.write_record(fields)?;
@@ -86,7 +86,7 @@ impl Part {
         self.file.write_all(&line)
     }
 
-    /// Removes the file: the table it was a part of is there.
+    /// Removes the file, because its table is complete.
     ///
     /// # Errors
     /// [`SweepError::Suite`] with what the system says.

@@ -6,11 +6,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::thread;
 
-/// Runs these cases on so many threads (0 counts as 1) and hands every row to `take` as it comes, in any order. A
-/// failure of `take` or a defect of this program ends it; cases that are running are finished first.
+/// Runs these cases on `threads` threads (0 counts as 1) and passes every row to `take` as it comes, in
+/// any order. A failure of `take` or a defect of this program ends it; running cases are finished first.
 ///
 /// # Errors
-/// What `take` said, or [`Job::case`].
+/// The error of `take`, or of [`Job::case`].
 pub fn run<E: From<SweepError> + Send>(
     job: &Job,
     cases: &[u64],
@@ -26,14 +26,14 @@ pub fn run<E: From<SweepError> + Send>(
     thread::scope(|scope| {
         let worker = || {
             let each = |send: &mut mpsc::SyncSender<Result<Row, SweepError>>, case: &u64| {
-                // Nobody listens any more once something went wrong.
+                // After an error nobody receives any more.
                 let goes_on = !stop.load(Ordering::Relaxed) && send.send(job.case(*case)).is_ok();
                 goes_on.then_some(())
             };
             let all = || cases.par_iter().try_for_each_with(send, each);
             match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
                 Ok(pool) => pool.install(all),
-                // The threads there are will do.
+                // If the system has no more threads, the existing ones do the work.
                 Err(_) => all(),
             }
         };

@@ -1,9 +1,10 @@
-//! Which cases of a sweep a process computes.
+//! The cases of a sweep that a process computes.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// Every n-th case, beginning with the i-th: neighbouring cases often cost alike, so shards last about as long.
+/// Every n-th case, beginning with the i-th. Neighbouring cases often have similar cost, so shards take
+/// about the same time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     /// From 0.
@@ -15,9 +16,9 @@ impl Shard {
     /// All cases.
     pub const ALL: Self = Self { index: 0, of: 1 };
 
-    /// Its cases among so many, in order.
+    /// Its cases among `count`, in order.
     pub fn cases(self, count: u64) -> impl Iterator<Item = u64> {
-        // `of` is at least 1, and no sweep has cases beyond the range of usize where it could run.
+        // `of` is at least 1, and a sweep that can run has no cases beyond the range of usize.
         (self.index..count).step_by(usize::try_from(self.of).unwrap_or(usize::MAX))
     }
 

@@ -23,7 +23,7 @@ pub fn write(columns: &[String], rows: &Rows, out: &mut dyn Write) -> io::Result
     table.flush()
 }
 
-/// The rows of the tables that shards of this sweep left: every case once.
+/// The rows of the tables of this sweep's shards: every case once.
 ///
 /// # Errors
 /// [`SweepError::Suite`] for a file that cannot be read; [`SweepError::Table`] for a table with other columns, for a
@@ -75,7 +75,7 @@ fn read(job: &Job, path: &Path) -> Result<Rows, SweepError> {
     Ok(rows)
 }
 
-/// A row of a table, held against the parameters that its case has.
+/// A row of a table, checked against the parameters of its case.
 pub(crate) fn row(job: &Job, record: &csv::StringRecord) -> Result<(u64, Vec<String>), String> {
     let text = record.get(0).unwrap_or_default();
     let case = text.parse().ok().filter(|case| *case < job.count());

@@ -1,4 +1,5 @@
-//! The state of the watching, and what keys do to it. It reads no clock and no terminal, so tests drive it.
+//! The state of the view, and the effect of keys. It reads no clock and no terminal, so tests can drive
+//! it.
 
 use crate::points::{Line, lines};
 use crate::program::{self, Side, View};
@@ -6,16 +7,16 @@ use standstill_script::model::{Point, Script};
 use standstill_script::{Outcome, RunError, Session, Standing};
 use standstill_trace::{Event, EventLog};
 
-/// Lines of a program among which that of a fault is brought to the middle.
+/// Number of visible program lines that is assumed to centre the line of a fault.
 const LINES_AROUND: usize = 16;
 
-/// Events that the list remembers.
+/// Most events in the list.
 const EVENTS_KEPT: usize = 1000;
 
-/// How fast a run may go, in cycles of the script per cycle of the clock; the last is as fast as it can.
+/// Speeds of a run, in cycles of the script per cycle of the clock; the last is as fast as possible.
 pub const SPEEDS: [f64; 6] = [0.01, 0.1, 1.0, 10.0, 100.0, f64::INFINITY];
 
-/// A key that means something, whatever terminal it comes from.
+/// A key with a meaning, independent of the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
     /// A character.
@@ -28,24 +29,24 @@ pub enum Key {
     Backspace,
     /// Tab.
     Tab,
-    /// An arrow or page key: so many lines down.
+    /// An arrow or page key: this many lines down.
     Down(i32),
 }
 
-/// What the run is doing.
+/// The mode of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// Nothing, until a key says so.
+    /// Waits for a key.
     Paused,
     /// Scans at its speed.
     Running,
-    /// Scans as fast as it can until something happens.
+    /// Scans as fast as possible until an event.
     ToEvent,
-    /// Scans as fast as it can until a claim is decided.
+    /// Scans as fast as possible until a claim is decided.
     ToClaim,
 }
 
-/// What lies over the screen.
+/// The box over the screen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Over {
     Nothing,
@@ -54,7 +55,7 @@ pub(crate) enum Over {
     Edit(Point, String),
 }
 
-/// Saves the changed script; what to tell of it.
+/// Saves the changed script; returns the message.
 pub type Save<'a> = Box<dyn FnMut(&[standstill_script::Change]) -> Result<String, String> + 'a>;
 
 /// A script being watched.
@@ -69,7 +70,7 @@ pub struct App<'a> {
     pub(crate) says: Vec<String>,
     pub(crate) mode: Mode,
     speed: usize,
-    /// Scans that the clock has earned and that were not done yet.
+    /// Scans that are due by the clock and not done yet.
     owed: f64,
     pub(crate) axis: usize,
     pub(crate) lines: Vec<Line>,
@@ -77,17 +78,17 @@ pub struct App<'a> {
     pub(crate) over: Over,
     pub(crate) message: String,
     pub(crate) broken: bool,
-    /// The program that is looked at, if any.
+    /// The program in view, if any.
     pub(crate) view: Option<View>,
     quit: bool,
     save: Save<'a>,
 }
 
 impl<'a> App<'a> {
-    /// A script before its first scan, under the name it is shown by.
+    /// A script before its first scan, with its name on the screen.
     ///
     /// # Errors
-    /// [`RunError`]: what the script asks for cannot be set up.
+    /// [`RunError`]: the script cannot be set up.
     pub fn new(script: &'a Script, name: &str, save: Save<'a>) -> Result<Self, RunError> {
         let lines = lines(script);
         let session = Session::new(script)?;
@@ -114,7 +115,7 @@ impl<'a> App<'a> {
         })
     }
 
-    /// Whether the watching is to end.
+    /// Whether the view is to end.
     #[must_use]
     pub const fn is_done(&self) -> bool {
         self.quit
@@ -147,32 +148,32 @@ impl<'a> App<'a> {
         )
     }
 
-    /// Why the run ended early, if it did.
+    /// The reason why the run ended early, if it did.
     #[must_use]
     pub fn broken(&self) -> Option<&str> {
         self.broken.then_some(self.message.as_str())
     }
 
-    /// Judges the run as far as it went.
+    /// Judges the run so far.
     #[must_use]
     pub fn finish(self) -> Outcome {
         self.session.finish()
     }
 
-    /// Tells that so much of the clock went by (s). The scans it earned are done by [`App::work`].
+    /// Adds elapsed time (s). [`App::work`] does the scans that are then due.
     pub fn elapsed(&mut self, seconds: f64) {
         self.owed = match self.mode {
             Mode::Paused => 0.0,
             Mode::ToEvent | Mode::ToClaim => f64::INFINITY,
             Mode::Running => {
                 let cycle = self.script.cycle_ns as f64 / 1e9;
-                // What a slow terminal held up is not made up for.
+                // Time lost by a slow terminal is not made up.
                 self.owed.min(1.0) + seconds * self.speed() / cycle
             }
         };
     }
 
-    /// Does one scan if the clock has earned one; FALSE if there is nothing to do.
+    /// Does one scan if one is due; FALSE if there is nothing to do.
     pub fn work(&mut self) -> bool {
         if self.mode == Mode::Paused || self.owed < 1.0 {
             return false;
@@ -191,7 +192,7 @@ impl<'a> App<'a> {
         self.mode != Mode::Paused
     }
 
-    /// One scan; whether it had an event.
+    /// One scan; returns whether it had an event.
     fn scan(&mut self) -> bool {
         match self.session.advance() {
             Ok(true) => {}
@@ -219,7 +220,7 @@ impl<'a> App<'a> {
         some
     }
 
-    /// Tells where a program faulted, and shows the line.
+    /// Reports where a program faulted, and shows the line.
     fn tell_fault(&mut self, events: &[Event]) {
         let fault = events.iter().find(|event| event.text.starts_with("faults: "));
         let Some(event) = fault else { return };
@@ -236,7 +237,7 @@ impl<'a> App<'a> {
         }
     }
 
-    /// The next program, and behind the last one the axes again.
+    /// The next program; after the last one the axes again.
     fn next_view(&mut self) {
         let after = self.view.as_ref().map(|view| view.program);
         let next = program::next(self.script, after);
@@ -246,7 +247,7 @@ impl<'a> App<'a> {
         self.view = next.map(|program| View::new(program, &self.session));
     }
 
-    /// What keys do while a program is looked at; FALSE if they do what they do otherwise.
+    /// The effect of keys while a program is in view; FALSE if they have their usual effect.
     fn view_key(&mut self, key: Key) -> bool {
         let Some(view) = &mut self.view else {
             return false;
@@ -274,7 +275,7 @@ impl<'a> App<'a> {
     pub fn key(&mut self, key: Key) {
         match std::mem::replace(&mut self.over, Over::Nothing) {
             Over::Nothing => self.command(key),
-            // Any key takes the help away.
+            // Any key closes the help.
             Over::Help => {}
             Over::Edit(point, text) => self.edit(point, text, key),
         }
@@ -357,7 +358,7 @@ impl<'a> App<'a> {
         };
     }
 
-    /// Moves the selection over points only.
+    /// Moves the selection, over points only.
     fn select(&mut self, lines: i32) {
         for _ in 0..lines.unsigned_abs() {
             let points = |index: &usize| self.lines.get(*index).is_some_and(|line| line.point.is_some());
@@ -370,7 +371,7 @@ impl<'a> App<'a> {
         }
     }
 
-    /// Turns a BOOL over, asks for every other value.
+    /// Inverts a BOOL; asks for any other value.
     fn begin_edit(&mut self) {
         let Some(line) = self.lines.get(self.selected) else {
             return;

@@ -1,6 +1,6 @@
 //! The keys, as the help shows them.
 
-/// Key and what it does.
+/// A key and its effect.
 pub const KEYS: [(&str, &str); 14] = [
     ("space", "run, pause"),
     ("s  S", "a scan, ten scans"),

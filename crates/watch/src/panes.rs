@@ -15,7 +15,7 @@ use standstill_trace::{Cell, shortest};
 /// Characters of a bar.
 const BAR: usize = 8;
 
-/// The first characters of a text, as many as there is room for; what was left out is shown by two points.
+/// The first characters of a text that fit into the room; two points stand for the rest.
 pub(crate) fn cut(text: &str, room: usize) -> String {
     // A control character would move the cursor.
     let clean = text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c });
@@ -50,7 +50,7 @@ impl App<'_> {
     }
 }
 
-/// The state machine: all states, the one the axis is in lit.
+/// The state machine: all states, with the axis's state highlighted.
 pub(crate) fn states(frame: &mut Frame<'_>, area: Rect, app: &App<'_>, look: Look) {
     let name = app
         .script
@@ -138,7 +138,7 @@ fn ends(limits: &standstill_trace::Limits) -> Option<Line<'static>> {
         .then(|| Line::raw(format!(" Software limits {} to {}", text(min), text(max))))
 }
 
-/// A number that keeps its width while it moves; very large and very small ones in exponents.
+/// A number with a constant width; very large and very small ones in exponents.
 fn number(value: f64) -> String {
     let magnitude = value.abs();
     if value == 0.0 || (1e-3..1e8).contains(&magnitude) {
@@ -154,12 +154,12 @@ fn bar(share: f64) -> String {
     format!("[{:<BAR$}]", "#".repeat(full))
 }
 
-/// Input variables and pins, outputs marked, the selected one pointed at.
+/// Input variables and pins; outputs are marked, the selected one has a pointer.
 pub(crate) fn pins(frame: &mut Frame<'_>, area: Rect, app: &App<'_>, look: Look) {
     let inner = boxed(frame, area, "blocks");
     let height = usize::from(inner.height);
     let width = usize::from(inner.width);
-    // The selected line stays in the middle where it can.
+    // The selected line stays in the middle if possible.
     let last = app.lines.len().saturating_sub(height);
     let first = app.selected.saturating_sub(height / 2).min(last);
     let shown = app.lines.iter().enumerate().skip(first).take(height);
@@ -205,7 +205,7 @@ pub(crate) fn events(frame: &mut Frame<'_>, area: Rect, app: &App<'_>) {
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
-/// The claims: those that fail first, then those decided last.
+/// The claims: failed ones first, then the ones decided last.
 pub(crate) fn claims(frame: &mut Frame<'_>, area: Rect, app: &App<'_>, look: Look) {
     let (held, failed, open) = app.tally();
     let inner = boxed(

@@ -6,7 +6,7 @@ use standstill_script::model::{Point, Script};
 /// A line of the list: a heading, or a variable or pin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Line {
-    /// What it is called below its heading.
+    /// Its name below its heading.
     pub(crate) name: String,
     /// Its name in scripts.
     pub(crate) full: String,
@@ -14,7 +14,7 @@ pub(crate) struct Line {
     pub(crate) point: Option<Point>,
     /// It is an output.
     pub(crate) output: bool,
-    /// It is an input that something else gives its value.
+    /// Whether it is an input with a wire.
     pub(crate) wired: bool,
 }
 

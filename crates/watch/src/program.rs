@@ -1,4 +1,4 @@
-//! A program in Structured Text while it runs: which of its lines were executed in the last scan, and its variables.
+//! A program in Structured Text during a run: the lines executed in the last scan, and its variables.
 
 use standstill_script::model::Script;
 use standstill_script::{Counted, Session, Shown};
@@ -11,20 +11,20 @@ pub(crate) enum Side {
     Variables,
 }
 
-/// A program that is looked at.
+/// A program in view.
 #[derive(Clone, Debug)]
 pub(crate) struct View {
-    /// Its place in the script.
+    /// Its index in the script.
     pub program: usize,
     pub side: Side,
-    /// First line of the source and first variable that are shown.
+    /// The first visible line of the source and the first visible variable.
     pub top: [usize; 2],
     /// How often statements were executed.
     counts: BTreeMap<(String, u32, u32), u64>,
     /// Lines that were executed in the last scan: file and line.
     pub ran: BTreeSet<(String, u32)>,
     pub variables: Vec<Shown>,
-    /// Places in `variables` that changed in the last scan.
+    /// Indices in `variables` that changed in the last scan.
     pub changed: BTreeSet<usize>,
 }
 
@@ -50,13 +50,13 @@ impl View {
             changed: BTreeSet::new(),
         };
         view.look(session);
-        // What ran before it was looked at is not known.
+        // Executions before it came into view are not known.
         view.ran.clear();
         view.changed.clear();
         view
     }
 
-    /// Takes what is there after a scan.
+    /// Takes the state after a scan.
     pub(crate) fn look(&mut self, session: &Session<'_>) {
         let statements = session.counted().into_iter().filter(|it| it.branch == 0);
         let counts = statements.map(|it: Counted| ((it.file, it.line, it.column), it.count));
@@ -73,7 +73,7 @@ impl View {
         self.variables = variables;
     }
 
-    /// Moves what is shown of one side.
+    /// Scrolls one side.
     pub(crate) fn scroll(&mut self, by: i32, lines: usize) {
         let (side, most) = match self.side {
             Side::Source => (0, lines),
@@ -85,7 +85,7 @@ impl View {
         }
     }
 
-    /// Brings a line of the source to the middle of so many.
+    /// Moves a line of the source to the middle of the visible ones.
     pub(crate) fn go_to(&mut self, line: usize, height: usize) {
         self.top[0] = line.saturating_sub(height / 2);
     }
@@ -115,7 +115,7 @@ pub(crate) fn rows(script: &Script, program: usize) -> Vec<Row<'_>> {
     rows.collect()
 }
 
-/// Where a fault of the program stands, by its note `faults: cell.st:20:10: ..`: a place in [`rows`].
+/// The place of a program's fault, from its note `faults: cell.st:20:10: ..`: an index into [`rows`].
 pub(crate) fn fault_row(script: &Script, program: usize, note: &str) -> Option<usize> {
     let place = note.strip_prefix("faults: ")?;
     let rows = rows(script, program);

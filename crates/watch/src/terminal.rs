@@ -1,4 +1,5 @@
-//! The terminal around the screen: taken over, given back on every way out, a panic and a signal among them.
+//! The terminal around the screen. It is taken over, and restored on every way out, including a panic and
+//! a signal.
 
 use crate::app::{App, Key, Mode};
 use crate::view::draw;
@@ -14,13 +15,13 @@ use std::time::{Duration, Instant};
 /// Time between two screens while the run goes on.
 const FRAME: Duration = Duration::from_millis(40);
 
-/// Time between two looks for a signal while nothing goes on.
+/// Time between two checks for a signal while nothing happens.
 const IDLE: Duration = Duration::from_millis(100);
 
-/// Of a frame the run gets so much at most; the rest is for the screen.
+/// The part of a frame that the run may use; the rest is for the screen.
 const WORK: Duration = Duration::from_millis(30);
 
-/// So many looks of [`IDLE`] after it was asked to, the watching must have ended.
+/// Number of [`IDLE`] checks after which a view that was asked to end must have ended.
 const PATIENCE: u32 = 3;
 
 /// How the watching ended.
@@ -28,7 +29,7 @@ const PATIENCE: u32 = 3;
 pub enum Ended {
     /// By a key.
     Quit,
-    /// By this signal. Terminals are restored; the caller owes the signal its effect.
+    /// By this signal. Terminals are restored; the caller must still perform the effect of the signal.
     Signal(i32),
 }
 
@@ -38,7 +39,7 @@ impl Ended {
         Self::Signal(i32::try_from(signal).unwrap_or(SIGTERM))
     }
 
-    /// Ends the program as the signal would have, if it was one. Returns only if it was none.
+    /// Ends the program as the signal would have, if there was one. Returns only if there was none.
     ///
     /// # Errors
     /// What the system says.
@@ -50,7 +51,7 @@ impl Ended {
     }
 }
 
-/// Gives the terminal back when it is dropped, and lets the guard go.
+/// Restores the terminal when it is dropped, and ends the guard.
 struct Taken {
     guard: Arc<Guard>,
 }
@@ -63,22 +64,22 @@ impl Drop for Taken {
     }
 }
 
-/// Gives the terminal back from any thread, also while the watching is held up: as far as it takes anything.
+/// Restores the terminal from any thread, as far as it accepts output, even while the view is blocked.
 pub fn give_back() {
     let _ = ratatui::crossterm::terminal::disable_raw_mode();
     #[cfg(unix)]
     line::leave();
 }
 
-/// What ends the program when the watching cannot: it may be held up by a long scan, or by a terminal that takes nothing
-/// or has gone. crossterm reads on for ever from a terminal that was hung up.
+/// Ends the program when the view cannot: it may be blocked by a long scan, or by a terminal that accepts
+/// no output or is gone. After a hang-up crossterm reads from the terminal for ever.
 struct Guard {
     signals: Arc<AtomicUsize>,
     is_over: AtomicBool,
 }
 
 impl Guard {
-    /// Begins to look for signals and for the end of the terminal.
+    /// Begins to check for signals and for the end of the terminal.
     fn start(signals: Arc<AtomicUsize>) -> io::Result<Arc<Self>> {
         let guard = Arc::new(Self {
             signals,
@@ -106,7 +107,7 @@ impl Guard {
             asked += u32::from(signal != 0);
             if asked > PATIENCE && !self.is_over.load(Ordering::Relaxed) {
                 give_back();
-                // Returns only if the system refuses; then there is nothing better.
+                // Returns only if the system refuses; nothing more can be done then.
                 let _ = Ended::of(signal).pass_on();
                 std::process::exit(1);
             }
@@ -114,35 +115,35 @@ impl Guard {
     }
 }
 
-/// The line to the terminal, which crossterm does not look at.
+/// The line to the terminal, which crossterm does not check.
 #[cfg(unix)]
 mod line {
     use rustix::event::{PollFd, PollFlags, Timespec, poll};
     use std::io;
     use std::time::Duration;
 
-    /// What the line is ready for within `wait`.
+    /// The events of the line within `wait`.
     fn ready(fd: &impl rustix::fd::AsFd, wanted: PollFlags, wait: Duration) -> PollFlags {
         let mut fds = [PollFd::new(fd, wanted)];
         let wait = Timespec::try_from(wait).ok();
-        // Interrupted by a signal it is ready for nothing.
+        // After an interruption by a signal there are no events.
         match poll(&mut fds, wait.as_ref()) {
             Ok(_) => fds[0].revents(),
             Err(_) => PollFlags::empty(),
         }
     }
 
-    /// Whether nobody is at its other end any more.
+    /// Whether the other end is closed.
     pub fn is_hung_up() -> bool {
         ready(&io::stdin(), PollFlags::empty(), Duration::ZERO).contains(PollFlags::HUP)
     }
 
-    /// Waits for input; whether there is somebody at its other end.
+    /// Waits for input; returns whether the other end is open.
     pub fn wait(time: Duration) -> bool {
         !ready(&io::stdin(), PollFlags::IN, time).contains(PollFlags::HUP)
     }
 
-    /// Leaves the other screen and shows the cursor, if that can be written at once.
+    /// Leaves the alternate screen and shows the cursor, if that can be written at once.
     pub fn leave() {
         let out = io::stdout();
         if ready(&out, PollFlags::OUT, Duration::ZERO).contains(PollFlags::OUT) {
@@ -151,25 +152,27 @@ mod line {
     }
 }
 
-/// Watches until a key, a signal or the end of the terminal ends it; `color` says whether colours may be used.
+/// Runs the view until a key, a signal or the end of the terminal ends it; `color` says whether colours
+/// may be used.
 ///
 /// # Errors
-/// What the system says of the terminal.
+/// The error of the terminal.
 pub fn watch(app: &mut App<'_>, color: bool) -> io::Result<Ended> {
     let signals = signals()?;
     let guard = Guard::start(Arc::clone(&signals))?;
     let taken = Taken { guard };
-    // Takes the terminal back in a panic, too, before its message is printed.
+    // Also in a panic, restores the terminal before the message is printed.
     let mut terminal = ratatui::try_init()?;
     let ended = run(app, color, &mut terminal, &signals);
     drop(taken);
     #[cfg(unix)]
     if line::is_hung_up() {
-        // It would show the cursor on its way out, and say on standard error that it cannot: a panic where that has gone.
+        // Its drop would show the cursor and report a failure on standard error, which is a panic if that
+        // is gone.
         std::mem::forget(terminal);
     }
     match ended {
-        // What goes wrong at a terminal that has gone is its end.
+        // An error of a terminal that is gone is its end.
         #[cfg(unix)]
         Err(_) if line::is_hung_up() => Ok(Ended::Signal(signal_hook::consts::SIGHUP)),
         ended => ended,
@@ -183,7 +186,8 @@ fn run(
     signals: &AtomicUsize,
 ) -> io::Result<Ended> {
     let mut before = Instant::now();
-    // A screen is drawn when it may have changed: over a slow line nothing is sent while nothing happens.
+    // The screen is drawn when it may have changed, so that nothing is sent over a slow line while
+    // nothing happens.
     let mut stale = true;
     while !app.is_done() {
         match signals.load(Ordering::Relaxed) {
@@ -233,7 +237,7 @@ fn signals() -> io::Result<Arc<AtomicUsize>> {
     Ok(flag)
 }
 
-/// Takes an event; TRUE for Ctrl-C, which a terminal that is taken over gives as a key.
+/// Takes an event; TRUE for Ctrl-C, which is a key in this mode of the terminal.
 fn take(app: &mut App<'_>, event: &Event) -> bool {
     let Event::Key(KeyEvent {
         code,

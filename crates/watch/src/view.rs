@@ -11,10 +11,10 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Clear, Paragraph};
 use standstill_trace::time_literal;
 
-/// The smallest screen that has room for everything: columns and lines.
+/// The smallest screen with room for everything: columns and lines.
 pub const LEAST: (u16, u16) = (80, 24);
 
-/// How things look; without colour nothing is told by colour alone.
+/// The style. Without colour, no information depends on colour alone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Look {
     color: bool,

@@ -1,5 +1,5 @@
-//! Scan scripts for an editor: their mistakes, and what is asked of a place. What may stand where is told by the schema; what
-//! the names mean, by the script itself.
+//! Scan scripts for an editor: their mistakes, and the answers about a place. The schema says which keys
+//! and values are permitted there; the script itself says what the names mean.
 
 mod scene;
 mod schema;
@@ -21,13 +21,13 @@ use standstill_script::{ScriptError, read_with_programs};
 use standstill_st::Dialect;
 use std::path::Path;
 
-/// Keys whose texts are signals.
+/// Keys with signals as texts.
 const SIGNAL_KEYS: &[&str] = &["from", "not", "any", "all", "exclusive", "same_as", "of"];
 
-/// Keys whose texts are axes.
+/// Keys with axes as texts.
 const AXIS_KEYS: &[&str] = &["axis", "slave", "master", "within_limits"];
 
-/// What is wrong with a script.
+/// The mistakes of a script.
 pub(crate) fn diagnostics(documents: &Documents, path: &Path) -> Vec<Diagnostic> {
     let Ok(text) = documents.text(path) else {
         return Vec::new();
@@ -41,7 +41,7 @@ pub(crate) fn diagnostics(documents: &Documents, path: &Path) -> Vec<Diagnostic>
         let path = documents.beside(path, inner)?;
         match documents.text(&path) {
             Ok(text) => Ok(text.as_str().as_bytes().to_vec()),
-            // A module is no text.
+            // A module is not text.
             Err(_) => std::fs::read(&path).map_err(|error| error.to_string()),
         }
     };
@@ -74,7 +74,7 @@ fn diagnostic(
         .and_then(location)
         .map(|it| it.range);
     let message = match it.span.filter(|span| !own(*span)) {
-        // It stands in a file that the script includes.
+        // It is in a file that the script includes.
         Some(span) => {
             let (line, column) = error.line_column(span);
             format!("{}:{line}:{column}: {}", error.file_of(span), it.message)
@@ -101,7 +101,7 @@ fn diagnostic(
     }
 }
 
-/// What is asked of a place.
+/// The question about a place.
 #[derive(Debug)]
 pub(crate) struct Asked<'d> {
     scene: Scene<'d>,
@@ -128,7 +128,7 @@ impl<'d> Asked<'d> {
         })
     }
 
-    /// The key of the value, or of the list it stands in.
+    /// The key of the value, or of the list that contains it.
     fn last_key(&self) -> &str {
         let keys = self.path.iter().rev().filter_map(|step| match step {
             Step::Key(key) => Some(key.as_str()),
@@ -137,7 +137,7 @@ impl<'d> Asked<'d> {
         keys.take(1).next().unwrap_or_default()
     }
 
-    /// The text that is there, without its quotes, and where that is in it.
+    /// The text at the place, without its quotes, and the place in it.
     fn inner(&self) -> (&str, usize) {
         let (Spot::Key(span) | Spot::Value(span)) = &self.spot;
         let text = self.scene.text().as_str().get(span.clone()).unwrap_or_default();
@@ -157,7 +157,7 @@ impl<'d> Asked<'d> {
             .is_some_and(|it| it.starts_with('"'))
     }
 
-    /// The name in a text that the place is in: all of it, or one of an expression.
+    /// The name at the place in a text: all of it, or one of an expression.
     fn word(&self) -> (&str, std::ops::Range<usize>) {
         let (inner, start) = self.inner();
         if !inner.starts_with('=') {
@@ -422,14 +422,14 @@ impl<'d> Asked<'d> {
     }
 }
 
-/// Something that may be written.
+/// An item that may be written.
 #[derive(Debug)]
 struct Offer {
     label: String,
     detail: String,
     doc: String,
     kind: CompletionItemKind,
-    /// Whether it stands in quotes.
+    /// Whether it is written in quotes.
     text: bool,
 }
 

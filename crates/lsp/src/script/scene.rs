@@ -1,4 +1,4 @@
-//! What a script names: axes, inputs, instances, programs, tasks, with the machine files it includes.
+//! The names of a script: axes, inputs, instances, programs, tasks, including those of its machine files.
 
 use crate::documents::Documents;
 use crate::position::Text;
@@ -14,13 +14,13 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Most files that a script is made of.
+/// Most files of a script.
 const FILES_MOST: usize = 64;
 
 /// Most variables of a program that are offered.
 const VARIABLES_MOST: usize = 1000;
 
-/// What an axis shows beside its state.
+/// The signals of an axis beside its state.
 const AXIS_SIGNALS: &[(&str, &str, &str)] = &[
     ("State", "state", "State after all blocks were called in the scan"),
     ("Position", "LREAL", "Set-point of the end of the scan (u)"),
@@ -91,7 +91,7 @@ pub(crate) struct Signal {
     pub settable: bool,
 }
 
-/// What is known of a name in a script.
+/// The information about a name in a script.
 #[derive(Debug)]
 pub(crate) struct Told {
     /// As Structured Text.
@@ -230,7 +230,7 @@ impl<'d> Scene<'d> {
         Some(Project::new(self.documents, &files, self.dialect))
     }
 
-    /// All signals; `deep` for those of programs, too, which takes compiling them.
+    /// All signals; `deep` includes those of programs, which must be compiled for that.
     pub(crate) fn signals(&self) -> Vec<Signal> {
         let mut found = Vec::new();
         for entity in &self.entities {
@@ -294,7 +294,7 @@ impl<'d> Scene<'d> {
         leaves.map(signal).collect()
     }
 
-    /// What is known of a signal, or of the name of an axis, an input or the like.
+    /// The information about a signal, or about the name of an axis, an input or similar.
     pub(crate) fn told(&self, path: &str) -> Option<Told> {
         let (name, rest) = path
             .split_once('.')
@@ -355,7 +355,7 @@ impl<'d> Scene<'d> {
     }
 }
 
-/// What the table of blocks says of a pin.
+/// The description of a pin in the table of blocks.
 pub(crate) fn pin_doc(pin: &Pin) -> String {
     match pin.unit {
         "" => pin.doc.to_owned(),

@@ -1,10 +1,10 @@
-//! What the JSON Schema of scripts allows at a place.
+//! The keys and values that the JSON Schema of scripts permits at a place.
 
 use crate::tree::{Node, Step};
 use serde_json::Value;
 use std::sync::OnceLock;
 
-/// Most schemas that are looked at for one place.
+/// Most schemas that are read for one place.
 const MOST: usize = 2000;
 
 fn schema() -> &'static Value {
@@ -12,14 +12,15 @@ fn schema() -> &'static Value {
     SCHEMA.get_or_init(|| serde_json::from_str(&standstill_script::schema()).unwrap_or_default())
 }
 
-/// All that may stand at one place.
+/// All permitted schemas at one place.
 #[derive(Debug)]
 pub(crate) struct Allowed {
     schemas: Vec<&'static Value>,
     names: Vec<&'static str>,
 }
 
-/// What may stand at the end of a path; `tree` decides where one key says what another one may be.
+/// The permitted schemas at the end of a path; `tree` decides if the value of one key determines another
+/// one.
 pub(crate) fn allowed(tree: &Node, path: &[Step]) -> Allowed {
     let mut here = Allowed {
         schemas: Vec::new(),
@@ -51,7 +52,7 @@ pub(crate) fn allowed(tree: &Node, path: &[Step]) -> Allowed {
 }
 
 impl Allowed {
-    /// Adds a schema and all that it stands for.
+    /// Adds a schema and all schemas it refers to.
     fn add(&mut self, schema: &'static Value, node: Option<&Node>, depth: usize) {
         const DEPTH_MOST: usize = 16;
         if depth > DEPTH_MOST || self.schemas.len() >= MOST {
@@ -83,7 +84,7 @@ impl Allowed {
         self.names.contains(&name)
     }
 
-    /// The keys of objects, and what each may hold.
+    /// The keys of objects, and their permitted values.
     pub(crate) fn keys(&self) -> impl Iterator<Item = (&'static str, &'static Value)> {
         let objects = self
             .schemas
@@ -112,12 +113,12 @@ impl Allowed {
         })
     }
 
-    /// What is said of the place.
+    /// The description of the place.
     pub(crate) fn description(&self) -> Option<&'static str> {
         self.schemas.iter().find_map(|it| it.get("description")?.as_str())
     }
 
-    /// In a few words what may stand there.
+    /// The permitted kinds of values, in a few words.
     pub(crate) fn kinds(&self) -> String {
         const SHOWN: usize = 12;
         let mut words: Vec<String> = Vec::new();
