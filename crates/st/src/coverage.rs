@@ -1,7 +1,7 @@
-//! Counters of statements and branches, for those who ask for them.
+//! Counters of statements and branches, made on request.
 //!
-//! They stand behind the variables, so these keep their places, and count in 64 bits. What they cost is fuel: a run that is
-//! judged has none, coverage is counted in a run of its own.
+//! They are placed behind the variables, so these keep their addresses. They count in 64 bits. They cost
+//! fuel, so a judged run has none, and coverage is counted in a run of its own.
 
 use crate::check::Program;
 use crate::source::{Position, Sources, Span};
@@ -18,14 +18,14 @@ pub struct Counter {
     pub file: String,
     /// Where the statement begins.
     pub position: Position,
-    /// 0 for the statement; else the number of one of its branches, from 1, the last of which is ELSE, whether it is
-    /// written or not.
+    /// 0 for the statement; otherwise the number of one of its branches, from 1. The last branch is ELSE,
+    /// even if it is not written.
     pub branch: u32,
     /// Where the count stands in memory, 8 bytes.
     pub address: u32,
 }
 
-/// All counters of a program; none unless they are asked for.
+/// All counters of a program; none unless requested.
 #[derive(Debug, Default)]
 pub(crate) struct Counters {
     places: BTreeMap<Key, u32>,

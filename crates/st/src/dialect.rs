@@ -1,5 +1,5 @@
-//! What another system calls the types, elements and pins of the library. Data: which system it is, and where that is written
-//! down, the caller knows.
+//! The names that another system has for the types, elements and pins of the library. This is data: the
+//! caller knows which system it is and the source of the names.
 
 /// Other names and numbers; the default has none.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -17,7 +17,7 @@ pub struct Dialect {
 }
 
 impl Dialect {
-    /// Our type, which is called so there.
+    /// Our type for its name in the dialect.
     pub(crate) fn type_called(&self, name: &str) -> Option<&str> {
         let found = self
             .types
@@ -32,14 +32,15 @@ impl Dialect {
         of_type.map(|(_, element, there)| (element.as_str(), there.as_str()))
     }
 
-    /// Our name of a block's pin, which is called so there.
+    /// Our name of a block's pin for its name in the dialect.
     pub(crate) fn pin_called(&self, block: &str, name: &str) -> Option<&str> {
         let same =
             |(of, _, there): &&(String, String, String)| of == block && there.eq_ignore_ascii_case(name);
         self.pins.iter().find(same).map(|(_, pin, _)| pin.as_str())
     }
 
-    /// The element that has a number there: `None` if the numbers are ours, `Some(None)` if no element has it.
+    /// The element with a number in the dialect: `None` if the numbers are ours, `Some(None)` if no
+    /// element has it.
     pub(crate) fn element_numbered(&self, ty: &str, number: i128) -> Option<Option<&str>> {
         let mut of_type = self.numbers.iter().filter(|(of, ..)| of == ty).peekable();
         of_type.peek()?;

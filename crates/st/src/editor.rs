@@ -1,20 +1,21 @@
-//! What an editor asks of a project: whose name stands at a place, where it is declared, and what may be written there.
+//! Answers for editors: the name at a place, its declaration, and the names that may be written there.
 //!
-//! Nothing is kept between two questions: the project is read and checked anew, which is linear in its bytes.
+//! Nothing is kept between two questions. The project is read and checked anew, which is linear in its
+//! bytes.
 
 use crate::Options;
 use crate::check::{self, Look};
 use crate::error::Found;
 use crate::source::{Source, Sources, Span};
 
-/// What is known of a name.
+/// The information about a name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Hover {
     /// The name.
     pub span: Span,
     /// Its declaration, in Structured Text.
     pub text: String,
-    /// What is said of it: by the table of blocks, or by the comment at its declaration.
+    /// Its description: from the table of blocks, or from the comment at its declaration.
     pub doc: String,
     /// Where it is declared; `None` if that is the library.
     pub declared: Option<Span>,
@@ -45,18 +46,18 @@ pub enum CompletionKind {
 pub struct Completion {
     /// The name.
     pub name: String,
-    /// What is written for it: a pin of a call goes with its sign, `Execute := `.
+    /// The text to insert: for a pin of a call with its sign, `Execute := `.
     pub insert: String,
     /// What it is.
     pub kind: CompletionKind,
     /// Its type, in a word or two.
     pub detail: String,
-    /// What is said of it, possibly nothing.
+    /// Its description, possibly empty.
     pub doc: String,
 }
 
-/// What stands at byte `byte` of file `file` of `sources`, if it is a name that is known; the table of files beside it says
-/// where its spans are. A name is looked up at its end, too. Cost: linear in the bytes of the sources.
+/// The name at byte `byte` of file `file` of `sources`, if it is known; the table of files belongs to its
+/// spans. A place at the end of a name counts as in it. Cost: linear in the bytes of the sources.
 #[must_use]
 pub fn hover(
     sources: &[Source<'_>],
@@ -70,8 +71,9 @@ pub fn hover(
     (sources, found.flatten())
 }
 
-/// What may be written at byte `byte` of file `file` of `sources`: what is typed there already is part of it, and the editor
-/// chooses among the names. At most 2000. Cost: linear in the bytes of the sources.
+/// The names that may be written at byte `byte` of file `file` of `sources`. The name typed there so far
+/// counts as part of it; the editor filters the names. At most 2000. Cost: linear in the bytes of the
+/// sources.
 #[must_use]
 pub fn complete(sources: &[Source<'_>], options: &Options, file: usize, byte: usize) -> Vec<Completion> {
     let (_, found) = asked(sources, file, byte, |sources, items, file, place| {
@@ -80,8 +82,9 @@ pub fn complete(sources: &[Source<'_>], options: &Options, file: usize, byte: us
     found.unwrap_or_default()
 }
 
-/// The variable that a script calls by this path behind the key of its program: `State`, `Units[1].Mv.Done`, `Left.State`
-/// for one of an instance of a CONFIGURATION. Its span says nothing. Cost: linear in the bytes of the sources.
+/// The variable of a script's path behind the key of its program: `State`, `Units[1].Mv.Done`,
+/// `Left.State` for one of an instance of a CONFIGURATION. Its span is not used. Cost: linear in the
+/// bytes of the sources.
 #[must_use]
 pub fn variable(sources: &[Source<'_>], options: &Options, path: &str) -> (Sources, Option<Hover>) {
     let (sources, found) = asked(sources, 0, 0, |sources, items, _, _| {
@@ -90,7 +93,8 @@ pub fn variable(sources: &[Source<'_>], options: &Options, path: &str) -> (Sourc
     (sources, found.flatten())
 }
 
-/// Reads the sources and asks something of a place; nothing if it is not in them or they are too large.
+/// Reads the sources and answers a question about a place; `None` if it is not in them or they are too
+/// large.
 fn asked<T>(
     given: &[Source<'_>],
     file: usize,

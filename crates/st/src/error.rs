@@ -1,4 +1,4 @@
-//! What is wrong with a program, and how it is shown.
+//! The faults of a program, and how they are shown.
 
 use crate::source::{Position, Sources, Span};
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet, normalize_untrusted_str};
@@ -115,7 +115,7 @@ pub struct Diagnostic {
     pub code: Code,
     /// How bad.
     pub severity: Severity,
-    /// What is wrong, one sentence without a full stop.
+    /// The fault, one sentence without a full stop.
     pub message: String,
     /// Where.
     pub span: Span,
@@ -186,7 +186,7 @@ impl Found {
             Severity::Error => (&mut self.errors, &mut self.error_count),
             Severity::Warning => (&mut self.warnings, &mut self.warning_count),
         };
-        // What two others need is looked at twice.
+        // A piece that two others need is checked twice.
         if list.contains(&diagnostic) {
             return;
         }
@@ -219,7 +219,7 @@ impl Found {
     }
 }
 
-/// What was found in the sources, in the order of the text.
+/// The faults of the sources, in text order.
 #[derive(Clone, Debug)]
 pub struct Report {
     sources: Sources,
@@ -264,8 +264,8 @@ impl Report {
         (self.sources.position(span.start), self.sources.position(span.end))
     }
 
-    /// The message for people: per diagnostic what is wrong, file, line and column, the excerpt, a remedy. Without
-    /// colours, so it is the same everywhere. [`fmt::Display`] writes the same.
+    /// The message for people: for each diagnostic the fault, file, line and column, the excerpt, a
+    /// remedy. It has no colours, so it is the same everywhere. [`fmt::Display`] writes the same.
     #[must_use]
     pub fn render(&self) -> String {
         // A fixed width, so that long lines are cut in the same way everywhere.
@@ -282,7 +282,7 @@ impl Report {
     }
 
     fn group<'a>(&'a self, diagnostic: &Diagnostic) -> Group<'a> {
-        // Pieces of the source stand in these; they must not reach a terminal as control characters.
+        // They contain pieces of the source, which must not reach a terminal as control characters.
         let visible = normalize_untrusted_str;
         let level = match diagnostic.severity {
             Severity::Error => Level::ERROR,
@@ -345,14 +345,15 @@ pub(crate) fn quoted(text: &str) -> String {
     format!("`{shown}{cut}`")
 }
 
-/// The candidate nearest to `name` without regard to case, as a help, if one slip in three letters explains it.
+/// The candidate nearest to `name` without regard to case, as a help, if it differs in at most one letter
+/// in three.
 pub(crate) fn did_you_mean<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
     let wanted: String = name.to_ascii_lowercase().chars().take(100).collect();
     let letters = wanted.chars().count();
     // Of one letter nothing would be left.
     let slips = (letters / 3).max(1).min(letters.saturating_sub(1));
     candidates
-        // So many letters more or less are so many slips; most names need no closer look.
+        // A difference in length is a difference in letters; most names need no closer check.
         .filter(|candidate| candidate.len().abs_diff(wanted.len()) <= slips)
         .map(|candidate| {
             (

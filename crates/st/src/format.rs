@@ -1,5 +1,5 @@
-//! The canonical layout of a text: indentation, spaces and the case of keywords. Lines end where the author ended them;
-//! comments stay as they are.
+//! The canonical layout of a text: indentation, spaces and the case of keywords. The author's line ends
+//! stay; comments are not changed.
 
 use crate::error::{Found, Report};
 use crate::lex::{Token, Word, lex};
@@ -12,7 +12,7 @@ const STEP: usize = 2;
 /// Lays out the text of a file. Cost: linear in its bytes.
 ///
 /// # Errors
-/// The [`Report`] of a text that cannot be read: nobody knows what belongs together in it.
+/// The [`Report`] of a text that cannot be read, because its structure is then unknown.
 pub fn format(name: &str, bytes: &[u8]) -> Result<String, Box<Report>> {
     let (sources, wrong) = Sources::new(&[Source { name, bytes }]);
     let mut found = Found::default();
@@ -68,7 +68,7 @@ struct Layout {
     label: bool,
 }
 
-/// What stands between two tokens: comments and pragmas, each with the line ends before it.
+/// The comments and pragmas between two tokens, each with the line ends before it.
 fn pieces(gap: &str) -> (Vec<(usize, &str)>, usize) {
     let mut found = Vec::new();
     let mut lines = 0;
@@ -116,7 +116,7 @@ fn nested(text: &str, open: &str, close: &str) -> usize {
 }
 
 impl Layout {
-    /// Writes the comments between two tokens; gives back the line ends behind them.
+    /// Writes the comments between two tokens; returns the number of line ends behind them.
     fn gap(&mut self, gap: &str) -> usize {
         let (comments, lines) = pieces(gap);
         let mut forced = 0;
@@ -136,7 +136,8 @@ impl Layout {
         lines.max(forced)
     }
 
-    /// Ends the line, if it ends here, and indents the next one, by so many steps less than what is open.
+    /// Ends the line, if it ends here, and indents the next one, by `less` steps less than the open
+    /// constructs.
     fn begin(&mut self, lines: usize, less: usize) {
         if lines == 0 || self.out.is_empty() {
             return;
@@ -198,7 +199,7 @@ impl Layout {
         self.last = Some(token);
     }
 
-    /// What a token that was written opens, and what may follow it.
+    /// The effect of a written token: what it opens, and what may follow it.
     fn follow(&mut self, token: Token, word: Option<Word>, fresh: bool, case: bool) {
         self.signed = self.expects_value && matches!(token, Token::Minus | Token::Plus);
         self.expects_value = match token {

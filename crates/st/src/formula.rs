@@ -1,5 +1,5 @@
-//! Expressions by themselves: which names they read. Who holds the values declares them as variables, puts their names in
-//! the place of these, and has the whole compiled as a program.
+//! The names that an expression reads. A caller with their values declares variables for them, replaces
+//! the names, and compiles the whole as a program.
 
 use crate::Report;
 use crate::error::Found;

@@ -1,10 +1,10 @@
-//! Where things stand in the memory of a module.
+//! The layout of a module's memory.
 //!
 //! | address | |
 //! | ---: | --- |
 //! | 8 | the number of the place of the last fault, 0 if there is none (u32) |
-//! | 12 | the number of the place of the loop that is running, or ran last (u32) |
-//! | 16 | the value that led to the fault (i64) |
+//! | 12 | the number of the place of the running or last loop (u32) |
+//! | 16 | the value that caused the fault (i64) |
 //! | 24 | the instant of this scan (i64, ns) |
 //! | 32 | when each task is due next (i64, ns), then globals, frames of functions, and the programs |
 
@@ -22,7 +22,7 @@ pub(crate) const NOW: u32 = 24;
 
 const FIRST: u32 = 32;
 
-/// What is taken of the memory.
+/// The used part of the memory.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout {
     pub end: u32,
@@ -35,7 +35,7 @@ impl Default for Layout {
 }
 
 impl Layout {
-    /// Takes so many bytes, at a multiple of 8; `u32::MAX` when there are no more addresses.
+    /// Reserves bytes at a multiple of 8; `u32::MAX` when there are no more addresses.
     pub(crate) fn take(&mut self, bytes: u32) -> u32 {
         let Some(place) = self.end.checked_next_multiple_of(8) else {
             return u32::MAX;

@@ -51,7 +51,7 @@ impl Word {
     }
 }
 
-/// What a token is; its text stands in the source.
+/// The kind of a token; its text is in the source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Token {
     Name,
@@ -286,7 +286,7 @@ impl Lexer<'_> {
         }
     }
 
-    /// The next token; nothing if what stands here is none, which has been told then.
+    /// The next token; `None` if the text here is none, which has then been reported.
     fn token(&mut self) -> Option<Token> {
         let byte = self.peek(0);
         if is_name_start(byte) || !byte.is_ascii() {
@@ -362,7 +362,7 @@ impl Lexer<'_> {
         Some(Word::find(text).map_or(Token::Name, Token::Word))
     }
 
-    /// A word with letters that no identifier has, or signs of a word processor.
+    /// A word with letters that an identifier cannot have, or signs of a word processor.
     fn foreign_letters(&mut self, from: usize) -> Option<Token> {
         let text = self.text.get(from..self.at).unwrap_or_default();
         let letter = text.chars().find(|c| !c.is_ascii()).unwrap_or(' ');
@@ -390,7 +390,7 @@ impl Lexer<'_> {
             _ => "use other letters; comments and strings may have any",
         };
         self.found.add(wrong.help(help));
-        // What is a name but for its letters goes on as one, so that only this is told.
+        // Apart from its letters it is a name, so it is read as one, and only this is reported.
         text.starts_with(char::is_alphabetic).then_some(Token::Name)
     }
 

@@ -46,15 +46,16 @@ use crate::error::Found;
 /// What is asked of the compiler beside the sources.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// The PROGRAM to run in every scan. Without it a CONFIGURATION says, or it is the only one there is.
+    /// The PROGRAM to run in every scan. Without it a CONFIGURATION decides, or it is the only one.
     pub program: Option<String>,
     /// Whether it is a library: there need not be a PROGRAM.
     pub library: bool,
-    /// Whether lints are looked for, which are warnings.
+    /// Whether to search for lints, which are warnings.
     pub lint: bool,
     /// Whether the module counts how often each statement and branch is executed.
     pub coverage: bool,
-    /// What types, elements and pins of the library are called, beside their own names, and how enumerations are numbered.
+    /// Names of types, elements and pins of the library in addition to their own, and other numbers of
+    /// enumerations.
     pub dialect: Dialect,
     /// Names of axes, the first one is number 1: a variable of type AXIS_REF of such a name begins as that axis.
     pub axes: Vec<String>,
@@ -73,7 +74,7 @@ pub struct Compiled {
     pub report: Report,
 }
 
-/// What is wrong or doubtful in the sources. Cost: linear in their bytes.
+/// The faults and doubts of the sources. Cost: linear in their bytes.
 #[must_use]
 pub fn check(sources: &[Source<'_>], options: &Options) -> Report {
     match build(sources, options, false) {
@@ -84,7 +85,7 @@ pub fn check(sources: &[Source<'_>], options: &Options) -> Report {
 /// Compiles the files of a project. Cost: linear in their bytes.
 ///
 /// # Errors
-/// The [`Report`], in which something is wrong.
+/// The [`Report`] with the faults.
 pub fn compile(sources: &[Source<'_>], options: &Options) -> Result<Compiled, Box<Report>> {
     match build(sources, options, true) {
         Ok((Some((wasm, symbols)), report)) => Ok(Compiled {

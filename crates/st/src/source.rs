@@ -1,4 +1,4 @@
-//! The files of a project as one row of bytes, and places in it.
+//! The files of a project as one sequence of bytes, and places in it.
 
 use crate::error::{Code, Diagnostic};
 
@@ -14,7 +14,7 @@ pub struct Source<'a> {
     pub bytes: &'a [u8],
 }
 
-/// A piece of the sources: bytes from `start` up to `end` in the row of all files.
+/// A piece of the sources: bytes from `start` up to `end` in the sequence of all files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Span {
     /// First byte.
@@ -62,7 +62,7 @@ pub struct Position {
 struct File {
     name: String,
     text: String,
-    /// Place of its first byte in the row of all files.
+    /// Offset of its first byte in the sequence of all files.
     start: u32,
     /// Where its lines begin, within it.
     lines: Vec<u32>,

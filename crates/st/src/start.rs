@@ -1,10 +1,10 @@
-//! What stands in memory before the first scan.
+//! The memory before the first scan.
 
 use crate::check::{Program, UnitKind};
 use crate::library::blocks;
 use crate::types::{Constant, Elementary, Member, MemberKind, Start, Type, TypeId, Types};
 
-/// The number that a variable of an elementary type begins as, if nothing else is said.
+/// The number that a variable of an elementary type has by default.
 pub(crate) fn first(types: &Types, ty: TypeId) -> i128 {
     match types.get(ty) {
         Type::Enumeration(of) => of.elements.first().map_or(0, |(_, number)| *number),
@@ -13,7 +13,7 @@ pub(crate) fn first(types: &Types, ty: TypeId) -> i128 {
     }
 }
 
-/// Writes what a variable of type `ty` begins as.
+/// Writes the initial value of a variable of type `ty`.
 pub(crate) fn write(program: &Program<'_>, ty: TypeId, start: &Start, memory: &mut [u8], at: u32) {
     match (program.types.get(ty), start) {
         (Type::Structure(structure), Start::Default | Start::Members(_)) => {
@@ -90,7 +90,7 @@ fn elements(
     }
 }
 
-/// The same element so many times: made once, and copied.
+/// The same element several times: made once, and copied.
 fn repeat(
     program: &Program<'_>,
     array: &crate::types::Array,

@@ -1,4 +1,4 @@
-//! The syntax tree: what stands in the text, with its places, before anything is known of names and types.
+//! The syntax tree: the text in its structure, with its places, before names and types are resolved.
 
 use crate::source::Span;
 
@@ -108,7 +108,7 @@ pub(crate) enum SpecKind {
     Structure(Vec<Variables>),
     /// STRING of a length that is said.
     Text(Box<Expression>),
-    /// It has been told what is wrong with it.
+    /// Its fault has been reported.
     Wrong,
 }
 

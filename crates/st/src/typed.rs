@@ -1,4 +1,5 @@
-//! The checked program: every name is a place, every expression has a type, every conversion is said.
+//! The checked program: every name is an address, every expression has a type, every conversion is
+//! explicit.
 
 use crate::source::Span;
 use crate::types::{Elementary, TypeId, UnitId};
@@ -14,22 +15,22 @@ pub(crate) struct Place {
     pub bit: Option<u32>,
 }
 
-/// What the offset of a place counts from.
+/// The base of an address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Base {
     /// The beginning of memory.
     Memory,
     /// The instance of this unit.
     This,
-    /// What the address that stands at this offset of the instance leads to: an in_out.
+    /// The target of the pointer at this offset of the instance: an in_out.
     ThisPointer(u32),
-    /// What the address that stands here in memory leads to: an in_out of a function.
+    /// The target of the pointer at this address: an in_out of a function.
     MemoryPointer(u32),
     /// The instance that is being called.
     Callee,
 }
 
-/// An index that is known at work only.
+/// An index that is known only at run time.
 #[derive(Clone, Debug)]
 pub(crate) struct Index {
     pub value: Box<Expr>,
@@ -51,7 +52,7 @@ pub(crate) enum Kind {
     /// Whole numbers, BOOL, bits, TIME, enumerations.
     Integer(i128),
     Real(f64),
-    /// What stands at a place; of a type with members or elements: its address.
+    /// The value at a place; for a type with members or elements: its address.
     Load(Place),
     Negate(Elementary, Box<Expr>),
     Not(Elementary, Box<Expr>),
@@ -71,7 +72,7 @@ pub(crate) enum Kind {
     Wrong,
 }
 
-/// An operator and what stands behind it; what stands before it is converted first.
+/// An operator and its right side; its left side is converted first.
 #[derive(Clone, Debug)]
 pub(crate) struct Step {
     pub convert: Option<(Elementary, Elementary)>,
@@ -115,8 +116,8 @@ pub(crate) struct FunctionCall {
     pub arguments: Vec<Argument>,
     /// Where outputs go, and what they are then.
     pub outputs: Vec<(Place, Expr)>,
-    /// Where a value with members, elements or bytes is kept, and how many bytes it has: the next call of the function
-    /// overwrites its own.
+    /// The buffer for a value with members, elements or bytes, and its size: the next call of the
+    /// function overwrites its own.
     pub buffer: Option<(u32, u32)>,
 }
 

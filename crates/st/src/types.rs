@@ -1,4 +1,4 @@
-//! Types, their sizes, and where the members of structures and blocks stand in memory.
+//! Types, their sizes, and the offsets of the members of structures and blocks.
 
 use crate::source::Span;
 use std::collections::BTreeMap;
@@ -120,7 +120,7 @@ impl Elementary {
         }
     }
 
-    /// Whether every value of it is one of `to`, so that it is converted without a word.
+    /// Whether every value of it is one of `to`, so that it is converted implicitly.
     pub(crate) fn widens_to(self, to: Self) -> bool {
         use Class::{Bits, Real, Signed, Time, Unsigned};
         match (self.class(), to.class()) {
@@ -134,7 +134,7 @@ impl Elementary {
         }
     }
 
-    /// The smallest type of numbers to which both are converted without a word.
+    /// The smallest type of numbers to which both are converted implicitly.
     pub(crate) fn common(self, other: Self) -> Option<Self> {
         let fits = |to: &Self| self.widens_to(*to) && other.widens_to(*to);
         Self::ALL.iter().copied().find(fits)
@@ -144,7 +144,7 @@ impl Elementary {
 /// Most bytes of a string: its length stands in one byte.
 pub(crate) const TEXT_MOST: u8 = 254;
 
-/// The bytes of a STRING whose length is not said.
+/// The bytes of a STRING without a length.
 pub(crate) const TEXT_USUAL: u8 = 80;
 
 /// A type, by its place in [`Types`].
@@ -175,7 +175,7 @@ pub(crate) enum Type {
     AnyInteger,
     /// A literal without a type, with a point.
     AnyReal,
-    /// What has been told to be wrong: it goes with everything.
+    /// A type whose fault has been reported: it is compatible with everything.
     Wrong,
 }
 
@@ -243,7 +243,7 @@ pub(crate) struct Member {
     pub address: Option<String>,
 }
 
-/// What a variable begins as.
+/// The initial value of a variable.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Start {
     /// As its type says.
@@ -306,7 +306,7 @@ impl Members {
 #[derive(Debug)]
 pub(crate) struct Types {
     list: Vec<Type>,
-    /// Arrays and subranges without a name are the same where they say the same.
+    /// Arrays and subranges without a name are the same if they have the same definition.
     anonymous: BTreeMap<String, TypeId>,
 }
 
@@ -338,7 +338,7 @@ impl Types {
         TypeId(self.list.len() as u32 - 1)
     }
 
-    /// Adds a type that another one which says the same may stand for.
+    /// Adds a type, or returns the existing one with the same definition.
     pub(crate) fn shared(&mut self, ty: Type) -> TypeId {
         let key = self.anonymous_key(&ty);
         if let Some(id) = self.anonymous.get(&key) {

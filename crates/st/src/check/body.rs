@@ -1,4 +1,4 @@
-//! The statements of all units, and what is remembered while those of one are looked at.
+//! The statements of all units, and the state kept while those of one unit are checked.
 
 use super::{Body, Checker};
 use crate::error::{Code, Diagnostic};
@@ -8,9 +8,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 #[derive(Debug, Default)]
 pub(super) struct BodyState {
-    /// Variables that control loops that are running: whose, and which.
+    /// Control variables of running loops, with their units.
     pub controls: Vec<(UnitId, usize)>,
-    /// How many loops are around.
+    /// Number of enclosing loops.
     pub loops: usize,
     /// In_outs that a call of this instance gives, by the text of the instance.
     bound: BTreeMap<String, BTreeSet<usize>>,
@@ -47,7 +47,7 @@ impl Checker<'_> {
         bodies
     }
 
-    /// Remembers which in_outs a call gives, and which it leaves as they were.
+    /// Notes which in_outs a call gives, and which it leaves unchanged.
     pub(super) fn note_bound(
         &mut self,
         instance: &str,
@@ -62,7 +62,7 @@ impl Checker<'_> {
         self.body.kept.extend(kept);
     }
 
-    /// An in_out that no call of an instance gives leads nowhere.
+    /// An in_out that no call of an instance gives refers to nothing.
     pub(super) fn check_kept(&mut self) {
         for (instance, place, span, unit) in std::mem::take(&mut self.body.kept) {
             let name = self

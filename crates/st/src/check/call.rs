@@ -263,7 +263,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Where an output goes, and what it is then.
+    /// The target of an output, and the converted value.
     fn output(&mut self, member: Place, argument: &'a syntax::Argument) -> Option<(Place, Expr)> {
         let value = argument.value.as_ref()?;
         let ExpressionKind::Path(path) = &value.kind else {
@@ -301,7 +301,7 @@ impl<'a> Checker<'a> {
         (!converted.is_wrong()).then_some((target, converted))
     }
 
-    /// The method that is called so, and the instance it is called for; `None` if it is no method.
+    /// The method of this name, and the instance it is called for; `None` if it is not a method.
     fn method_of(&mut self, callee: &'a Path) -> Option<(UnitId, Place)> {
         let Some((Selector::Member(name), before)) = callee.selectors.split_last() else {
             let block = self.this_block()?;
@@ -423,7 +423,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// What an input of a function is that a call leaves out.
+    /// The default of an input of a function that a call leaves out.
     fn default_value(&mut self, member: &Member, span: Span) -> Option<Expr> {
         use crate::types::{Constant, Start};
         if self.is_text(member.ty) {
@@ -563,7 +563,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// What to write in place of a function that works with addresses.
+/// The replacement for a function that works with addresses.
 fn of_pointers(key: &str) -> Option<&'static str> {
     Some(match key {
         "ADR" | "REF" | "ADRINST" | "__ISVALIDREF" => {

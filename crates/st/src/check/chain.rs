@@ -1,4 +1,4 @@
-//! Operators: in which type they are done, and what constants come to.
+//! Operators: the type in which they are computed, and the values of constants.
 
 use super::Checker;
 use crate::error::{Code, Diagnostic};
@@ -54,7 +54,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Both sides as values of one type, or a message that there is none.
+    /// Both sides as values of one type, or a message that they have none in common.
     fn together(
         &mut self,
         left: Expr,
@@ -92,7 +92,7 @@ impl<'a> Checker<'a> {
             return None;
         };
         let ty = Types::of(common);
-        // A chain that goes on is converted by its next step.
+        // The next step converts a chain that continues.
         let left = if matches!(left.kind, Kind::Chain(..)) {
             left
         } else {
@@ -501,7 +501,7 @@ impl<'a> Checker<'a> {
         Some(self.step(left.clone(), operation, right, elementary, ty, at))
     }
 
-    /// Adds a step to the chain on the left, or begins one.
+    /// Adds a step to the chain on the left, or begins a chain.
     fn step(
         &mut self,
         left: Expr,
@@ -575,7 +575,7 @@ const fn wholes(one: i128, operation: Operation, other: i128) -> i128 {
     }
 }
 
-/// What to do where a value of this type and a string are put together.
+/// The remedy if a value of this type and a string are combined.
 fn beside_text(operator: Operator, ty: &str) -> String {
     use Operator as O;
     match operator {

@@ -1,4 +1,4 @@
-//! What may stand at a place in the text, by the tokens before it.
+//! The names that may be written at a place in the text, according to the tokens before it.
 
 use super::look::{function_text, functions, library_blocks, pin_doc};
 use super::{Checker, UnitKind};
@@ -51,7 +51,7 @@ enum Part {
     Index,
 }
 
-/// Where in the text the place is.
+/// The surroundings of the place in the text.
 #[derive(Debug, Default)]
 struct Around {
     /// The unit and the method that are open, by name.
@@ -69,7 +69,7 @@ struct Before<'t> {
 }
 
 impl Before<'_> {
-    /// The token so many before the place.
+    /// The token `back` tokens before the place.
     fn token(&self, back: usize) -> Token {
         let place = self.tokens.len().checked_sub(back + 1);
         place
@@ -125,8 +125,8 @@ impl Before<'_> {
         around
     }
 
-    /// The path that ends so many tokens before the place, from its root on, and whether it begins with `THIS^`; then it may
-    /// be empty.
+    /// The path that ends `back` tokens before the place, from its root, and whether it begins with
+    /// `THIS^`; then it may be empty.
     fn path(&self, mut back: usize) -> Option<(Vec<Part>, bool)> {
         let mut parts = Vec::new();
         loop {
@@ -166,7 +166,7 @@ impl Before<'_> {
         Some((parts, false))
     }
 
-    /// How many tokens before the place the bracket stands that is open there, if the place is in a call.
+    /// The distance in tokens to the bracket that is open at the place, if the place is in a call.
     fn open_call(&self) -> Option<usize> {
         let mut depth = 0_usize;
         for back in 0..self.tokens.len() {
@@ -188,14 +188,14 @@ fn is_number_before(tokens: &[(Token, Span)], name: Span) -> bool {
 }
 
 impl Checker<'_> {
-    /// What may stand at a place of a file.
+    /// The names that may be written at a place of a file.
     pub(crate) fn complete(mut self, file: usize, place: u32) -> Vec<Completion> {
         let sources = self.sources;
         let (text, start) = sources.text_of(file);
         let Some(prefix) = text.get(..(place - start) as usize) else {
             return Vec::new();
         };
-        // With a letter more there is a name that ends here, unless it is in a comment, a string or a number.
+        // With one more letter, a name ends here, unless the place is in a comment, a string or a number.
         let text = format!("{prefix}x");
         let mut tokens = lex(&text, start, &mut Found::default());
         tokens.retain(|(token, _)| *token != Token::End);
@@ -216,7 +216,8 @@ impl Checker<'_> {
         found
     }
 
-    /// The variable that a script calls so: a global one, one of a program, or of an instance of a program.
+    /// The variable with this name in scripts: a global one, one of a program, or of an instance of a
+    /// program.
     pub(crate) fn variable_called(mut self, path: &str) -> Option<Hover> {
         let tokens = lex(path, 0, &mut Found::default());
         let before = Before {
@@ -335,7 +336,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The type of a path; `None` if it is none of a variable.
+    /// The type of a path; `None` if it does not lead to a variable.
     fn type_of(&mut self, path: &[Part], this: bool) -> Option<TypeId> {
         let (Part::Name(root), rest) = path.split_first()? else {
             return None;
@@ -376,7 +377,7 @@ impl Checker<'_> {
         (ty != WRONG).then_some(ty)
     }
 
-    /// What stands behind the name of an enumeration or of a list of global variables.
+    /// The names behind the name of an enumeration or of a list of global variables.
     fn behind_name(&mut self, path: &[Part]) -> Vec<Completion> {
         let [Part::Name(name)] = path else {
             return Vec::new();
@@ -439,7 +440,7 @@ impl Checker<'_> {
         pins.collect()
     }
 
-    /// What stands behind a dot.
+    /// The names behind a dot.
     fn parts(&self, ty: TypeId) -> Vec<Completion> {
         match self.types.get(ty) {
             Type::Enumeration(of) => {
@@ -495,7 +496,7 @@ impl Checker<'_> {
         offered
     }
 
-    /// What the table of blocks or the text says of a variable.
+    /// The description of a variable in the table of blocks or in the text.
     fn doc_in(&self, unit: UnitId, member: &Member) -> String {
         match self.unit(unit).kind {
             UnitKind::Library(block) => block
@@ -567,7 +568,7 @@ impl Checker<'_> {
         offered
     }
 
-    /// What an expression or a statement may begin with.
+    /// The names that an expression or a statement may begin with.
     fn names(&mut self, around: &Around) -> Vec<Completion> {
         let mut offered = Vec::new();
         let mut seen = BTreeSet::new();

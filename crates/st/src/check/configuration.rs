@@ -1,4 +1,4 @@
-//! What runs: tasks and programs, from a CONFIGURATION, or the one program there is.
+//! The tasks and programs that run, from a CONFIGURATION, or the only program.
 
 use super::path::plain;
 use super::{Checker, UnitKind};
@@ -11,13 +11,13 @@ use crate::types::{Class, Constant, UnitId, WRONG};
 /// Programs that run together.
 #[derive(Debug)]
 pub(crate) struct Task {
-    /// As declared; empty for the one that runs in every scan.
+    /// Its name; empty for the task that runs in every scan.
     pub name: String,
     /// Time from one run to the next (ns); in every scan if absent.
     pub interval_ns: Option<i64>,
     /// 0 comes first.
     pub priority: i64,
-    /// Where it stands in memory when it is due next.
+    /// The address of its next due time.
     pub due: u32,
     /// The calls of its programs.
     pub statements: Vec<Stmt>,
@@ -218,7 +218,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Gives everything its place in memory.
+    /// Gives every variable its address.
     pub(super) fn place_all(&mut self, tasks: &mut [Task], instances: &mut [Instance<'a>]) {
         for task in tasks {
             task.due = self.layout.take(8);

@@ -8,7 +8,7 @@ use crate::typed::{Expr, Kind};
 use crate::types::{Constant, UnitId};
 
 impl Checker<'_> {
-    /// The value of a constant of a unit, or of all; `None` if it is none that is known.
+    /// The value of a constant of a unit, or of all units; `None` if there is no such constant.
     pub(super) fn constant(&mut self, unit: Option<UnitId>, key: &str, span: Span) -> Option<Expr> {
         let entry_key = (unit, key.to_owned());
         let entry = self.constants.get_mut(&entry_key)?;

@@ -1,4 +1,4 @@
-//! Which value may stand where: conversions without a word, and those that need a function.
+//! Which value is permitted where: implicit conversions, and those that need a function.
 
 use super::Checker;
 use crate::error::{Code, Diagnostic};
@@ -7,7 +7,7 @@ use crate::typed::{Expr, Kind};
 use crate::types::{ANY_INTEGER, ANY_REAL, Class, Elementary, Type, TypeId, Types, WRONG};
 
 impl Checker<'_> {
-    /// A literal without a type as one of the smallest that holds it; anything else as it is.
+    /// A literal without a type as one of the smallest type that holds it; any other value unchanged.
     pub(super) fn settle(&mut self, value: Expr) -> Expr {
         let ty = match (value.ty, &value.kind) {
             (ANY_INTEGER, Kind::Integer(number)) => {
@@ -21,7 +21,7 @@ impl Checker<'_> {
         self.convert(value, ty)
     }
 
-    /// The value as one of type `to`, if that loses nothing; told otherwise.
+    /// The value in type `to`, if that loses nothing; otherwise a message.
     pub(super) fn convert(&mut self, value: Expr, to: TypeId) -> Expr {
         if value.is_wrong() || to == WRONG {
             return Expr::wrong(value.span);
@@ -170,7 +170,7 @@ impl Checker<'_> {
         }
     }
 
-    /// A type as the name of a conversion has it.
+    /// A type in the name of a conversion.
     pub(super) fn conversion_name(&self, ty: TypeId, elementary: Elementary) -> String {
         match self.types.get(ty) {
             Type::Enumeration(of) if !of.name.contains(' ') => of.name.clone(),
@@ -178,7 +178,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Tells that a value does not become one of this type without a word.
+    /// Reports that a value is not implicitly converted to this type.
     pub(super) fn refuse(&mut self, value: &Expr, to: TypeId) -> Expr {
         let (from_name, to_name) = (self.type_name(value.ty), self.type_name(to));
         let message = format!("{from_name} does not become {to_name} by itself");
@@ -210,7 +210,7 @@ impl Checker<'_> {
     }
 }
 
-/// A number as a type of floating point keeps it.
+/// A number rounded to a type of floating point.
 pub(super) fn rounded(number: f64, to: Elementary) -> f64 {
     if to == Elementary::Real {
         f64::from(number as f32)

@@ -1,4 +1,4 @@
-//! Who has which name: all declarations of all files, before any of them is looked at closely.
+//! All names: the declarations of all files, before any of them is checked in detail.
 
 use super::{Checker, ConstantEntry, ElementOf, Global, NamedType, State, UnitInfo, UnitKind};
 use crate::error::{Code, Diagnostic};
@@ -41,7 +41,7 @@ pub(super) const REFUSED_TYPES: &[(&str, &str)] = &[
 ];
 
 impl<'a> Checker<'a> {
-    /// Notes the names of everything that stands at the top of files.
+    /// Notes the names at the top of files.
     pub(super) fn declare(&mut self, items: &'a [Item]) {
         let mut taken: BTreeMap<String, Span> = BTreeMap::new();
         for item in items {
@@ -78,7 +78,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Tells if a name at the top of a file is had already.
+    /// Reports a name at the top of a file that is already in use.
     fn new_top_name(&mut self, name: &Ident, taken: &mut BTreeMap<String, Span>) {
         let key = name.key();
         self.check_name(name);
@@ -112,7 +112,8 @@ impl<'a> Checker<'a> {
         );
     }
 
-    /// Tells if a name is that of an elementary type, or is written in a way other compilers refuse.
+    /// Reports a name that is that of an elementary type, or is written in a way that other compilers
+    /// refuse.
     pub(super) fn check_name(&mut self, name: &Ident) {
         let key = name.key();
         if Elementary::find(&key).is_some()
@@ -249,7 +250,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Looks closely at every type, variable and unit, each after what it needs.
+    /// Resolves every type, variable and unit, each after those it needs.
     pub(super) fn resolve(&mut self) {
         let names: Vec<_> = self.named.keys().cloned().collect();
         for name in names {

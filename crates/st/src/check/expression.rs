@@ -1,4 +1,4 @@
-//! Expressions: what they are worth, and of which type.
+//! Expressions: their values and types.
 
 use super::Checker;
 use super::convert::rounded;
@@ -11,10 +11,10 @@ use crate::typed::{Expr, Kind};
 use crate::types::{ANY_INTEGER, ANY_REAL, BOOL, Class, Elementary, TypeId, Types, WRONG};
 
 impl<'a> Checker<'a> {
-    /// An expression where a value of type `expected` is wanted, if one is. The value may have another type: the caller
-    /// converts it.
+    /// An expression at a place for a value of type `expected`, if one is expected. The value may have
+    /// another type: the caller converts it.
     pub(super) fn expression(&mut self, expression: &'a Expression, expected: Option<TypeId>) -> Expr {
-        // The reader limits what stands in one expression; constants may lead to others.
+        // The reader limits the size of one expression, but constants may refer to others.
         if self.depth > 2 * NESTING_MOST {
             self.error(
                 Code::TooDeep,
@@ -195,7 +195,7 @@ impl<'a> Checker<'a> {
         Expr { kind, ty, span }
     }
 
-    /// Tells that a value is neither BOOL nor a row of bits.
+    /// Reports that a value is neither BOOL nor a bit string.
     pub(super) fn no_bits(&mut self, value: &Expr, operator: &str) {
         let message = format!(
             "{operator} takes BOOL, BYTE, WORD, DWORD and LWORD, not {}",

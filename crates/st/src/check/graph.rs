@@ -1,17 +1,17 @@
-//! Who calls whom: nobody calls himself, and no row of calls is too long.
+//! The calls between units: no recursion, and no chain of calls that is too long.
 
 use super::Checker;
 use crate::error::{Code, Diagnostic};
 use crate::types::UnitId;
 use std::collections::BTreeMap;
 
-/// How many calls may be within each other.
+/// Most nested calls.
 pub(crate) const CALLS_MOST: u32 = 64;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mark {
     Open,
-    /// The longest row of calls that begins here.
+    /// The longest chain of calls that begins here.
     Depth(u32),
 }
 
@@ -23,7 +23,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Follows the calls that begin at `start`, without recursion of our own.
+    /// Follows the calls that begin at `start`, without recursion.
     fn follow(&mut self, start: UnitId, marks: &mut BTreeMap<UnitId, Mark>) {
         if marks.contains_key(&start) {
             return;

@@ -8,7 +8,7 @@ use crate::syntax::{Call, Expression, Operator, Way};
 use crate::typed::{Expr, Kind};
 use crate::types::{ANY_INTEGER, ANY_REAL, BOOL, Class, Elementary, TypeId, Types};
 
-/// What to write where a number has no conversion to or from STRING.
+/// The remedy for a number without a conversion to or from STRING.
 pub(super) const TO_TEXT: &str = "whole numbers, BOOL and TIME have one; make a whole number first: LINT_TO_STRING(LREAL_TO_LINT(x * 1000.0))";
 
 impl<'a> Checker<'a> {
@@ -36,7 +36,8 @@ impl<'a> Checker<'a> {
         None
     }
 
-    /// The inputs of a call in their order, none if something is wrong with them, which is told. `open`: more may follow the last one.
+    /// The inputs of a call in order; none if they are wrong, which is reported. `open`: more may follow
+    /// the last one.
     fn inputs(&mut self, function: &str, names: &[&str], open: bool, call: &'a Call) -> Vec<&'a Expression> {
         let mut list: Vec<Option<&'a Expression>> = Vec::new();
         for (position, argument) in call.arguments.iter().enumerate() {
@@ -349,7 +350,7 @@ impl<'a> Checker<'a> {
             .and_then(|ty| self.types.elementary(ty))
             .filter(|it| it.is_integer());
         let to = asked.unwrap_or(Elementary::Dint);
-        // It is cut first; then every conversion gives the same.
+        // It is truncated first; then every conversion gives the same.
         let cut = made(Function::Trunc, of, vec![value], Types::of(of), span);
         Expr {
             kind: Kind::Convert(Box::new(cut), of, to),
@@ -471,7 +472,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// SEL and MUX: what decides comes first.
+    /// SEL and MUX: the selector comes first.
     fn choice(
         &mut self,
         function: Function,
@@ -570,7 +571,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// The place of an input by its name: `IN3` is one of many.
+/// The index of an input by its name: `IN3` is one of many.
 fn place_of(key: &str, names: &[&str], open: bool) -> Option<usize> {
     if let Some(place) = names.iter().position(|name| *name == key) {
         return Some(place);

@@ -1,4 +1,4 @@
-//! What an editor asks of one place: whose name stands there, and where it is declared.
+//! The answer to an editor's question about one place: the name there, and its declaration.
 
 use super::{Checker, UnitKind};
 use crate::editor::Hover;
@@ -8,7 +8,7 @@ use crate::syntax::{Path, Selector, SpecKind};
 use crate::types::{Constant, Elementary, Member, MemberKind, Start, Type, TypeId, UnitId};
 use standstill_fb::Pin;
 
-/// The place that is asked for, and what stands there.
+/// The place in question, and the name there.
 #[derive(Debug, Default)]
 pub(crate) struct Look {
     /// Place of a byte, if any is asked for.
@@ -50,7 +50,7 @@ impl Checker<'_> {
         Some(found)
     }
 
-    /// Notes what stands at `span`, if that is the place which is asked for; the last one counts.
+    /// Notes the name at `span`, if that is the place in question; the last one counts.
     pub(super) fn look_at(&mut self, span: Span, tell: impl FnOnce(&Self) -> Hover) {
         if self.look.at.is_some_and(|at| span.start <= at && at <= span.end) && span.start < span.end {
             let found = tell(self);
@@ -186,7 +186,7 @@ impl Checker<'_> {
         });
     }
 
-    /// A variable as it would be declared.
+    /// A variable in the form of its declaration.
     pub(super) fn told_of(&self, member: &Member, of: &str) -> Hover {
         let section = match member.kind {
             MemberKind::Field => "a member",
@@ -240,7 +240,7 @@ impl Checker<'_> {
         })
     }
 
-    /// A type with what is in it, on a few lines.
+    /// A type with its parts, on a few lines.
     fn type_text(&self, ty: TypeId) -> String {
         const SHOWN: usize = 40;
         match self.types.get(ty) {

@@ -33,7 +33,7 @@ use std::collections::BTreeMap;
 pub(crate) use configuration::{Instance, Task};
 pub(crate) use look::Look;
 
-/// What can be called or instantiated.
+/// The units that can be called or instantiated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum UnitKind {
     Function,
@@ -45,7 +45,7 @@ pub(crate) enum UnitKind {
 }
 
 impl UnitKind {
-    /// Whether its variables are made anew at every call, and so have a place of their own.
+    /// Whether its variables are created at every call, and so have an address of their own.
     pub(crate) const fn has_frame(self) -> bool {
         matches!(self, Self::Function | Self::Method)
     }
@@ -72,11 +72,11 @@ pub(crate) struct UnitInfo<'a> {
     pub members: Members,
     /// The member that is the value of a function.
     pub result: Option<usize>,
-    /// Where the variables of a function stand.
+    /// The address of a function's variables.
     pub frame: u32,
 }
 
-/// How far something is that may need other things first.
+/// The state of an item whose resolution may need others first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     Todo,
@@ -94,7 +94,7 @@ struct NamedType<'a> {
 #[derive(Debug)]
 pub(crate) struct Global<'a> {
     pub member: Member,
-    /// Absent for the instance of a PROGRAM, which is known.
+    /// Absent for the instance of a PROGRAM, whose type is known.
     spec: Option<&'a TypeSpec>,
     initial: Option<&'a Initial>,
     file: usize,
@@ -110,7 +110,7 @@ struct ConstantEntry<'a> {
     value: Option<(TypeId, Constant)>,
 }
 
-/// How many levels of an expression a declaration stands for that another one needs: so much more stack it takes.
+/// Levels of an expression that a nested declaration counts as, for the use of the stack.
 const NEED: usize = 4;
 
 /// Whose an element of an enumeration is.
@@ -134,7 +134,7 @@ struct Running {
 pub(crate) struct Body {
     pub unit: UnitId,
     pub statements: Vec<Stmt>,
-    /// What a call begins with: VAR_TEMP, and all variables of a function.
+    /// Variables that each call initializes: VAR_TEMP, and all variables of a function.
     pub fresh: Vec<usize>,
 }
 
@@ -169,7 +169,7 @@ pub(crate) struct Checker<'a> {
     /// Stems of files with global variables.
     files: BTreeMap<String, usize>,
     layout: Layout,
-    /// The unit whose names count.
+    /// The unit whose names are visible.
     scope: Option<UnitId>,
     depth: usize,
     body: body::BodyState,
@@ -179,7 +179,7 @@ pub(crate) struct Checker<'a> {
     running: Vec<Running>,
 }
 
-/// Checks a project. There is a program if nothing is wrong.
+/// Checks a project. There is a program if it has no mistakes.
 pub(crate) fn check<'a>(
     sources: &'a Sources,
     items: &'a [Item],
@@ -210,7 +210,7 @@ pub(crate) fn check<'a>(
     (Some(program), found)
 }
 
-/// Checks a project for what an editor asks of one place in it.
+/// Checks a project for an editor's question about one place in it.
 pub(crate) fn look<'a>(
     sources: &'a Sources,
     items: &'a [Item],
@@ -284,7 +284,7 @@ impl<'a> Checker<'a> {
         self.found.add(wrong);
     }
 
-    /// A guess at what was meant. To guess is slow, so it ends with the messages that are shown.
+    /// The name that was probably meant. The search is slow, so it ends with the messages that are shown.
     fn guess<'n>(&self, name: &str, candidates: impl Iterator<Item = &'n str>) -> Option<String> {
         if self.found.shown() >= DIAGNOSTICS_MOST {
             return None;
@@ -316,7 +316,7 @@ impl<'a> Checker<'a> {
         &mut self.units[id.0 as usize]
     }
 
-    /// Does something that something else needs first, unless the row of such is too long.
+    /// Resolves an item that another one needs first, unless the chain of such items is too long.
     fn needing<T>(&mut self, span: Span, other: T, inner: impl FnOnce(&mut Self) -> T) -> T {
         if self.depth + NEED >= NESTING_MOST {
             let most = NESTING_MOST / NEED;
@@ -330,7 +330,7 @@ impl<'a> Checker<'a> {
         result
     }
 
-    /// Does something with the names of a unit.
+    /// Does something with the names of a unit visible.
     fn in_scope<T>(&mut self, scope: Option<UnitId>, inner: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.scope, scope);
         let result = inner(self);
@@ -343,7 +343,7 @@ impl<'a> Checker<'a> {
         self.types.size(ty, |unit| self.unit(unit).members.size)
     }
 
-    /// What a type is called in messages.
+    /// The name of a type in messages.
     fn type_name(&self, ty: TypeId) -> String {
         use crate::types::Type;
         match self.types.get(ty) {

@@ -1,4 +1,4 @@
-//! From a path in the text to a place in memory.
+//! From a path in the text to an address in memory.
 
 use super::{Checker, ElementOf, Global, State, UnitKind};
 use crate::error::{Code, Diagnostic, quoted};
@@ -8,18 +8,19 @@ use crate::syntax::{Expression, Ident, Path, Selector};
 use crate::typed::{Base, Expr, Index, Kind, Place};
 use crate::types::{Class, Constant, Member, MemberKind, Start, Type, TypeId, UnitId};
 
-/// What a path leads to.
+/// The target of a path.
 pub(super) enum Named {
-    /// A variable, and why it must not be written, if so.
+    /// A variable, and the reason why it must not be written, if there is one.
     Place(Place, Option<String>),
     /// A constant or an element of an enumeration.
     Value(Expr),
-    /// It has been told what is wrong.
+    /// The fault has been reported.
     Nothing,
 }
 
 impl<'a> Checker<'a> {
-    /// What a path leads to. Elements of enumerations are those of type `expected`, where several have the name.
+    /// The target of a path. If several enumerations have an element of the name, it is the one of type
+    /// `expected`.
     pub(super) fn named(&mut self, path: &'a Path, expected: Option<TypeId>) -> Named {
         self.named_part(path, &path.selectors, expected)
     }
@@ -67,7 +68,7 @@ impl<'a> Checker<'a> {
         Named::Nothing
     }
 
-    /// A variable behind `THIS^.`: one of the block, whatever a method has.
+    /// A variable behind `THIS^.`: one of the block, even if a method has the same name.
     fn named_of_this(&mut self, path: &'a Path, selectors: &'a [Selector]) -> Named {
         let Some(block) = self.this_block() else {
             self.error(
@@ -105,7 +106,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// A variable of the unit whose names count, or of the block whose method it is.
+    /// A variable of the unit whose names are visible, or of the block that its method belongs to.
     pub(super) fn local(&self, key: &str) -> Option<(UnitId, usize)> {
         let scope = self.scope?;
         let units = [Some(scope), self.unit(scope).owner];
@@ -169,14 +170,14 @@ impl<'a> Checker<'a> {
         Some(self.global_place(place))
     }
 
-    /// The PROGRAM of this name, if statements can mean its instance by it.
+    /// The PROGRAM of this name, if the name can stand for its instance in statements.
     pub(super) fn program_named(&self, key: &str) -> Option<UnitId> {
         let unit = self.unit_names.get(key).copied()?;
         (self.scope.is_some() && self.unit(unit).kind == UnitKind::Program).then_some(unit)
     }
 
-    /// The instance of a PROGRAM that is called by its name: the one that a task runs. One that no task runs has an instance
-    /// of its own, a global variable that is made when it is first named.
+    /// The instance of a PROGRAM under its own name: the one that a task runs. If no task runs it, it
+    /// gets an instance of its own, a global variable that is made when it is first named.
     fn program_instance(&mut self, key: &str, span: Span) -> Option<(Place, Option<String>)> {
         let unit = self.program_named(key)?;
         self.look_at_unit(span, unit);
@@ -286,7 +287,7 @@ impl<'a> Checker<'a> {
         Named::Place(place, fixed)
     }
 
-    /// The key of a member, which a dialect may call otherwise.
+    /// The key of a member, which may have another name in a dialect.
     pub(super) fn member_key(&self, unit: UnitId, name: &Ident) -> String {
         let info = self.unit(unit);
         let ours = match info.kind {
@@ -387,7 +388,7 @@ impl<'a> Checker<'a> {
             parts.push((index, *low, (high - low + 1) as u32, stride));
             stride = stride.saturating_mul((high - low + 1) as u32);
         }
-        // Evaluated in the order of the text.
+        // Evaluated in text order.
         for (index, low, count, stride) in parts.into_iter().rev() {
             let value = self.expression(index, None);
             let value = self.settle(value);

@@ -1,4 +1,4 @@
-//! From types as they are written to types.
+//! From the types of the syntax tree to resolved types.
 
 use super::declare::REFUSED_TYPES;
 use super::{Checker, ElementOf, State, UnitKind};
@@ -21,7 +21,7 @@ const DIMENSIONS_MOST: usize = 6;
 pub(super) const BYTES_MOST: u64 = 15 << 20;
 
 impl<'a> Checker<'a> {
-    /// The type that is written there, and what its variables begin as.
+    /// The type, and the initial value of its variables.
     pub(super) fn spec(&mut self, spec: &'a TypeSpec) -> (TypeId, Start) {
         match &spec.kind {
             SpecKind::Named(name) => self.type_by_name(name),
@@ -74,7 +74,7 @@ impl<'a> Checker<'a> {
 
     /// The type of this name in upper case, if there is one.
     pub(super) fn find_type(&mut self, key: &str, span: Span) -> Option<(TypeId, Start)> {
-        // The name that a dialect has for a type of the library.
+        // The name of a library type in a dialect.
         let ours = self.options.dialect.type_called(key);
         let key = ours.filter(|_| !self.named.contains_key(key)).unwrap_or(key);
         if let Some(it) = Elementary::find(key) {

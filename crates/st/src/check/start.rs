@@ -7,7 +7,7 @@ use crate::syntax::{Expression, Ident, Initial};
 use crate::types::{MemberKind, Start, Type, TypeId, WRONG};
 
 impl<'a> Checker<'a> {
-    /// What a variable of type `ty` begins as.
+    /// The initial value of a variable of type `ty`.
     pub(super) fn start(&mut self, initial: &'a Initial, ty: TypeId) -> Start {
         if ty == WRONG {
             return Start::Default;

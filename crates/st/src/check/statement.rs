@@ -107,7 +107,7 @@ impl<'a> Checker<'a> {
             Some(place) if place.bit.is_some() => BOOL,
             Some(place) => place.ty,
             None => {
-                // Its own mistakes are told all the same.
+                // Its other mistakes are reported all the same.
                 self.expression(value, None);
                 return None;
             }
@@ -353,7 +353,7 @@ impl<'a> Checker<'a> {
         })))
     }
 
-    /// The step of FOR as a LINT: it may be negative where the control variable has no sign.
+    /// The step of FOR as a LINT: it may be negative if the control variable is unsigned.
     fn step_value(&mut self, by: &'a Expression, of: Option<Elementary>) -> Expr {
         let value = self.expression(by, None);
         let value = self.settle(value);

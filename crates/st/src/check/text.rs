@@ -28,7 +28,8 @@ impl<'a> Checker<'a> {
         matches!(self.types.get(ty), Type::Text(_))
     }
 
-    /// A string as one of another length: what is longer than that is cut when it is assigned; a literal is told.
+    /// A string as one of another length. A longer value is cut when it is assigned; for a literal this
+    /// is reported.
     pub(super) fn text_value(&mut self, value: Expr, capacity: u8) -> Expr {
         match &value.kind {
             Kind::Text(bytes) if bytes.len() > usize::from(capacity) => {
@@ -49,7 +50,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// LEN, CONCAT and their kin.
+    /// LEN, CONCAT and similar functions.
     pub(super) fn text_function(
         &mut self,
         function: Function,

@@ -132,7 +132,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// What cannot be declared in a section of this kind.
+    /// Variables that cannot be declared in a section of this kind.
     fn check_kind(&mut self, id: UnitId, kind: MemberKind, ty: crate::types::TypeId, variables: &Variables) {
         let span = variables.spec.span;
         self.no_program(ty, span);
@@ -165,7 +165,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Whether a block is in it.
+    /// Whether it contains a block.
     pub(super) fn holds_block(&self, ty: crate::types::TypeId) -> bool {
         match self.types.get(ty) {
             Type::Block(_) => true,

@@ -132,7 +132,8 @@ impl Emitter<'_, '_, '_> {
         self.callee = before;
     }
 
-    /// What a block of the library takes for a variable: the number of an axis, or the records of a table.
+    /// The form of a variable for a block of the library: the number of an axis, or the records of a
+    /// table.
     fn reference(&mut self, root: Root, offset: u32, bound: &Place) {
         let types = &self.context.program.types;
         let table =
@@ -159,7 +160,7 @@ impl Emitter<'_, '_, '_> {
             .i32_store(at(offset + 4, 2));
     }
 
-    /// A block of the library: its key, inputs and outputs stand in the instance, and then its result.
+    /// A block of the library: its key, inputs and outputs are in the instance, followed by its result.
     fn library_block(&mut self, info: &'static BlockInfo, root: Root, offset: u32) {
         let import = Target::Import(blocks::import(info));
         self.context.want(import);

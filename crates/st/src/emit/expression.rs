@@ -1,7 +1,7 @@
 //! Expressions: their values on the stack.
 //!
-//! A value of up to 32 bits is an i32 that is extended as its type says, so it can be compared and converted as it
-//! stands; what computes with one of 8 or 16 bits cuts its result to them.
+//! A value of up to 32 bits is an i32 that is extended by the rules of its type, so it can be compared
+//! and converted directly. A computation with a type of 8 or 16 bits cuts its result to its width.
 
 use super::function::{Function, Label, value_type};
 use super::place::Root;
@@ -22,7 +22,7 @@ pub(super) struct Loop {
 pub(super) struct Emitter<'c, 'p, 'a> {
     pub context: &'c mut Context<'p, 'a>,
     pub function: Function,
-    /// Where the instance is that is being called.
+    /// The address of the instance that is being called.
     pub callee: (Root, u32),
     pub loops: Vec<Loop>,
     /// The end of the function's statements.
@@ -114,7 +114,7 @@ impl<'c, 'p, 'a> Emitter<'c, 'p, 'a> {
             Kind::Join(function, values, buffer) => self.join(*function, values, *buffer, value.span),
             Kind::Compare(operation, sides) => self.compare_texts(*operation, &sides[0], &sides[1]),
             Kind::Library(function, of, values) => self.library(*function, *of, values, value.span),
-            // A program with mistakes is not written.
+            // A program with mistakes is not compiled.
             Kind::Wrong => {
                 self.function.sink().unreachable();
             }

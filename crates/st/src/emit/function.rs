@@ -1,11 +1,11 @@
-//! A function while it is written: its instructions, its local variables, and where branches lead.
+//! A function under construction: its instructions, its local variables, and the targets of its branches.
 
 use super::Target;
 use crate::types::Elementary;
 use wasm_encoder::{BlockType, Encode, InstructionSink, MemArg, MemArgTarget, ValType};
 
-/// Fewest bytes of a function's body: the interpreter takes a module whose functions are shorter than 40 bytes on average
-/// for an attack.
+/// Least bytes of a function's body: the interpreter refuses a module with functions shorter than 40
+/// bytes on average as an attack.
 const BODY_LEAST: usize = 40;
 
 pub(super) struct Function {
@@ -144,7 +144,7 @@ impl Function {
             }
         }
         if self.code.len() < BODY_LEAST {
-            // What was computed stays on the stack, and nothing behind this is executed.
+            // Computed values stay on the stack, and nothing behind this is executed.
             self.sink().return_();
             self.code.resize(BODY_LEAST, 0x01);
             self.sink().unreachable();

@@ -9,7 +9,7 @@ use crate::typed::{Expr, For, Stmt};
 use crate::types::Elementary;
 use wasm_encoder::{BlockType, ValType};
 
-/// How far a FOR goes in a turn.
+/// The step of a FOR.
 #[derive(Clone, Copy, Debug)]
 enum Stride {
     Known(i128),
@@ -22,7 +22,7 @@ enum Stride {
 }
 
 impl Emitter<'_, '_, '_> {
-    /// Notes which loop is running: it is told if the fuel is used up.
+    /// Notes the running loop, which is reported if the fuel is used up.
     fn note_loop(&mut self, site: i32) {
         self.function
             .sink()
@@ -80,7 +80,7 @@ impl Emitter<'_, '_, '_> {
         self.end_loop();
     }
 
-    /// FOR. Whether the next value is beyond the end is asked by the distance that is left, which cannot overflow.
+    /// FOR. The end is detected by the remaining distance, which cannot overflow.
     pub(super) fn for_(&mut self, each: &For, span: Span) {
         let ty = value_type(each.ty);
         let (from, to) = (self.function.local(ty), self.function.local(ty));
@@ -261,7 +261,7 @@ impl Emitter<'_, '_, '_> {
         }
     }
 
-    /// Behind the loop the variable has the first value beyond its end, where its type holds that.
+    /// After the loop the variable has the first value beyond its end, if its type can hold it.
     fn last_value(&mut self, each: &For, root: super::place::Root, offset: u32, from: u32, stride: Stride) {
         let ty = each.ty;
         let (low, high) = each.range;

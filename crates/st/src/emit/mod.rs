@@ -1,7 +1,8 @@
 //! From the checked program to a module.
 //!
-//! Every unit that is called becomes a function: of an instance, whose address it gets, or with parameters, for a
-//! FUNCTION. Calls are written with room for any number and filled in at the end, when it is known who is called.
+//! Every unit that is called becomes a function: an instance gets its address, a FUNCTION its parameters.
+//! Calls are written with room for any number, which is filled in at the end, when the functions have
+//! numbers.
 
 mod call;
 mod convert;
@@ -33,7 +34,7 @@ const FUNCTION_MOST: usize = 7_000_000;
 /// Most variables that are exported by name; all are in the table of symbols.
 const EXPORTS_MOST: usize = 900;
 
-/// What a call leads to.
+/// The target of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Target {
     /// `(site, value)`: notes a fault, and traps.
@@ -60,7 +61,7 @@ pub enum FaultKind {
     Unbound,
     /// A position outside of a string, or a negative length; the value is that.
     Position,
-    /// No fault: a loop, which is told if the fuel is used up.
+    /// No fault: a loop, which is reported if the fuel is used up.
     Loop,
 }
 
@@ -80,7 +81,7 @@ impl FaultKind {
         }
     }
 
-    /// What the value of such a fault says; nothing if there is none.
+    /// The meaning of the fault's value; empty if it has none.
     #[must_use]
     pub fn value(self, value: i64) -> Option<String> {
         let what = match self {
@@ -102,16 +103,16 @@ pub(crate) struct Site {
     pub kind: FaultKind,
 }
 
-/// What is known of the module while its functions are written.
+/// The data of the module while its functions are written.
 struct Context<'p, 'a> {
     program: &'p Program<'a>,
     bodies: BTreeMap<UnitId, &'p Body>,
-    /// All that is called, in the order of its first call.
+    /// All called targets, in the order of their first call.
     wanted: Vec<Target>,
     numbers: BTreeMap<Target, usize>,
     sites: Vec<Site>,
     counters: &'p Counters,
-    /// What variables begin as that are made at every call, behind everything else.
+    /// Initial values of variables that are created at every call, behind everything else.
     templates: Vec<u8>,
     templates_at: u32,
 }
@@ -139,7 +140,7 @@ pub(crate) struct Emitted {
     pub sites: Vec<Site>,
 }
 
-/// Writes the module; `image` is what stands in memory before the first scan.
+/// Writes the module; `image` is the memory before the first scan.
 pub(crate) fn emit(program: &Program<'_>, image: &[u8], counters: &Counters) -> Result<Emitted, Diagnostic> {
     let mut context = Context {
         program,
@@ -349,7 +350,7 @@ fn runs(image: &[u8], gap: usize) -> Vec<std::ops::Range<usize>> {
     runs
 }
 
-/// Whether a unit is a function with a value that is handed over as an address.
+/// Whether a unit is a function whose value is passed by address.
 fn kind_of(program: &Program<'_>, unit: UnitId) -> UnitKind {
     program.units[unit.0 as usize].kind
 }

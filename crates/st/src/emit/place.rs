@@ -7,7 +7,7 @@ use crate::typed::{Base, Index, Kind, Place};
 use crate::types::Elementary;
 use wasm_encoder::{BlockType, ValType};
 
-/// Where an address comes from, once its indices are worked out; it can be taken as often as needed.
+/// The source of an address after its indices are evaluated; it can be used any number of times.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Root {
     Zero,
@@ -39,7 +39,7 @@ impl Emitter<'_, '_, '_> {
         };
     }
 
-    /// Pushes the address of a place but for a fixed offset, which is given back.
+    /// Pushes the address of a place without its fixed offset, which is returned.
     pub(super) fn address(&mut self, place: &Place) -> u32 {
         let (root, more) = self.root(place.base);
         let mut pushed = !matches!(root, Root::Zero) || place.indices.is_empty();
@@ -68,7 +68,7 @@ impl Emitter<'_, '_, '_> {
         }
     }
 
-    /// Works out the indices, so that the address can be taken more than once.
+    /// Evaluates the indices, so that the address can be used more than once.
     pub(super) fn pinned(&mut self, place: &Place) -> (Root, u32) {
         let (root, more) = self.root(place.base);
         if place.indices.is_empty() {
@@ -200,7 +200,7 @@ impl Emitter<'_, '_, '_> {
     /// Writes one bit.
     pub(super) fn write_bit(&mut self, place: &Place, of: Elementary, bit: u32, value: &crate::typed::Expr) {
         let (root, offset) = self.pinned(place);
-        // The value comes first, so that what it changes itself is not undone.
+        // The value comes first, so that its own side effects are kept.
         self.expression(value);
         let given = self.function.local(ValType::I32);
         self.function.sink().local_set(given);

@@ -12,10 +12,11 @@ use crate::typed::{Base, Branch, Expr, Place, Stmt, StmtKind};
 use crate::types::{Elementary, Member, MemberKind, Type, TypeId, UnitId};
 use wasm_encoder::{BlockType, ValType};
 
-/// Most entries of a table of branches, for each label: states are often numbered in tens.
+/// Most table entries per label: states are often numbered in tens.
 const SPARSE: i128 = 16;
 
-/// What the host calls: notes the time, and runs the tasks that are due, or `only` one of them.
+/// The function that the host calls: it notes the time, and runs the tasks that are due, or `only` one of
+/// them.
 pub(super) fn scan(context: &mut Context<'_, '_>, only: Option<usize>) -> Function {
     let tasks = &context.program.tasks;
     let mut emitter = Emitter::new(context, Function::new(vec![ValType::I32, ValType::I64], None));
@@ -40,7 +41,7 @@ pub(super) fn scan(context: &mut Context<'_, '_>, only: Option<usize>) -> Functi
         let mut sink = emitter.function.sink();
         sink.local_get(1).i32_const(0).i64_load(due).i64_ge_s();
         emitter.function.if_(BlockType::Empty);
-        // Due again at the next multiple of the interval, however long the host waited.
+        // Due again at the next multiple of the interval, even after a long pause.
         let mut sink = emitter.function.sink();
         sink.i32_const(0).local_get(1).i64_const(interval).i64_div_s();
         sink.i64_const(1)
@@ -269,7 +270,7 @@ impl Emitter<'_, '_, '_> {
             self.function.end();
             return;
         }
-        // Side by side, so that a long row of ELSIFs is not deep.
+        // Not nested, so that a long chain of ELSIFs is not deep.
         let end = self.function.block();
         for (number, (condition, body)) in (1..).zip(branches) {
             self.expression(condition);

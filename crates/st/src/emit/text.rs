@@ -9,12 +9,12 @@ use crate::typed::{Expr, Operation};
 use crate::types::TEXT_MOST;
 use wasm_encoder::{BlockType, ValType};
 
-/// What the module brings along for strings.
+/// Helper functions of the module for strings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Helper {
-    /// `(to, capacity, from)`: copies as much as there is room for.
+    /// `(to, capacity, from)`: copies as many bytes as there is room for.
     Assign,
-    /// `(to, capacity, from, first, count)`: adds bytes from index `first` on, as many as there are and have room.
+    /// `(to, capacity, from, first, count)`: adds bytes from index `first` on, as many as exist and fit.
     Append,
     /// `(one, other)`: below 0, 0 or above 0, by the first byte that differs.
     Compare,
@@ -25,7 +25,7 @@ pub(super) enum Helper {
 /// All bytes of a string, and any position in it, in 32 bits.
 const ALL: i32 = TEXT_MOST as i32;
 
-/// A number that is beyond every string, and of which two can be added.
+/// A number larger than any string; the sum of two does not overflow.
 const FAR: i64 = 1 << 30;
 
 /// The length of the string whose address is on the stack.
@@ -317,7 +317,7 @@ impl Emitter<'_, '_, '_> {
         self.text_fault(number, span);
     }
 
-    /// Goes so many bytes on.
+    /// Moves on by this many bytes.
     fn behind(&mut self, position: u32, count: u32) {
         let mut sink = self.function.sink();
         sink.local_get(position)
@@ -326,7 +326,7 @@ impl Emitter<'_, '_, '_> {
             .local_set(position);
     }
 
-    /// Adds a piece of a string: from an index or the beginning, so many bytes or all.
+    /// Adds a piece of a string: from an index or the begin, a number of bytes or all.
     fn piece(&mut self, buffer: u32, text: u32, first: Option<u32>, count: Option<u32>) {
         let mut sink = self.function.sink();
         sink.i32_const(buffer.cast_signed())

@@ -1,7 +1,7 @@
 //! The blocks of the registry and their types, from the one table of blocks.
 //!
-//! An instance of a block in memory is its key (8 bytes), its inputs and its outputs, the last two laid out as
-//! [`flat`](standstill_fb::flat) says, then the result of its last call.
+//! An instance of a block in memory is its key (8 bytes), its inputs and its outputs, both in the layout
+//! of [`flat`](standstill_fb::flat), then the result of its last call.
 
 use crate::source::Span;
 use crate::types::{
@@ -13,7 +13,7 @@ use standstill_fb::flat::Pointer;
 use standstill_fb::{BlockInfo, Direction, EnumInfo, Group, Pin, PinType, TableInfo, Value};
 use std::collections::BTreeMap;
 
-/// Where the inputs of an instance begin.
+/// Offset of the inputs of an instance.
 pub(crate) const INPUTS: u32 = 8;
 
 /// Where the outputs begin.
@@ -21,12 +21,12 @@ pub(crate) fn outputs(info: &BlockInfo) -> u32 {
     INPUTS + info.flat_inputs(Pointer::Bits32).size as u32
 }
 
-/// Where the result of the last call stands.
+/// Offset of the result of the last call.
 pub(crate) fn result(info: &BlockInfo) -> u32 {
     outputs(info) + info.flat_outputs().size as u32
 }
 
-/// The name of the function that does a block: `mc_move_absolute`.
+/// The name of a block's function: `mc_move_absolute`.
 pub(crate) fn import(info: &BlockInfo) -> &'static str {
     let place = REGISTRY.iter().position(|it| it.name == info.name);
     place
@@ -47,7 +47,7 @@ standstill_blocks::for_every_block!(imports);
 /// The names that `export st-matiec` gives to the blocks of IEC 61131-3.
 const PREFIX: &str = "STANDSTILL_";
 
-/// The block that a program calls so, in upper case.
+/// The block of this name, in upper case.
 pub(crate) fn find(key: &str) -> Option<&'static BlockInfo> {
     let plain = key.strip_prefix(PREFIX);
     let standard = plain
@@ -133,7 +133,7 @@ fn field(name: &str, ty: TypeId, kind: MemberKind, offset: u32) -> Member {
     }
 }
 
-/// AXIS_REF and its kin: the number of an axis.
+/// AXIS_REF and similar types: the number of an axis.
 fn reference(name: &str) -> Type {
     let mut members = Members::default();
     let number = field("Number", Types::of(Elementary::Dint), MemberKind::Field, 0);
@@ -145,7 +145,7 @@ fn reference(name: &str) -> Type {
     })
 }
 
-/// MC_TP_REF and its kin: how many records are used, and the records.
+/// MC_TP_REF and similar types: the number of used records, and the records.
 fn table_type(table: &TableInfo, types: &mut Types, named: &mut BTreeMap<String, TypeId>) -> Type {
     let name = format!("{}_RECORD", table.name.trim_end_matches("_REF"));
     let record = once(&name, types, named, |types, named| {
@@ -216,7 +216,7 @@ pub(crate) fn members(
     members
 }
 
-/// References go by their number or address, whatever side of the block they are on.
+/// References are passed by their number or address, on either side of the block.
 const fn kind_of(pin: &Pin) -> MemberKind {
     match (pin.direction, pin.ty) {
         (Direction::InOut, _) | (_, PinType::Axis(_) | PinType::Table(_)) => MemberKind::InOut,

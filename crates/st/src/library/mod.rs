@@ -1,4 +1,4 @@
-//! What every program has: functions here, blocks and types from the table of blocks in [`blocks`].
+//! The library of every program: functions here, blocks and types from the table of blocks in [`blocks`].
 
 pub(crate) mod blocks;
 
@@ -7,7 +7,7 @@ use crate::types::Elementary;
 
 macro_rules! functions {
     ($($variant:ident = $name:literal, $inputs:expr;)*) => {
-        /// The functions that are no conversions and no operators.
+        /// The functions other than conversions and operators.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub(crate) enum Function { $($variant,)* }
 
@@ -128,9 +128,9 @@ pub(crate) fn conversion(name: &str) -> Option<(Option<&str>, Elementary)> {
     Some((Some(from), Elementary::find(to)?))
 }
 
-/// What the table of blocks does not have, in Structured Text: counters for numbers of other widths than INT, and
-/// conversions to strings and back; each where a source may name one, because to check them takes longer than to check a
-/// short program. Cost: linear in the sources.
+/// The parts that the table of blocks does not have, in Structured Text: counters for numbers of other
+/// widths than INT, and conversions to strings and back. Each is included only if a source may name it,
+/// because checking them takes longer than checking a short program. Cost: linear in the sources.
 pub(crate) fn prelude(sources: &[Source<'_>]) -> String {
     let counts = names(sources, &["CTU_", "CTD_", "CTUD_"]);
     let converts = names(sources, &["TO_STRING", "STRING_TO"]);

@@ -1,4 +1,4 @@
-//! What a program does with its variables: who is called where, what is read and written.
+//! The uses of a program's variables: calls, reads and writes.
 
 use crate::check::Program;
 use crate::source::Span;
@@ -17,20 +17,20 @@ pub(super) struct Variable {
 #[derive(Debug)]
 pub(super) struct Call {
     pub variable: Variable,
-    /// Of an array: the index is known at work only.
+    /// An element of an array: the index is known only at run time.
     pub indexed: bool,
-    /// What it counts from, and where the instance begins.
+    /// The base of its address, and the offset of the instance.
     pub place: (Base, u32),
     pub callee: UnitId,
-    /// The lists of statements it stands in, from the outside in; the last one is its own.
+    /// The enclosing lists of statements, from the outside in; the last one is its own.
     pub lists: Vec<usize>,
     /// Whether it is in a branch.
     pub branch: bool,
-    /// Inputs by their place in the instance, whether they are TRUE for good, and where.
+    /// Inputs by their offset in the instance, whether they are constant TRUE, and the place.
     pub inputs: Vec<(u32, bool, Span)>,
     /// Outputs by their place in the instance.
     pub outputs: Vec<u32>,
-    /// Variables that its outputs go to: what they count from, and where they begin.
+    /// Variables that take its outputs: the base of their address, and their offset.
     pub targets: Vec<(Base, u32, Span)>,
     pub span: Span,
 }

@@ -1,6 +1,8 @@
-//! What works and is probably not meant, where motion is concerned above all: looked for in a program without mistakes.
+//! Constructs that work but are probably not meant, especially with motion. They are searched in programs
+//! without mistakes.
 //!
-//! A lint is switched off in place: `{lint off ST55}` from there to the end of the file, or to `{lint on ST55}`.
+//! A lint is switched off in the text: `{lint off ST55}` from there to the end of the file, or to
+//! `{lint on ST55}`.
 
 mod facts;
 mod rules;

@@ -1,4 +1,4 @@
-//! From tokens to the syntax tree. A mistake is told where it stands, and reading goes on behind it.
+//! From tokens to the syntax tree. A mistake is reported at its place, and reading continues behind it.
 
 mod declaration;
 mod expression;
@@ -12,7 +12,7 @@ use crate::lex::{Token, Word, lex};
 use crate::source::{Sources, Span};
 use crate::syntax::{Expression, Ident, Item};
 
-/// How deep expressions, statements, types and initial values may be nested.
+/// Deepest nesting of expressions, statements, types and initial values.
 pub const NESTING_MOST: usize = 200;
 
 /// Reads all files.
@@ -44,14 +44,14 @@ struct Parser<'a> {
     /// Ends with [`Token::End`].
     tokens: Vec<(Token, Span)>,
     at: usize,
-    /// The token at which something was told last: one mistake has one message.
+    /// The token of the last message, because one mistake has one message.
     told_at: Option<usize>,
     depth: usize,
-    /// Whether an address may stand in place of a member: `cell.%IX0.0`, a signal of a script.
+    /// Whether an address may take the place of a member: `cell.%IX0.0`, a signal of a script.
     addresses: bool,
     /// The words that close what is open, from the outside in.
     open: Vec<Word>,
-    /// END_IF and its kin without a `;`.
+    /// END_IF and similar words without a `;`.
     unended: Vec<Span>,
     found: &'a mut Found,
 }
@@ -101,7 +101,7 @@ impl<'a> Parser<'a> {
         self.text.get(range).unwrap_or_default()
     }
 
-    /// What stands here, for a message.
+    /// The text here, for a message.
     fn shown(&self) -> String {
         match self.token() {
             Token::End => "the end of the file".to_owned(),
@@ -143,7 +143,7 @@ impl<'a> Parser<'a> {
         self.token() == Token::Name && self.text_of(self.span()).eq_ignore_ascii_case(name)
     }
 
-    /// Tells a mistake, unless one was told at this token.
+    /// Reports a mistake, unless one was reported at this token.
     fn tell(&mut self, diagnostic: Diagnostic) {
         if self.told_at != Some(self.at) {
             self.told_at = Some(self.at);
@@ -164,7 +164,7 @@ impl<'a> Parser<'a> {
         self.tell(Diagnostic::error(Code::Unsupported, span, message).help(instead));
     }
 
-    /// Takes `token`, or tells that it is missing behind what was taken last.
+    /// Takes `token`, or reports that it is missing behind the last one taken.
     fn expect(&mut self, token: Token, sign: &str, after: &str) -> bool {
         if self.take(token) {
             return true;
@@ -179,7 +179,7 @@ impl<'a> Parser<'a> {
         self.expect(Token::Word(word), word.text(), after)
     }
 
-    /// A name to be declared or used; what stands instead is told and left.
+    /// A name to be declared or used; any other text is reported and not taken.
     fn ident(&mut self, what: &str) -> Option<Ident> {
         match self.token() {
             Token::Name => {
@@ -202,7 +202,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// A name to be declared. A keyword in its place is told and taken.
+    /// A name to be declared. A keyword in its place is reported and taken.
     fn new_name(&mut self, what: &str) -> Option<Ident> {
         if matches!(self.token(), Token::Word(_))
             && matches!(

@@ -1,4 +1,4 @@
-//! Where reading goes on behind a mistake.
+//! The places where reading continues behind a mistake.
 
 use super::Parser;
 use crate::lex::{Token, Word};

@@ -1,4 +1,4 @@
-//! Which axes the variables of type AXIS_REF begin as.
+//! The axes that variables of type AXIS_REF refer to at the start.
 
 use crate::Options;
 use crate::check::{Program, UnitKind};
@@ -9,7 +9,7 @@ use crate::types::{Array, Member, MemberKind, Type, TypeId};
 /// Most variables that a message lists.
 const LISTED_MOST: usize = 8;
 
-/// Writes which axis each variable of type AXIS_REF begins as.
+/// Writes the initial axis of each variable of type AXIS_REF.
 pub(crate) fn bind(program: &Program<'_>, options: &Options, memory: &mut [u8]) -> Result<(), Diagnostic> {
     let mut found = Vec::new();
     for global in &program.globals {
@@ -64,7 +64,8 @@ pub(crate) fn bind(program: &Program<'_>, options: &Options, memory: &mut [u8]) 
     Ok(())
 }
 
-/// What is told of a path that leads to no variable of type AXIS_REF; `only` is the instance whose name may be left out.
+/// The message for a path that leads to no variable of type AXIS_REF; `only` is the instance whose name
+/// may be left out.
 fn unknown(path: &str, found: &References, only: Option<&str>) -> Diagnostic {
     let known: Vec<&str> = found
         .iter()
@@ -119,7 +120,7 @@ fn references(program: &Program<'_>, ty: TypeId, path: &str, address: u32, found
                     address + number * array.stride,
                     found,
                 );
-                // What the first element does not have no other one has.
+                // If the first element does not have it, no other one has.
                 if found.len() == before {
                     return;
                 }

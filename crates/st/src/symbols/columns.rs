@@ -1,4 +1,4 @@
-//! What of the variables a trace shows, and which instances of blocks there are.
+//! The variables that a trace shows, and the instances of blocks.
 
 use super::{Part, Section, Symbol, Symbols};
 use crate::types::{MemberKind, Type};
@@ -14,7 +14,7 @@ pub struct BlockAt {
     pub address: u32,
 }
 
-/// What is looked for below a variable.
+/// The variables that are searched below a variable.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Wanted {
     /// Every variable of an elementary type.
@@ -24,8 +24,8 @@ pub(super) enum Wanted {
 }
 
 impl Symbols {
-    /// What a trace shows unless it is told otherwise, at most so many: all VAR_GLOBAL, the VAR_OUTPUT of programs and
-    /// of the blocks of the sources, and the pins of motion blocks; in the order of memory.
+    /// The default columns of a trace, at most `most`: all VAR_GLOBAL, the VAR_OUTPUT of programs and of
+    /// the blocks of the sources, and the pins of motion blocks; in the order of memory.
     #[must_use]
     pub fn usual(&self, most: usize) -> Vec<Symbol> {
         let mut found = Vec::new();
@@ -35,7 +35,8 @@ impl Symbols {
         found
     }
 
-    /// All variables of elementary types at or below a path, at most so many; `None` if there is nothing at the path.
+    /// All variables of elementary types at or below a path, at most `most`; `None` if there is nothing
+    /// at the path.
     #[must_use]
     pub fn below(&self, path: &str, most: usize) -> Option<Vec<Symbol>> {
         if path.starts_with('%') {
@@ -69,7 +70,7 @@ impl Symbols {
         if hidden { path } else { rest }
     }
 
-    /// All instances of blocks of the library, at most so many, in the order of memory.
+    /// All instances of blocks of the library, at most `most`, in the order of memory.
     #[must_use]
     pub fn blocks(&self, most: usize) -> Vec<BlockAt> {
         let mut found = Vec::new();

@@ -1,4 +1,4 @@
-//! Where the variables of a module stand, and which place in the text a fault means.
+//! The addresses of a module's variables, and the place in the text of a fault.
 
 mod bind;
 mod columns;
@@ -29,7 +29,7 @@ pub enum Section {
     Internal,
 }
 
-/// What the number in a variable means.
+/// The meaning of the number in a variable.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Value {
     /// Itself.
@@ -184,7 +184,8 @@ impl Symbols {
         &self.tasks
     }
 
-    /// Where statements and branches are counted; none unless [`Options::coverage`](crate::Options::coverage) is set.
+    /// The counters of statements and branches; none unless
+    /// [`Options::coverage`](crate::Options::coverage) is set.
     #[must_use]
     pub fn counters(&self) -> &[Counter] {
         &self.counters
@@ -196,8 +197,8 @@ impl Symbols {
         &self.places
     }
 
-    /// The place with the number that stands at [`FAULT_SITE`](crate::FAULT_SITE) or
-    /// [`LOOP_SITE`](crate::LOOP_SITE); `None` for 0.
+    /// The place with the number at [`FAULT_SITE`](crate::FAULT_SITE) or [`LOOP_SITE`](crate::LOOP_SITE);
+    /// `None` for 0.
     #[must_use]
     pub fn place(&self, number: u32) -> Option<&Place> {
         self.places.get((number as usize).checked_sub(1)?)
@@ -251,7 +252,7 @@ impl Symbols {
         Some(only)
     }
 
-    /// All variables of elementary types, at most so many, in the order of memory.
+    /// All variables of elementary types, at most `most`, in the order of memory.
     #[must_use]
     pub fn leaves(&self, most: usize) -> Vec<Symbol> {
         let mut found = Vec::new();

@@ -1,4 +1,4 @@
-//! Which statements write a variable.
+//! The statements that write a variable.
 
 use super::{Part, Symbol, Symbols, next_name};
 use crate::check::{Body, Program};
@@ -6,7 +6,7 @@ use crate::source::{Position, Sources, Span};
 use crate::typed::{Argument, Base, Expr, Kind, Place, Stmt, StmtKind};
 use crate::types::{Constant, Elementary, Type, UnitId};
 
-/// Most writers of one variable that are told.
+/// Most writers of one variable that are listed.
 const MOST: usize = 16;
 
 /// A statement that writes a variable.
@@ -14,9 +14,9 @@ const MOST: usize = 16;
 pub struct Writer {
     /// The file, as it was given.
     pub file: String,
-    /// Where the statement begins; of an input given in a call, where its value stands.
+    /// The begin of the statement; for an input given in a call, the place of its value.
     pub position: Position,
-    /// What it writes, where that is a constant: as a trace shows it.
+    /// The value it writes, if that is a constant: in the form of a trace.
     pub value: Option<String>,
 }
 
@@ -78,10 +78,10 @@ impl Finder<'_> {
         let unit = match place.base {
             Base::Memory => None,
             Base::This => self.unit,
-            // Where an in_out leads to is known at work only; who hands it over is told instead.
+            // The target of an in_out is known only at run time; its caller is listed instead.
             Base::ThisPointer(_) | Base::MemoryPointer(_) | Base::Callee => return,
         };
-        // An index that is known at work only may be any.
+        // An index that is known only at run time may be any.
         let reach: u32 = place.indices.iter().map(|it| it.stride * (it.count - 1)).sum();
         self.found.push(Write {
             unit,
@@ -144,7 +144,8 @@ impl Finder<'_> {
         }
     }
 
-    /// What calls in an expression write; those deep in it are left out, as few functions have outputs.
+    /// The writes of calls in an expression. Calls nested deep in it are left out, because few functions
+    /// have outputs.
     fn expression(&mut self, value: &Expr, span: Span) {
         if let Kind::Call(call) = &value.kind {
             for (place, _) in &call.outputs {
@@ -163,9 +164,9 @@ impl Finder<'_> {
 }
 
 impl Symbols {
-    /// The statements that write a variable, in the order of the text, at most 16. A call of an instance is told only where
-    /// no statement writes the variable itself. What goes through an in_out is told where the variable is handed over.
-    /// Cost: linear in the statements of the program.
+    /// The statements that write a variable, in text order, at most 16. A call of an instance is listed
+    /// only if no statement writes the variable itself. A write through an in_out is listed at the call
+    /// that passes the variable. Cost: linear in the statements of the program.
     #[must_use]
     pub fn writers(&self, symbol: &Symbol) -> Vec<Writer> {
         let owners = self.owners(&symbol.path);
