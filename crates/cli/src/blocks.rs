@@ -1,4 +1,4 @@
-//! `standstill blocks`: what the registry holds.
+//! `standstill blocks`: the contents of the registry.
 
 use crate::exit::{Exit, Failure};
 use crate::json::{Object, list, number, string};
@@ -105,11 +105,11 @@ fn widest<'a>(texts: impl Iterator<Item = &'a str>) -> usize {
     texts.map(str::len).max().unwrap_or(0)
 }
 
-/// What a fresh instance shows at a pin, as JSON.
+/// The default of a pin of a new instance, as JSON.
 fn default(info: &BlockInfo, index: usize, ty: PinType) -> String {
     let value = BlockInstance::new(info.name).and_then(|instance| instance.get(index));
     match value {
-        // An axis has to be wired.
+        // An axis must be wired.
         None | Some(Value::Axis(_)) => "null".to_owned(),
         Some(Value::Bool(value)) => value.to_string(),
         Some(Value::Int(value)) => value.to_string(),

@@ -1,4 +1,4 @@
-//! `standstill cam`: a table held against its axes, as a picture, and rows of the usual laws.
+//! `standstill cam`: checks a table against its axes, draws it, and writes rows of the usual laws.
 
 use crate::args::{Cam, CamCheckArguments, CamLaw, CamLawArguments, Outside};
 use crate::exit::{Exit, Failure};
@@ -175,7 +175,7 @@ fn as_text(table: &CamTable, asked: Asked<'_>, fit: &Fit) -> String {
     text
 }
 
-/// What MC_CamTableSelect shows for a finding.
+/// The error of MC_CamTableSelect for a finding.
 fn error_of(finding: &Finding) -> String {
     let error = finding.error;
     error.map_or_else(String::new, |error| {
@@ -344,7 +344,7 @@ fn plot(file: &Path, svg: &Path, periodic: bool, outside: &Outside) -> Result<Ex
     let table = table(file, outside)?;
     let curve = Curve::new(&table, periodic).map_err(failure)?;
     let rows: Vec<[f64; 2]> = table.rows.iter().map(|row| [row.master, row.slave]).collect();
-    // Without its folder: the picture is the same wherever the file lies.
+    // Without its folder, so that the picture does not depend on the place of the file.
     let title = table.name.rsplit('/').next().unwrap_or_default();
     let picture = svg::cam(title, &curve.course(), &rows);
     replace(svg, |out| out.write_all(picture.as_bytes()))?;

@@ -1,4 +1,4 @@
-//! `standstill compare`: a trace against the recording of a machine.
+//! `standstill compare`: compares a trace with the recording of a machine.
 
 use crate::exit::{Exit, Failure, complain};
 use crate::limit;
@@ -9,7 +9,7 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
-/// Holds `trace` against what `recording` has of it, as `map` says.
+/// Compares `trace` with `recording`, as `map` says.
 pub fn compare(recording: &Path, trace: &Path, map: &Path, out: &mut dyn Write) -> Result<Exit, Failure> {
     let (recording_name, trace_name, map_name) = (shown(recording), shown(trace), shown(map));
     limit::doing(format!("holding {trace_name} against {recording_name}"));

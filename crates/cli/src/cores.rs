@@ -1,4 +1,4 @@
-//! Work on all processors, whose results are taken in order.
+//! Work on all processors; results are taken in order.
 
 use crate::exit::Failure;
 use std::collections::BTreeMap;
@@ -7,22 +7,24 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// How far work may be ahead of what was taken, per thread: what is done and not yet taken needs memory.
+/// Most results per thread that wait to be taken, because they need memory.
 const AHEAD: usize = 2;
 
-/// Stack of a thread (bytes), as the main one has it: files may be nested as deep as the reader allows.
+/// Stack of a thread (bytes), the same as the main one's: files may be nested as deep as the reader
+/// permits.
 const STACK: usize = 8 << 20;
 
-/// Time between two looks at how far the work is.
+/// Time between two reports of progress.
 const PERIOD: Duration = Duration::from_millis(50);
 
-/// How far the work is.
+/// The progress of the work.
 struct State<T> {
     /// Begun.
     begun: usize,
     /// Taken.
     taken: usize,
-    /// Done and not yet taken. Work that panicked is done, too: the panic goes on where it is taken.
+    /// Results that wait to be taken. Work that panicked counts as done: the panic continues where it is
+    /// taken.
     done: BTreeMap<usize, thread::Result<T>>,
     /// Nothing more is wanted.
     is_over: bool,
@@ -54,7 +56,7 @@ impl<T> Shared<T> {
         Some(state.begun - 1)
     }
 
-    /// What came of piece `index`; none if it is not done after a while.
+    /// The result of piece `index`; none if it is not done after a while.
     fn take(&self, index: usize) -> Option<T> {
         let is_missing = |state: &mut State<T>| !state.done.contains_key(&index);
         let held = self.changed.wait_timeout_while(self.lock(), PERIOD, is_missing);
@@ -67,7 +69,7 @@ impl<T> Shared<T> {
     }
 }
 
-/// Ends the work when it is dropped, however that comes.
+/// Ends the work when it is dropped, in every case.
 struct End<'s, T>(&'s Shared<T>);
 
 impl<T> Drop for End<'_, T> {
@@ -77,16 +79,16 @@ impl<T> Drop for End<'_, T> {
     }
 }
 
-/// So many threads as there are processors.
+/// As many threads as there are processors.
 pub fn processors() -> usize {
     thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Does `work` for 0, 1, .. below `count` on so many threads, and hands what came of it to `take`, in this order: nothing at first and
-/// now and then while it is not done, then the result.
+/// Does `work` for 0, 1, .. below `count` on `threads` threads, and passes each result to `take`, in this
+/// order. While a result is not ready, `take` gets nothing, at once and then from time to time.
 ///
 /// # Errors
-/// The first of `take`; work that has begun is finished first.
+/// The first error of `take`; running work is finished first.
 pub fn in_order<T: Send>(
     count: usize,
     threads: usize,
@@ -121,7 +123,7 @@ pub fn in_order<T: Send>(
                 .spawn_scoped(scope, worker)
                 .is_ok()
         };
-        // Where no more threads are to be had, those there are do the work; and not every system has any.
+        // If no more threads are available, the existing ones do the work; some systems have none.
         if (0..threads).take_while(|number| spawn(*number)).count() == 0 {
             return (0..count).try_for_each(|index| {
                 take(index, None)?;
@@ -188,7 +190,7 @@ mod tests {
             Ok(())
         };
         in_order(60, 3, work, take).unwrap();
-        // One more was handed out than `take` has counted yet.
+        // One more was started than `take` has counted yet.
         assert!(most.into_inner() <= AHEAD * 3 + 1);
     }
 

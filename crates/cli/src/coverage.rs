@@ -1,4 +1,5 @@
-//! Which statements and branches of Structured Text scripts execute: as an LCOV file, on the terminal, and as a page.
+//! The statements and branches of Structured Text that scripts execute: as an LCOV file, on the terminal,
+//! and as a page.
 
 use crate::exit::Failure;
 use standstill_script::run::Counted;
@@ -11,13 +12,13 @@ use std::path::{Path, PathBuf};
 /// Counts of one file: by the line and column of a statement and the number of its branch, which is 0 for itself.
 type Counts = BTreeMap<(u32, u32, u32), u64>;
 
-/// What the scripts of a run executed.
+/// The execution counts of a run's scripts.
 #[derive(Debug, Default)]
 pub struct Coverage {
     files: BTreeMap<String, Counts>,
 }
 
-/// How many there are, and how many of them were executed.
+/// The number of items, and the number executed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Share {
     hit: usize,
@@ -29,7 +30,7 @@ impl Coverage {
     pub fn of(scripts: &[PathBuf], allowed: &Allowed) -> Self {
         let mut coverage = Self::default();
         for script in scripts {
-            // Why a script cannot be read or run was told when it was judged.
+            // The reason why a script cannot be read or run was reported when it was judged.
             if let Ok(Some(counts)) = suite::coverage(script, allowed) {
                 coverage.add(&counts);
             }
@@ -44,7 +45,7 @@ impl Coverage {
         }
     }
 
-    /// Writes the file, and says what was not executed and what share was.
+    /// Writes the file, and prints the items that were not executed and the share of those that were.
     pub fn save(&self, path: &Path) -> Result<String, Failure> {
         let text = self.lcov();
         replace(path, |out| out.write_all(text.as_bytes()))?;
@@ -75,7 +76,8 @@ impl Coverage {
     pub fn page(&self, folder: &Path) -> Result<String, Failure> {
         let path = folder.join("coverage.html");
         let files = self.files.iter().map(|(file, counts)| {
-            // What was compiled a moment ago is UTF-8; a file that has gone since is shown by its numbers only.
+            // The text was compiled a moment ago, so it is UTF-8; a file that is gone since is shown by
+            // its numbers only.
             let text = std::fs::read_to_string(file).unwrap_or_default();
             table(file, &text, counts)
         });
@@ -118,13 +120,13 @@ impl Coverage {
     }
 }
 
-/// Most files of which the terminal tells what was not executed.
+/// Most files whose missing lines the terminal shows.
 const FILES_TOLD: usize = 20;
 
 /// Most lines of a file that the terminal names.
 const LINES_TOLD: usize = 12;
 
-/// The page around the files; it asks for nothing from anywhere.
+/// The page around the files; it loads nothing.
 const PAGE: &str = r#"<!doctype html>
 <html lang="en">
 <meta charset="utf-8">
@@ -158,7 +160,7 @@ fn open_lines(counts: &Counts) -> (BTreeSet<u32>, BTreeSet<u32>) {
         if *count > 0 {
             continue;
         }
-        // Of a statement that was not executed no branch was taken either.
+        // A statement that was not executed has no branch taken either.
         let ran = counts.get(&(*line, *column, 0)).is_some_and(|count| *count > 0);
         match branch {
             0 => drop(statements.insert(*line)),
@@ -169,7 +171,7 @@ fn open_lines(counts: &Counts) -> (BTreeSet<u32>, BTreeSet<u32>) {
     (statements, branches)
 }
 
-/// What of a file was not executed, in a line; `None` if all was.
+/// The lines of a file that were not executed, as one line of text; `None` if there are none.
 fn missed(file: &str, counts: &Counts) -> Option<String> {
     let (statements, branches) = open_lines(counts);
     let mut parts = Vec::new();
@@ -282,7 +284,7 @@ impl std::fmt::Display for Share {
     }
 }
 
-/// A path without `folder/..`, so that a file that two folders name is one.
+/// A path without `folder/..`, so that one file under two names counts once.
 fn plain(path: &str) -> String {
     let mut parts: Vec<&str> = Vec::new();
     for part in path.split('/') {

@@ -1,11 +1,11 @@
-//! `standstill blocks --error` and `standstill explain-error`: what an ErrorID means, and what to do about it.
+//! `standstill blocks --error` and `standstill explain-error`: the meaning and the remedy of an ErrorID.
 
 use crate::exit::{Exit, Failure};
 use crate::suggest::nearest;
 use standstill_script::ErrorId;
 use std::io::Write;
 
-/// Tells of the error with this number or name.
+/// Prints the error with this number or name.
 pub fn explain(wanted: &str, out: &mut dyn Write) -> Result<Exit, Failure> {
     let error = find(wanted).ok_or_else(|| unknown(wanted))?;
     let (number, name) = (error.number(), error.name());

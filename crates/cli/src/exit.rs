@@ -1,4 +1,4 @@
-//! How a command ends: the exit statuses, and the failures that lead to them.
+//! The exit statuses of a command, and the failures that lead to them.
 
 use crate::paint;
 use crate::suggest::beside;
@@ -14,7 +14,7 @@ use std::process::ExitCode;
 
 /// The exit statuses of the program. They are interface: scripts and CI jobs rely on them.
 ///
-/// Where several scripts are judged in one go the highest status counts.
+/// If several scripts are judged in one run the highest status counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Exit {
@@ -45,7 +45,7 @@ impl Exit {
     }
 }
 
-/// Why a command could not do what it was asked to.
+/// The reason why a command could not do its work.
 #[derive(Debug)]
 pub enum Failure {
     /// It ends with this status, after this message.
@@ -88,14 +88,14 @@ impl Failure {
         )
     }
 
-    /// Tells people on standard error; returns the status that goes with it.
+    /// Prints the failure on standard error; returns its status.
     pub fn report(&self) -> Exit {
         match self {
             Self::Told(exit, text) => {
                 complain(text);
                 *exit
             }
-            // The reader has seen enough, as in `standstill plan | head -1`.
+            // The reader has stopped, as in `standstill plan | head -1`.
             Self::Output(error) if error.kind() == ErrorKind::BrokenPipe => Exit::Passed,
             Self::Output(error) => {
                 complain(&format!("error: standard output: {error}"));
@@ -105,7 +105,7 @@ impl Failure {
     }
 }
 
-/// The end of a message about a file or folder that is not there: what was probably meant.
+/// The end of a message about a missing file or folder: the name that was probably meant.
 fn meant(path: &Path, error: &io::Error) -> String {
     let found = (error.kind() == ErrorKind::NotFound)
         .then(|| beside(path))
@@ -123,7 +123,7 @@ fn io_exit(error: &io::Error) -> Exit {
 }
 
 impl From<io::Error> for Failure {
-    /// Only standard output is written with a bare `?`; errors of files are given their name first.
+    /// Only standard output is written with a bare `?`; errors of files first get the file's name.
     fn from(error: io::Error) -> Self {
         Self::Output(error)
     }
@@ -160,11 +160,11 @@ impl From<FileError> for Failure {
     }
 }
 
-/// Lets a command over several files go on after one of them: its failure is reported and becomes a status.
+/// Lets a command over several files continue after a failure, which is reported and becomes a status.
 pub fn go_on(result: Result<Exit, Failure>, out: &mut dyn Write) -> Result<Exit, Failure> {
     match result {
         Err(failure @ Failure::Told(..)) => {
-            // What was printed so far stands before the message.
+            // Text printed before must come before the message.
             out.flush()?;
             Ok(failure.report())
         }
@@ -172,7 +172,8 @@ pub fn go_on(result: Result<Exit, Failure>, out: &mut dyn Write) -> Result<Exit,
     }
 }
 
-/// Writes lines to standard error, on which every character can be seen. Unlike `eprintln!` it does not panic when nobody can read it.
+/// Writes lines to standard error with all characters visible. Unlike `eprintln!` it does not panic if
+/// nobody can read it.
 pub fn complain(text: &str) {
     let mut text = printable_lines(text).into_owned();
     if paint::wanted(&io::stderr()) {

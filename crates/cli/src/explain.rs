@@ -1,4 +1,4 @@
-//! `standstill explain`: where two traces part.
+//! `standstill explain`: the first difference of two traces.
 
 use crate::exit::{Exit, Failure, complain};
 use crate::limit;
@@ -9,7 +9,7 @@ use standstill_trace::{Trace, file};
 use std::io::Write;
 use std::path::Path;
 
-/// Tells how `found` differs from `expected`, from the first scan and signals on, and what may be behind it.
+/// Prints how `found` differs from `expected`, from the first scan and signals on, and the likely causes.
 pub fn explain(expected: &Path, found: &Path, json: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
     let story = story(&load(expected)?, &load(found)?);
     let (expected, found) = (shown(expected), shown(found));
@@ -34,7 +34,7 @@ pub fn explain(expected: &Path, found: &Path, json: bool, out: &mut dyn Write) -
     }
 }
 
-/// A trace, with what it lacks told on standard error.
+/// A trace; the parts it lacks are reported on standard error.
 pub fn load(path: &Path) -> Result<Trace, Failure> {
     limit::doing(format!("reading {}", shown(path)));
     let loaded = file::load(path)?;

@@ -1,4 +1,4 @@
-//! Pages of failing tests: the golden as it should be, the run laid over it, the first difference marked.
+//! Pages of failing tests: the golden, the run over it, and a mark at the first difference.
 
 use crate::exit::{Exit, Failure};
 use crate::report::page_failure;
@@ -21,7 +21,7 @@ pub struct Pages<'a> {
 }
 
 impl<'a> Pages<'a> {
-    /// Makes the folder: to be asked for before the tests, not after them.
+    /// Makes the folder. Call it before the tests, not after them.
     pub fn new(root: &'a Path) -> Result<Self, Failure> {
         make(root)?;
         Ok(Self {
@@ -46,7 +46,7 @@ impl<'a> Pages<'a> {
         Ok(shown(&path))
     }
 
-    /// No link on the way leads out of the folder that was named.
+    /// No link on the way may lead out of the named folder.
     fn stay_below(&self, folder: &Path) -> Result<(), Failure> {
         let real = |path: &Path| fs::canonicalize(path).map_err(|error| Failure::io(&shown(path), &error));
         if real(folder)?.starts_with(real(self.root)?) {
@@ -59,7 +59,7 @@ impl<'a> Pages<'a> {
         Err(Failure::Told(Exit::Io, text))
     }
 
-    /// Where the page of a script goes: below the folder as the script stands below its own.
+    /// The place of a script's page: below the folder, as the script is below its own.
     fn place(&mut self, script: &Path) -> PathBuf {
         let parts = script.components();
         let inner: PathBuf = parts
@@ -96,7 +96,7 @@ fn page(script: &Path, report: &Report, yardstick: Option<Yardstick>) -> Result<
     if let Some(expected) = &mut golden {
         expected.describe_as(run.header());
     }
-    // A run that differs in nothing is not shown twice.
+    // A run without differences is not shown twice.
     let difference = golden
         .as_ref()
         .zip(yardstick.filter(|_| report.golden != Standing::Unasked))
@@ -114,7 +114,7 @@ fn page(script: &Path, report: &Report, yardstick: Option<Yardstick>) -> Result<
         (Some(expected), Some(_)) => vec![source(&names[0], expected, &lacks), found],
         _ => vec![found],
     };
-    // Runs of different cycle have no common scans; the mark tells the cycles.
+    // Runs of different cycle have no common scans; the mark shows the cycles.
     let sources = if check(&both).is_ok() { both } else { vec![found] };
     html_marked(&sources, &marks).map_err(page_failure)
 }

@@ -21,8 +21,8 @@ pub fn files(paths: &[PathBuf], check: bool, out: &mut dyn Write) -> Result<Exit
     Ok(exit)
 }
 
-/// Lays out a script from standard input to standard output; with `check` only says by the status whether
-/// it is laid out already.
+/// Lays out a script from standard input to standard output. With `check` only the status says whether it
+/// is laid out already.
 pub fn filter(check: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
     let mut text = String::new();
     let read = io::stdin().lock().read_to_string(&mut text);

@@ -1,4 +1,4 @@
-//! `standstill identify`: how a machine swings, from a trace or a recording of it.
+//! `standstill identify`: the oscillation of a machine, from a trace or a recording.
 
 use crate::args::IdentifyArguments;
 use crate::exit::{Exit, Failure};
@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::io::Write;
 
-/// A stretch of a signal, and what was found in it.
+/// A stretch of a signal, and the result for it.
 struct Stretch {
     signal: String,
     /// Times (ns) of the first and the last sample.
@@ -20,7 +20,7 @@ struct Stretch {
     found: Result<RingDown, NoRingDown>,
 }
 
-/// Looks for the swing in every signal that is asked for, and tells it.
+/// Finds the oscillation in every requested signal, and prints it.
 pub fn identify(arguments: &IdentifyArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
     let name = shown(&arguments.trace);
     if let (Some(from), Some(to)) = (arguments.from, arguments.to)
@@ -50,7 +50,7 @@ pub fn identify(arguments: &IdentifyArguments, out: &mut dyn Write) -> Result<Ex
     Ok(exit)
 }
 
-/// The signal that was named, or of each axis how far it is from its set-point while that rests.
+/// The named signal; otherwise for each axis the distance from its set-point while that is at rest.
 fn of_trace(arguments: &IdentifyArguments, trace: &Trace) -> Result<Vec<Stretch>, Failure> {
     let cycle = i64::try_from(trace.header().cycle_ns).unwrap_or(i64::MAX);
     let window = arguments.window();
@@ -96,8 +96,8 @@ fn of_trace(arguments: &IdentifyArguments, trace: &Trace) -> Result<Vec<Stretch>
     Ok(found)
 }
 
-/// The rows (from, to; the last one not among them) of the longest stretch in which the set-point rests after a motion; the longest
-/// one of all where it never moves before.
+/// The rows (from, to; the last one excluded) of the longest stretch in which the set-point is at rest
+/// after a motion; if there is no motion before any, the longest of all.
 fn longest_rest(rows: &[(f64, f64)]) -> (usize, usize) {
     let mut best = (0, 0);
     let mut begin = 0;
@@ -110,7 +110,7 @@ fn longest_rest(rows: &[(f64, f64)]) -> (usize, usize) {
         if goes_on {
             continue;
         }
-        // What comes before the first motion is no answer to one.
+        // Rows before the first motion show no response to one.
         let is_later = begin > 0 && !has_moved && place - begin > 1;
         if is_later || place - begin > best.1 - best.0 {
             best = (begin, place);

@@ -2,8 +2,8 @@
 //!
 //! `serde_json` writes `1e21` as `1e+21`; every other text of the product has Rust's own form.
 
-/// A finite number in the shortest form that reads back as the same number, -0.0 as `0.0`; what is not
-/// finite becomes the word for it, as a string.
+/// A finite number in the shortest form that reads back as the same number, -0.0 as `0.0`. Other values
+/// become the word for it, as a string.
 pub fn number(value: f64) -> String {
     if value.is_nan() {
         string("NaN")
@@ -12,7 +12,7 @@ pub fn number(value: f64) -> String {
     } else if value == f64::NEG_INFINITY {
         string("-Infinity")
     } else {
-        // Adding 0.0 takes the sign off zero and changes nothing else.
+        // Adding 0.0 removes the sign of zero and changes nothing else.
         format!("{:?}", value + 0.0)
     }
 }
@@ -22,12 +22,12 @@ pub fn string(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }
 
-/// A list of values that are JSON already.
+/// A list of values in JSON form.
 pub fn list(values: impl IntoIterator<Item = String>) -> String {
     format!("[{}]", values.into_iter().collect::<Vec<_>>().join(","))
 }
 
-/// An object whose keys stand in the order in which they were added.
+/// An object with its keys in the order in which they were added.
 #[derive(Clone, Debug, Default)]
 pub struct Object {
     members: String,
@@ -39,7 +39,7 @@ impl Object {
         Self::default()
     }
 
-    /// Adds a member whose value is JSON already.
+    /// Adds a member with a value in JSON form.
     pub fn with(mut self, key: &str, json: impl AsRef<str>) -> Self {
         if !self.members.is_empty() {
             self.members.push(',');

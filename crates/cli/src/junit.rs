@@ -1,7 +1,7 @@
 //! The outcome of `standstill test` as JUnit XML, the form that GitHub, GitLab and Jenkins read.
 //!
-//! One suite a folder, one case a script. Names and texts come from files, so all of them are escaped; what XML 1.0
-//! cannot hold, such as control characters, becomes U+FFFD.
+//! One suite a folder, one case a script. Names and texts come from files, so all of them are escaped.
+//! Characters that XML 1.0 cannot have, such as control characters, become U+FFFD.
 
 use crate::exit::Failure;
 use standstill_trace::file::replace;
@@ -28,7 +28,7 @@ pub struct Case {
     pub file: String,
     /// How it ended.
     pub ending: Ending,
-    /// What to tell of it; empty if it passed.
+    /// The message; empty if it passed.
     pub text: String,
     /// What it took.
     pub took: Duration,
@@ -130,7 +130,7 @@ fn seconds(time: Duration) -> String {
 
 /// Text as a quoted attribute has it.
 fn attribute(text: &str) -> String {
-    // A reader would make a space of a line end.
+    // A reader would change a line end to a space.
     escaped(text).replace('\n', "&#10;")
 }
 

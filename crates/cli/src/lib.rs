@@ -65,13 +65,13 @@ use std::io::{self, BufRead, BufReader, IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// The program: takes the arguments of the process, and gives the status it is to end with.
+/// The program: takes the arguments of the process, and returns its exit status.
 pub fn main() -> ExitCode {
     status_of(std::env::args_os()).into()
 }
 
-/// The program with these arguments, the first of which is its name: the status it is to end with. It may end the process
-/// itself, as `--time-limit` does.
+/// Runs the program with these arguments, the first of which is its name, and returns its exit status. It
+/// may end the process itself, as `--time-limit` does.
 pub fn status_of(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     exit::guarded(|| program(&arguments))
@@ -92,7 +92,7 @@ fn program(arguments: &[OsString]) -> Exit {
         Out::text()
     };
     let result = dispatch(&arguments.command, &mut out);
-    // What was printed stands before the message that follows from it.
+    // Text printed before must come before the message that follows from it.
     let flushed = out.flush().map_err(Failure::from);
     match result.and_then(|exit| flushed.map(|()| exit)) {
         Ok(exit) => exit,
@@ -134,10 +134,10 @@ fn is_data(command: &Command) -> bool {
     }
 }
 
-/// Prints what clap has to say: help and version on standard output, mistakes on standard error.
+/// Prints clap's text: help and version on standard output, mistakes on standard error.
 fn explained(error: &clap::Error) -> Exit {
     match error.print() {
-        // A mistake stays one when nobody reads of it.
+        // A mistake remains one even if nobody reads of it.
         _ if error.use_stderr() => Exit::Usage,
         Ok(()) => Exit::Passed,
         Err(error) => Failure::from(error).report(),
@@ -343,7 +343,7 @@ fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-/// Calls `command` with the lines of a file, or of standard input, and what stands for it in messages.
+/// Calls `command` with the lines of a file, or of standard input, and its name for messages.
 fn with_lines(
     path: &Path,
     command: impl FnOnce(&mut dyn BufRead, &str) -> Result<Exit, Failure>,
@@ -357,7 +357,7 @@ fn with_lines(
     command(&mut BufReader::new(file), &name)
 }
 
-/// Standard input; tells a person at a terminal that it is waited for.
+/// Standard input; tells a person at a terminal that the program waits for it.
 fn standard_input() -> impl BufRead {
     if io::stdin().is_terminal() {
         exit::complain("reading from the terminal, one JSON object a line");

@@ -1,4 +1,4 @@
-//! `--time-limit`: the end of a command that takes too long, whatever it is at.
+//! `--time-limit`: ends a command that takes too long, whatever it does.
 
 use crate::exit::{Exit, Failure, complain};
 use crate::out;
@@ -8,28 +8,29 @@ use std::sync::{Mutex, MutexGuard};
 use std::thread;
 use std::time::Duration;
 
-/// What the command is at.
+/// The present work of the command.
 static DOING: Mutex<String> = Mutex::new(String::new());
 
-/// What must be done before the program ends.
+/// Actions before the program ends.
 static FIRST: Mutex<Option<fn()>> = Mutex::new(None);
 
 fn locked<T>(mutex: &'static Mutex<T>) -> MutexGuard<'static, T> {
     mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// Remembers what the command is at, for the message when the time is up.
+/// Stores the present work of the command, for the message when the time is up.
 pub fn doing(what: impl Into<String>) {
     *locked(&DOING) = what.into();
 }
 
-/// Has `first` called before the program ends: a terminal that is taken over has to be given back.
+/// Registers `first`, which is called before the program ends: a terminal that was taken over must be
+/// restored.
 #[cfg(feature = "watch")]
 pub fn before_end(first: fn()) {
     *locked(&FIRST) = Some(first);
 }
 
-/// Ends the program in so much time from now on, unless it has ended by itself.
+/// Ends the program after this time, unless it has ended by itself.
 pub fn start(limit_ns: u64) -> Result<(), Failure> {
     let watch = move || {
         thread::sleep(Duration::from_nanos(limit_ns));

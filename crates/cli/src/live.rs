@@ -4,7 +4,7 @@ use crate::args::LiveArguments;
 use crate::exit::{Exit, Failure};
 use std::io::Write;
 
-/// Where there is nothing to pace a task with.
+/// For systems without real-time support.
 #[cfg(not(target_os = "linux"))]
 pub fn live(_: &LiveArguments, _: &mut dyn Write) -> Result<Exit, Failure> {
     Err(Failure::usage(
@@ -30,7 +30,7 @@ mod linux {
     use standstill_trace::digest;
     use standstill_trace::file::{self, Draft, Saving};
 
-    /// Runs the script in real time. What happened and when go to files; the last line is that of `run`.
+    /// Runs the script in real time. Events and times go to files; the last line is that of `run`.
     pub fn live(arguments: &LiveArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
         let LiveArguments {
             script: path,
@@ -64,7 +64,7 @@ mod linux {
         };
         let mut session = Session::new(&script).map_err(wrong)?;
         session.reserve();
-        // What cannot be written is found out now, not after the run.
+        // A file that cannot be written is detected now, not after the run.
         let saving = arguments.trace.as_deref().map(Saving::begin).transpose()?;
         let times = arguments.timing.as_deref().map(Draft::begin).transpose()?;
         limit::doing(format!("{name}, paced"));
@@ -146,7 +146,7 @@ mod linux {
         }
     }
 
-    /// What differs from run to run belongs on standard error.
+    /// Text that differs from run to run belongs on standard error.
     fn tell(name: &str, timing: &Timing) {
         let us = |ns: u64| ns as f64 / 1e3;
         let (wake, scan) = (timing.wake_latency(), timing.scan_time());

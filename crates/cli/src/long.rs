@@ -1,5 +1,5 @@
-//! `standstill run` of a script that has more scans than rows are kept of: everything is told row by row, so memory does not grow
-//! with the scans.
+//! `standstill run` for a script with more scans than rows are kept. All output is written row by row, so
+//! memory does not grow with the scans.
 
 use crate::args::RunArguments;
 use crate::exit::{Exit, Failure, complain};
@@ -18,10 +18,10 @@ use standstill_trace::{EventLog, Extremes, Trace, Widths};
 use std::io::Write;
 use std::path::Path;
 
-/// Rows that are held before they are told and given up.
+/// Rows that are held before they are written and dropped.
 const ROWS_HELD: u64 = 4096;
 
-/// What is told of the rows as they come.
+/// The outputs written while rows come.
 struct Telling<'a> {
     out: &'a mut dyn Write,
     /// The text for people; none with `--quiet`.
@@ -32,7 +32,7 @@ struct Telling<'a> {
 }
 
 impl Telling<'_> {
-    /// Tells the rows that have come since the last call.
+    /// Writes the rows that have come since the last call.
     fn look(&mut self, trace: &Trace) -> Result<(), Ended> {
         if let Some((log, widths)) = &mut self.events {
             for event in log.take(trace) {
@@ -91,7 +91,7 @@ pub fn run(
         let failure = match error {
             Ended::Run(error) => wrong(error),
             Ended::Told(failure) => failure,
-            // It says itself what is kept.
+            // It reports itself which rows are kept.
             Ended::File(error) => return Err(error.into()),
         };
         if let Some((partial, rows)) = file.as_ref().and_then(Streaming::kept) {
@@ -136,7 +136,7 @@ pub fn run(
     Ok(Exit::of(outcome.passed()))
 }
 
-/// Why a run did not come to its end.
+/// The reason why a run ended early.
 enum Ended {
     Run(RunError),
     Told(Failure),
@@ -193,14 +193,14 @@ impl Stop {
         Ok(Self {})
     }
 
-    /// Says what there is of the file, and ends as the signal would have, if one has come.
+    /// Reports the written part of the file, and ends as the signal would have, if one has come.
     #[cfg(all(unix, feature = "signals"))]
     fn heed(&self, file: &Streaming, out: &mut dyn Write) {
         let signal = self.signal.load(std::sync::atomic::Ordering::Relaxed);
         if signal == 0 {
             return;
         }
-        // The process ends, whatever becomes of its output.
+        // The process ends in any case.
         let _ = out.flush();
         if let Some((partial, rows)) = file.kept() {
             complain(&kept(partial, rows));
@@ -224,7 +224,7 @@ fn kept_at_most(script: &Script, outcome: &Outcome) -> u64 {
     ROWS_MAX.min(CELLS_MAX / columns).min(script.scans)
 }
 
-/// Pages, pictures and waveforms are made of rows that are kept.
+/// Pages, pictures and waveforms need rows that are kept.
 fn draws_nothing(name: &str, script: &Script, arguments: &RunArguments) -> Result<(), Failure> {
     let files = [
         ("--report", &arguments.report),

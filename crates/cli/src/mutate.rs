@@ -1,4 +1,4 @@
-//! `standstill test --mutate`: which small changes of a script's program no claim notices.
+//! `standstill test --mutate`: the small changes of a script's program that no claim detects.
 
 use crate::cores;
 use crate::exit::{Exit, Failure, go_on};
@@ -13,10 +13,10 @@ use standstill_script::suite::{self, Allowed};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Mutants of one script that are tried at most.
+/// Most mutants of one script that are tried.
 const MUTANTS_MOST: usize = 500;
 
-/// What a script's mutants came to.
+/// The results of a script's mutants.
 #[derive(Clone, Copy, Debug, Default)]
 struct Score {
     killed: usize,
@@ -25,7 +25,8 @@ struct Score {
     left: usize,
 }
 
-/// Tries the mutants of every script at the paths. A score is no verdict: only scripts that fail by themselves fail.
+/// Tries the mutants of every script at the paths. A score is no verdict: only scripts that fail by
+/// themselves fail.
 pub fn mutate(
     scripts: &[PathBuf],
     seed: u64,

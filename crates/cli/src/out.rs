@@ -1,12 +1,12 @@
-//! Standard output, and the end of it when nobody reads it any more.
+//! Standard output, and its end when nobody reads it any more.
 
 use crate::paint;
 use standstill_trace::printable_lines;
 use std::io::{self, BufWriter, ErrorKind, Stdout, Write};
 use std::sync::{LazyLock, Mutex, MutexGuard};
 
-/// What is on its way to standard output. It is here for all, so that what was printed is there when `--time-limit` ends
-/// the program from another thread.
+/// Text for standard output that is not written yet. It is global, so that it can be written when
+/// `--time-limit` ends the program from another thread.
 static STANDARD: LazyLock<Mutex<Standard>> = LazyLock::new(|| {
     Mutex::new(Standard {
         out: BufWriter::new(io::stdout()),
@@ -22,13 +22,13 @@ struct Standard {
     closed: bool,
     /// Text gets colours.
     colours: bool,
-    /// Text of a line that is not whole yet: colours are laid over whole lines.
+    /// Text of an incomplete line: colours are put on whole lines.
     line: String,
 }
 
 impl Standard {
-    /// Does something with the output; what a reader who has gone would have got is dropped. A command goes on: its status
-    /// is that of what it finds, whether or not somebody reads it.
+    /// Writes to the output; text for a reader that is gone is dropped. The command continues: its status
+    /// is its result, whether or not somebody reads it.
     fn with(&mut self, write: impl FnOnce(&mut BufWriter<Stdout>) -> io::Result<()>) -> io::Result<()> {
         if self.closed {
             return Ok(());
@@ -42,7 +42,7 @@ impl Standard {
         }
     }
 
-    /// Writes text, in colours where they are wanted.
+    /// Writes text, with colours if they are wanted.
     fn text(&mut self, text: &str) -> io::Result<()> {
         if !self.colours {
             return self.with(|out| out.write_all(text.as_bytes()));
@@ -53,7 +53,7 @@ impl Standard {
         self.with(|out| out.write_all(paint::lines(&lines).as_bytes()))
     }
 
-    /// Sends out what is on its way.
+    /// Writes the waiting text.
     fn flush(&mut self) -> io::Result<()> {
         let rest = std::mem::take(&mut self.line);
         self.with(|out| {
@@ -67,15 +67,16 @@ fn standard() -> MutexGuard<'static, Standard> {
     STANDARD.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// Whether nobody reads standard output any more: for commands that would go on for as long as they get input.
+/// Whether nobody reads standard output any more, for commands that would continue as long as they get
+/// input.
 pub fn is_closed() -> bool {
     standard().closed
 }
 
-/// Sends out what is on its way, if nobody is just writing.
+/// Writes the waiting text, unless another thread is writing.
 pub fn flush_if_free() {
     if let Ok(mut standard) = STANDARD.try_lock() {
-        // The program ends, whatever becomes of it.
+        // The program ends in any case.
         let _ = standard.flush();
     }
 }
@@ -87,7 +88,8 @@ pub struct Out {
 }
 
 impl Out {
-    /// For people: what could do something to a terminal is shown instead, see [`printable_lines`].
+    /// For people: characters with an effect on a terminal are shown in escaped form, see
+    /// [`printable_lines`].
     pub const fn text() -> Self {
         Self { is_data: false }
     }

@@ -1,4 +1,5 @@
-//! What `test --json`, `run --json` and `explain --json` print: the same as their text, for programs.
+//! The JSON output of `test --json`, `run --json` and `explain --json`: the contents of their text, for
+//! programs.
 
 use crate::exit::Exit;
 use crate::json::{Object, list, string};
@@ -9,12 +10,12 @@ use standstill_trace::compare::SignalDifference;
 use standstill_trace::digest;
 use standstill_trace::story::Story;
 
-/// The schema of what is printed.
+/// The schema of the output.
 pub fn schema() -> String {
     include_str!("outcome.schema.json").to_owned()
 }
 
-/// What every outcome begins with.
+/// The common begin of every outcome.
 pub fn begun(command: &str, exit: Exit) -> Object {
     Object::new()
         .with("standstill_json", "1")
@@ -145,12 +146,12 @@ pub fn broken(name: &str, text: &str) -> Object {
     object
 }
 
-/// A golden whose script is not there any more.
+/// A golden whose script no longer exists.
 pub fn orphaned(name: &str) -> Object {
     named(name, "orphaned")
 }
 
-/// What every script begins with.
+/// The common begin of every script.
 pub fn named(name: &str, verdict: &str) -> Object {
     let mut object = Object::new();
     object = object.with("script", string(name));

@@ -1,4 +1,5 @@
-//! `standstill completions` and `standstill man`: what shells and `man` take, from the definition of the arguments.
+//! `standstill completions` and `standstill man`: files for shells and `man`, from the definition of the
+//! arguments.
 
 use crate::args::Arguments;
 use crate::exit::{Exit, Failure};
@@ -11,7 +12,7 @@ use std::path::Path;
 
 /// Prints the completions for a shell.
 pub fn completions(shell: Shell, out: &mut dyn Write) -> Result<Exit, Failure> {
-    // It panics where it cannot write: into memory it can.
+    // It panics if it cannot write, but memory can always be written.
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Arguments::command(), "standstill", &mut script);
     out.write_all(&script)?;

@@ -1,12 +1,12 @@
-//! Colours on a terminal. They are laid over whole lines of text on their way out, so no command knows of them, and what goes
-//! into a pipe or a file has none.
+//! Colours on a terminal. They are added to whole lines of text when these are written, so no command
+//! knows of them, and pipes and files get none.
 
 use anstream::stream::RawStream;
 use anstream::{AutoStream, ColorChoice};
 use anstyle::{AnsiColor, Style};
 
-/// Whether a stream takes colours: it is a terminal, and neither `NO_COLOR`, `CLICOLOR=0` nor `TERM=dumb` say no.
-/// `CLICOLOR_FORCE` says yes for anything.
+/// Whether a stream gets colours: it is a terminal, and none of `NO_COLOR`, `CLICOLOR=0` and `TERM=dumb`
+/// is set. `CLICOLOR_FORCE` adds them in any case.
 pub fn wanted(stream: &impl RawStream) -> bool {
     AutoStream::choice(stream) != ColorChoice::Never
 }

@@ -1,4 +1,4 @@
-//! A line that tells how far a long command is, on standard error and only for a person.
+//! A line on standard error that shows a person the progress of a long command.
 
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
@@ -6,16 +6,16 @@ use std::time::{Duration, Instant};
 /// Shorter commands show nothing.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Time between two looks of the line.
+/// Time between two updates of the line.
 const PERIOD: Duration = Duration::from_millis(100);
 
-/// Takes the line back: return, then erase to its end.
+/// Erases the line: return, then erase to its end.
 const ERASE: &str = "\r\x1b[K";
 
-/// The line. It is taken back when this is dropped.
+/// The line. It is erased when this is dropped.
 #[derive(Debug)]
 pub struct Progress {
-    /// When the line may be written next; never if nobody watches.
+    /// The next time to write the line; never if nobody watches.
     next: Option<Instant>,
     shown: bool,
 }
@@ -41,7 +41,7 @@ impl Progress {
         }
     }
 
-    /// Takes the line back, so that something else can be written.
+    /// Erases the line, so that other text can be written.
     pub fn clear(&mut self) {
         if self.shown {
             self.shown = false;

@@ -1,4 +1,5 @@
-//! `standstill report`, and what `run` writes beside its text: a trace as a page, a picture, a waveform.
+//! `standstill report`, and the files that `run` writes beside its text: a trace as a page, a picture, a
+//! waveform.
 
 use crate::exit::{Exit, Failure, complain};
 use crate::limit;
@@ -19,7 +20,7 @@ pub struct Targets<'a> {
     pub vcd: Option<&'a Path>,
 }
 
-/// Reads the traces and writes what is wanted of them.
+/// Reads the traces and writes the requested files.
 pub fn report(traces: &[PathBuf], targets: Targets<'_>) -> Result<Exit, Failure> {
     if let Targets {
         html: None,
@@ -60,7 +61,7 @@ fn source<'a>(name: &'a str, loaded: &'a Loaded) -> Source<'a> {
     }
 }
 
-/// Writes what is wanted; the page begins at the first mark.
+/// Writes the requested files; the page begins at the first mark.
 pub fn write_all(sources: &[Source<'_>], marks: &[Mark], targets: Targets<'_>) -> Result<(), Failure> {
     if let Some(path) = targets.html {
         let page = html_marked(sources, marks).map_err(page_failure)?;

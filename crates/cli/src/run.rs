@@ -22,7 +22,7 @@ use std::path::Path;
 /// Width of drawings (characters). It does not follow the terminal: the output is the same everywhere.
 const WIDTH: usize = 100;
 
-/// Runs the scripts in the order given. A script that cannot be run does not keep the others from it.
+/// Runs the scripts in the given order. A script that cannot be run does not prevent the others.
 pub fn run(arguments: &RunArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
     let dialect = checked(arguments)?;
     let texts = arguments.scripts.iter().filter(|path| is_text(path)).count();
@@ -56,7 +56,7 @@ pub fn run(arguments: &RunArguments, out: &mut dyn Write) -> Result<Exit, Failur
     Ok(exit)
 }
 
-/// Runs all scripts, tells of them in text, and collects what there is to tell as JSON.
+/// Runs all scripts, prints them as text, and collects their JSON.
 fn all(
     arguments: &RunArguments,
     dialect: Dialect,
@@ -80,7 +80,7 @@ fn all(
     Ok(exit)
 }
 
-/// What clap cannot know: that the arguments make sense together. The dialect of the trace.
+/// Checks that clap cannot do: whether the arguments fit together. Returns the dialect of the trace.
 fn checked(arguments: &RunArguments) -> Result<Dialect, Failure> {
     let RunArguments {
         scripts,
@@ -213,7 +213,7 @@ fn tell(
     told: &mut Vec<Object>,
     out: &mut dyn Write,
 ) -> Result<Exit, Failure> {
-    // The golden is not looked at here, but the script has one.
+    // The golden is not used here, but the script has one.
     let warnings = warnings(script, outcome, script.golden);
     let digest = digest::whole(&outcome.trace);
     if arguments.json {
@@ -247,7 +247,8 @@ fn tell(
     Ok(Exit::of(outcome.passed()))
 }
 
-/// A name after `--set` that no script parameter has is a mistake of the command line, not of the script.
+/// A name after `--set` that is no parameter of the script is a mistake of the command line, not of the
+/// script.
 pub fn failure(error: SuiteError) -> Failure {
     let is_argument = |script: &ScriptError| {
         let mut diagnostics = script.diagnostics().iter();
@@ -273,7 +274,7 @@ fn show(name: &str, outcome: &Outcome, out: &mut dyn Write) -> Result<(), Failur
     Ok(())
 }
 
-/// What the run is called, and its axes.
+/// The title of the run, and its axes.
 pub fn title(name: &str, trace: &Trace, out: &mut dyn Write) -> Result<(), Failure> {
     let Header { title, axes, .. } = trace.header();
     writeln!(out, "{}", if title.is_empty() { name } else { title })?;

@@ -1,14 +1,14 @@
-//! Files of a folder as they were saved last.
+//! The times and lengths of a folder's files when last saved.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// Endings of what tests write themselves.
+/// Endings of files that tests write themselves.
 const WRITTEN: [&str; 2] = [".new", ".partial"];
 
-/// Folders in which nobody edits: they may hold very many files.
+/// Folders that nobody edits: they may have very many files.
 const LEFT_OUT: [&str; 2] = ["target", "node_modules"];
 
 /// When each file below some paths was saved, and how long it is.
@@ -16,8 +16,8 @@ const LEFT_OUT: [&str; 2] = ["target", "node_modules"];
 pub struct Saved(BTreeMap<PathBuf, (Option<SystemTime>, u64)>);
 
 impl Saved {
-    /// All files below the paths, of a file those of its folder; `except` and what is below it are left out. What cannot be read is as if
-    /// it were not there.
+    /// All files below the paths; for a file those of its folder. `except` and all below it are left out.
+    /// An item that cannot be read is ignored.
     pub fn below(paths: &[PathBuf], except: Option<&Path>) -> Self {
         let mut folders: Vec<PathBuf> = paths
             .iter()

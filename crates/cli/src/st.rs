@@ -1,4 +1,4 @@
-//! `standstill st`: what the compiler of Structured Text has to say, and its modules.
+//! `standstill st`: the compiler of Structured Text, its messages and its modules.
 
 use crate::args::StSources;
 use crate::exit::{Exit, Failure, complain};
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 /// Most variables that a file of symbols lists.
 const SYMBOLS_MOST: usize = 65_536;
 
-/// The files of a project: their names and what stands in them.
+/// The files of a project: their names and texts.
 fn read(paths: &[PathBuf]) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let read = |path: &PathBuf| {
         let name = shown(path);
@@ -45,7 +45,7 @@ pub fn dialect(name: Option<&str>) -> Result<Dialect, Failure> {
     })
 }
 
-/// Says what is wrong and doubtful, with or without lints; a lint is a failure.
+/// Prints faults and doubts, with or without lints; a lint is a failure.
 pub fn check(given: &StSources, json: bool, lint: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
     let files = read(&given.files)?;
     let options = Options {
@@ -94,8 +94,8 @@ fn diagnostic(report: &Report, it: &Diagnostic) -> String {
         .text()
 }
 
-/// Lays out the files in place and names those that changed; with `check` nothing is written, and one that would change
-/// fails. A file that cannot be read as Structured Text is left as it is.
+/// Lays out the files in place and names those that changed. With `check` nothing is written, and a file
+/// that would change fails. A file that cannot be read as Structured Text is not changed.
 pub fn lay_out(paths: &[PathBuf], check: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
     let mut exit = Exit::Passed;
     for ((name, bytes), path) in read(paths)?.iter().zip(paths) {
@@ -146,7 +146,7 @@ fn replace(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let partial = path.with_file_name(name);
     let written = fs::write(&partial, bytes).and_then(|()| fs::rename(&partial, path));
     written.map_err(|error| {
-        // It is there only if the disk was full or the place is a folder.
+        // It exists only if the disk was full or the place is a folder.
         let _gone = fs::remove_file(&partial);
         Failure::io(&shown(path), &error)
     })

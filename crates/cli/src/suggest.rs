@@ -1,4 +1,4 @@
-//! What a misspelt name was probably meant to be.
+//! The probable meaning of a misspelt name.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,8 +19,8 @@ pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
         .map(|(_, candidate)| candidate)
 }
 
-/// A file or folder that is there and that a path which is not was probably meant to be: its first part that is missing is
-/// held against what stands in that place.
+/// An existing file or folder that a missing path probably means: its first missing part is compared with
+/// the names in that folder.
 pub fn beside(path: &Path) -> Option<PathBuf> {
     let parts: Vec<_> = path.components().collect();
     let mut sound = PathBuf::new();

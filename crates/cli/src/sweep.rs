@@ -13,7 +13,7 @@ use std::io::Write;
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Runs the sweep, or puts its shards together, and tells how many cases passed.
+/// Runs the sweep, or merges its shards, and prints how many cases passed.
 pub fn sweep(arguments: &SweepArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
     limit::doing(shown(&arguments.sweep));
     let job = Job::load(&arguments.sweep, &arguments.outside.allowed())?;
@@ -39,7 +39,7 @@ pub fn sweep(arguments: &SweepArguments, out: &mut dyn Write) -> Result<Exit, Fa
     Ok(tally.exit())
 }
 
-/// The rows of the shard, those among them that an interrupted run left, and its part of a table.
+/// The rows of the shard, the number of those that an interrupted run left, and its part of a table.
 fn computed(job: &Job, arguments: &SweepArguments) -> Result<(Rows, Option<Part>), Failure> {
     let all: Vec<u64> = arguments.shard.cases(job.count()).collect();
     let mut rows = Rows::new();
@@ -83,7 +83,7 @@ fn computed(job: &Job, arguments: &SweepArguments) -> Result<(Rows, Option<Part>
     })?;
     progress.clear();
     let seconds = begin.elapsed().as_secs_f64();
-    // The rate of a few cases would say nothing.
+    // The rate of a few cases would have no meaning.
     if seconds > 1.0 {
         let rate = axis_scans as f64 / seconds;
         complain(&format!(
@@ -93,7 +93,7 @@ fn computed(job: &Job, arguments: &SweepArguments) -> Result<(Rows, Option<Part>
     Ok((rows, part))
 }
 
-/// How far it is, how fast it goes, and when it will be over at this rate.
+/// The progress, the rate, and the expected end.
 fn standing(done: usize, all: usize, now: usize, elapsed: Duration) -> String {
     let rate = now as f64 / elapsed.as_secs_f64().max(1e-9);
     let left = (all - done) as f64 / rate.max(1e-9);

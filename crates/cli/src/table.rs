@@ -1,6 +1,6 @@
 //! Cells of CSV files.
 
-/// A JSON value as a cell: a string as its text, `null` as nothing, anything else as it stands.
+/// A JSON value as a cell: a string as its text, `null` as nothing, anything else unchanged.
 pub fn cell_of_json(json: &str) -> String {
     match serde_json::from_str(json) {
         Ok(serde_json::Value::String(text)) => cell(&text),

@@ -1,4 +1,4 @@
-//! `standstill test`: scripts as tests, held against their claims and goldens.
+//! `standstill test`: scripts as tests of their claims and goldens.
 
 use crate::args::{Golden, SCRIPTS};
 use crate::cores;
@@ -25,14 +25,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// What `test` was asked for.
+/// The options of `test`.
 #[derive(Clone, Copy, Debug)]
 pub struct Wish<'a> {
     /// Scripts, and folders of them.
     pub paths: &'a [PathBuf],
     /// Only scripts whose path has this in it.
     pub word: Option<&'a str>,
-    /// Goldens become what the runs are.
+    /// Replaces goldens by the runs.
     pub accept: bool,
     /// Warnings fail.
     pub strict: bool,
@@ -40,7 +40,7 @@ pub struct Wish<'a> {
     pub json: bool,
     /// Threads that judge; all processors without.
     pub threads: Option<u16>,
-    /// How exactly a run must be as its golden; it need not without.
+    /// How exactly a run must agree with its golden; not at all if absent.
     pub yardstick: Option<Yardstick>,
     /// Where to write the outcome as JUnit XML.
     pub junit: Option<&'a Path>,
@@ -54,7 +54,7 @@ pub struct Wish<'a> {
     pub allowed: &'a Allowed,
 }
 
-/// How exactly a run must be as its golden, from the arguments.
+/// How exactly a run must agree with its golden, from the arguments.
 pub fn yardstick(golden: Golden, abs: Option<f64>, rel: Option<f64>) -> Result<Option<Yardstick>, Failure> {
     let tolerance = Tolerance::default();
     match (golden, abs.or(rel)) {
@@ -70,7 +70,7 @@ pub fn yardstick(golden: Golden, abs: Option<f64>, rel: Option<f64>) -> Result<O
     }
 }
 
-/// Judges all scripts at the paths, in sorted order, and reports goldens that have no script any more.
+/// Judges all scripts at the paths, in sorted order, and reports goldens without a script.
 pub fn test(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
     if !wish.json {
         return told(wish, &BTreeSet::new(), out).map(|tally| tally.exit());
@@ -89,11 +89,11 @@ pub fn list(paths: &[PathBuf], word: Option<&str>, out: &mut dyn Write) -> Resul
     Ok(Exit::Passed)
 }
 
-/// Time between two looks for files that were saved.
+/// Time between two checks for saved files.
 const LOOK_EVERY: Duration = Duration::from_millis(200);
 
-/// Asks of every golden that is missing or differs, where all claims hold, whether it becomes what the run is. Without an answer
-/// it stays as it is, and so do all behind it.
+/// For every golden that is missing or differs, if all claims hold: asks whether to replace it by the
+/// run. Without an answer this one and all behind it are not changed.
 pub fn review(wish: Wish<'_>, answers: &mut dyn BufRead, out: &mut dyn Write) -> Result<Exit, Failure> {
     let Some(yardstick) = wish.yardstick else {
         return Err(Failure::usage(
@@ -140,7 +140,7 @@ pub fn review(wish: Wish<'_>, answers: &mut dyn BufRead, out: &mut dyn Write) ->
     Ok(tally.exit())
 }
 
-/// Yes, no, or neither, which is the end.
+/// Yes, no, or neither, which ends the review.
 fn answer(answers: &mut dyn BufRead) -> Option<bool> {
     loop {
         complain("take it as the golden? yes, no, or quit");
@@ -157,7 +157,8 @@ fn answer(answers: &mut dyn BufRead) -> Option<bool> {
     }
 }
 
-/// Judges the scripts, and again whenever a file was saved: first those that failed. It ends where nobody can read what it prints.
+/// Judges the scripts, and again whenever a file was saved: failed ones first. It ends when nobody can
+/// read its output.
 pub fn watch(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
     let mut failed = BTreeSet::new();
     loop {
@@ -177,7 +178,7 @@ pub fn watch(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
     }
 }
 
-/// Judges what is wished for, those named `first` before the others, and tells of it in text.
+/// Judges the requested scripts, those named `first` before the others, and prints the results as text.
 fn told(wish: Wish<'_>, first: &BTreeSet<String>, out: &mut dyn Write) -> Result<Tally, Failure> {
     if wish.accept && wish.yardstick.is_none() {
         return Err(Failure::usage(
@@ -260,7 +261,7 @@ fn judged(wish: Wish<'_>, first: &BTreeSet<String>, out: &mut dyn Write) -> Resu
     };
     cores::in_order(scripts.len(), threads(&wish, &scripts), judge, take)?;
     let folders = wish.paths.iter().filter(|path| path.is_dir());
-    // Of some scripts it is not asked what else there is.
+    // For single scripts, other files are not reported.
     for folder in folders.filter(|_| wish.word.is_none()) {
         tally.orphans(&suite::orphans(folder)?, out)?;
         mention(folder)?;
@@ -268,9 +269,9 @@ fn judged(wish: Wish<'_>, first: &BTreeSet<String>, out: &mut dyn Write) -> Resu
     Ok(tally)
 }
 
-/// On how many threads the scripts are judged.
+/// The number of threads that judge the scripts.
 fn threads(wish: &Wish<'_>, scripts: &[PathBuf]) -> usize {
-    // A script that is named twice has its golden written twice: one after the other.
+    // A script that is named twice writes its golden twice, one after the other.
     let files: BTreeSet<_> = scripts.iter().map(|path| path.canonicalize().ok()).collect();
     if files.len() < scripts.len() {
         return 1;
@@ -278,7 +279,7 @@ fn threads(wish: &Wish<'_>, scripts: &[PathBuf]) -> usize {
     wish.threads.map_or_else(cores::processors, usize::from)
 }
 
-/// Tells of files that look like scripts but are not called so.
+/// Reports files that look like scripts but have another name.
 fn mention(folder: &Path) -> Result<(), Failure> {
     for file in suite::overlooked(folder)? {
         let (name, ending) = (suite::shown(&file), suite::EXTENSION);
@@ -308,7 +309,8 @@ fn on_recording(wish: Wish<'_>, recording: &Path, out: &mut dyn Write) -> Result
             format!("error: {}: {error}", suite::shown(recording)),
         )
     })?;
-    // No golden is of this trace, so none is missed; and what the script does is not what was recorded.
+    // No golden belongs to this trace, so none is missing; and the behaviour of the script is not what
+    // was recorded.
     let report = Report {
         why: outcome.why.clone(),
         outcome,
@@ -371,13 +373,13 @@ pub fn found(paths: &[PathBuf], word: Option<&str>) -> Result<Vec<PathBuf>, Fail
     Ok(all)
 }
 
-/// What came of the scripts so far.
+/// The results of the scripts so far.
 #[derive(Debug, Default)]
 struct Tally {
     passed: usize,
     accepted: usize,
     failed: usize,
-    /// How those ended that could not be judged.
+    /// The statuses of scripts that could not be judged.
     broken: Vec<Exit>,
     orphans: usize,
     /// Everything that was judged, in order.
@@ -386,7 +388,7 @@ struct Tally {
     told: Vec<Object>,
     /// Warnings fail.
     strict: bool,
-    /// It is told as JSON: what that takes is done only then.
+    /// The output is JSON; its data are collected only then.
     json: bool,
 }
 
@@ -424,7 +426,7 @@ impl Tally {
             writeln!(out, "    {line}")?;
         }
         if !report.warnings.all.is_empty() {
-            // What was printed so far stands before it.
+            // Text printed before must come before it.
             out.flush()?;
             complain(report.warnings.to_string().trim_end());
         }
@@ -469,7 +471,7 @@ impl Tally {
         self.cases.iter().filter(|case| case.ending != Ending::Passed)
     }
 
-    /// What has gone wrong so far, in a few words for the line of progress.
+    /// The failures so far, in a few words for the line of progress.
     fn trouble(&self) -> String {
         match self.failed + self.broken.len() {
             0 => String::new(),
@@ -495,7 +497,7 @@ impl Tally {
     }
 }
 
-/// What failed among several, by name, then the counts: the end of a long list is what one sees of it.
+/// The failures among several, by name, then the counts, because the end of a long list is what one sees.
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {

@@ -1,4 +1,4 @@
-//! `standstill watch`: a script in a terminal, run and stepped by hand.
+//! `standstill watch`: a script in a terminal, run and stepped by keys.
 
 use crate::args::WatchArguments;
 use crate::exit::{Exit, Failure};
@@ -7,7 +7,7 @@ use crate::failing::with_ending;
 use standstill_script::suite::{self, shown};
 use std::io::Write;
 
-/// Where there is no terminal to take over.
+/// For systems without a terminal.
 #[cfg(not(any(unix, windows)))]
 pub fn watch(_: &WatchArguments, _: &mut dyn Write) -> Result<Exit, Failure> {
     Err(Failure::usage(
@@ -15,7 +15,7 @@ pub fn watch(_: &WatchArguments, _: &mut dyn Write) -> Result<Exit, Failure> {
     ))
 }
 
-/// Watches the script until a key or a signal ends it, then tells how far it came.
+/// Watches the script until a key or a signal ends it, then prints the result so far.
 #[cfg(any(unix, windows))]
 pub fn watch(arguments: &WatchArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
     use standstill_script::suite::SuiteError;
@@ -65,7 +65,7 @@ pub fn watch(arguments: &WatchArguments, out: &mut dyn Write) -> Result<Exit, Fa
     Ok(Exit::of(failed == 0))
 }
 
-/// Writes the changed run as a script beside the watched one, under a name that is free; what to tell of it.
+/// Writes the changed run as a script beside the watched one, under an unused name; returns the message.
 #[cfg(any(unix, windows))]
 fn save(
     path: &std::path::Path,
@@ -88,7 +88,7 @@ fn save(
             format!("-{number}")
         };
         let target = with_ending(&stem, &format!("watched{end}{}", suite::EXTENSION));
-        // A link that leads nowhere is a name that is taken, too.
+        // A link to a missing file is also a name in use.
         if std::fs::symlink_metadata(&target).is_err() {
             break target;
         }

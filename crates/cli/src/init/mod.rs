@@ -1,4 +1,4 @@
-//! `standstill init`: the files a folder needs for its first test.
+//! `standstill init`: the files of a first test.
 
 use crate::exit::{Exit, Failure};
 use standstill_script::suite::shown;
@@ -39,8 +39,8 @@ fn files() -> [(&'static str, String); 8] {
     ]
 }
 
-/// Writes a first test into a folder, which is made if it is not there. If one of its files exists nothing is written;
-/// if one cannot be written those before it are taken back.
+/// Writes a first test into a folder, which is made if it does not exist. If one of the files exists
+/// nothing is written. If one cannot be written those before it are removed.
 pub fn init(folder: &Path, out: &mut dyn Write) -> Result<Exit, Failure> {
     if fs::metadata(folder).is_ok_and(|found| !found.is_dir()) {
         let name = shown(folder);
@@ -78,8 +78,8 @@ pub fn init(folder: &Path, out: &mut dyn Write) -> Result<Exit, Failure> {
     Ok(Exit::Passed)
 }
 
-/// What keeps a file from being new: the file itself, or something on the way to it that is no folder. Links are not followed
-/// below the folder.
+/// The obstacle to a new file: an existing file, or an item on the way to it that is no folder. Links are
+/// not followed below the folder.
 fn in_the_way(folder: &Path, name: &str) -> Result<Option<PathBuf>, Failure> {
     let mut path = folder.to_owned();
     let mut parts = name.split('/').peekable();
@@ -95,7 +95,7 @@ fn in_the_way(folder: &Path, name: &str) -> Result<Option<PathBuf>, Failure> {
     Ok(None)
 }
 
-/// What was made so far; taken back when dropped, so that a full disk leaves no half of it.
+/// The files made so far; removed when dropped, so that a full disk does not leave half of the test.
 #[derive(Debug, Default)]
 struct Made {
     folders: Vec<PathBuf>,

@@ -1,4 +1,4 @@
-//! This program once more, as a process that may take so much and no more.
+//! Runs this program again, as a process with limits.
 
 use super::place::Place;
 use std::path::Path;
@@ -7,7 +7,8 @@ use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::process::{Child, Command};
 
-/// The longest answer (bytes). What is longer is refused, not cut: half a JSON object is none.
+/// The longest answer (bytes). A longer one is refused and not cut, because half a JSON object is
+/// invalid.
 pub const LONGEST: usize = 256 << 10;
 
 /// The longest message of a failure (bytes); it is cut.
@@ -17,7 +18,8 @@ const LONGEST_MESSAGE: u64 = 16 << 10;
 #[cfg(target_os = "linux")]
 const FILE: u64 = 256 << 20;
 
-/// A process that has its end from `--time-limit` says what it was at; one that does not is ended so much later.
+/// A process that ends by `--time-limit` reports its work; one that does not end is killed this much
+/// later.
 const GRACE: Duration = Duration::from_secs(2);
 
 /// What a process said.
@@ -31,10 +33,11 @@ pub struct Said {
     pub err: String,
 }
 
-/// Runs a command line of this program in a folder, with this on standard input. It writes no goldens.
+/// Runs a command line of this program in a folder, with this text on standard input. It writes no
+/// goldens.
 ///
 /// # Errors
-/// It could not be started, took too long, or said too much.
+/// It could not be started, took too long, or wrote too much.
 pub async fn run(place: &Place, folder: &Path, arguments: &[String], input: &[u8]) -> Result<Said, String> {
     let program = std::env::current_exe().map_err(|error| format!("this program is not found: {error}"))?;
     let mut command = Command::new(program);
@@ -42,7 +45,7 @@ pub async fn run(place: &Place, folder: &Path, arguments: &[String], input: &[u8
         .arg(format!("--time-limit={}ns", place.time.as_nanos()))
         .args(arguments)
         .current_dir(folder)
-        // With it nothing proposes or accepts goldens.
+        // With this variable nothing proposes or accepts goldens.
         .env("CI", "true")
         .env("NO_COLOR", "1")
         .stdin(Stdio::piped())
@@ -60,7 +63,7 @@ pub async fn run(place: &Place, folder: &Path, arguments: &[String], input: &[u8
     }
 }
 
-/// Bounds memory and files, where the system can do that of a process from outside.
+/// Limits memory and files, if the system can do that for a process from outside.
 #[cfg(target_os = "linux")]
 fn hold(child: &Child, memory: u64) {
     use rustix::process::{Pid, Resource, Rlimit, prlimit};
@@ -77,7 +80,7 @@ fn hold(child: &Child, memory: u64) {
             current: Some(most),
             maximum: Some(most),
         };
-        // One that has ended already takes nothing any more.
+        // A process that has already ended needs no limits.
         let _ = prlimit(Some(pid), what, limit);
     }
 }
@@ -90,7 +93,7 @@ async fn talk(child: &mut Child, input: &[u8]) -> Result<Said, String> {
     let (stdin, stdout, stderr) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
     let write = async {
         if let Some(mut stdin) = stdin {
-            // One that ends before it has read all of it says why.
+            // If it ends before it has read everything, it gives the reason.
             let _ = stdin.write_all(input).await;
         }
     };
@@ -110,7 +113,7 @@ async fn talk(child: &mut Child, input: &[u8]) -> Result<Said, String> {
     })
 }
 
-/// The beginning of what is to be read; then nobody listens any more, which no command minds.
+/// The beginning of the output; the rest is not read, which no command notices.
 async fn up_to(stream: Option<impl AsyncRead + Unpin>, most: u64) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     if let Some(stream) = stream {

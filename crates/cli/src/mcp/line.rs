@@ -1,4 +1,4 @@
-//! Standard input whose lines have a longest.
+//! Standard input with a longest line.
 
 use std::io::{self, ErrorKind};
 use std::pin::Pin;
@@ -8,7 +8,7 @@ use tokio::io::{AsyncRead, ReadBuf};
 /// The longest message of a client (bytes).
 const LONGEST: usize = 16 << 20;
 
-/// Ends with an error where a line does not end in time: whoever reads keeps a line until it is whole.
+/// Ends with an error if a line is too long, because the reader keeps a line until it is complete.
 #[derive(Debug)]
 pub struct Bounded<R> {
     inner: R,

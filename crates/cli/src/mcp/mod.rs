@@ -1,7 +1,9 @@
-//! `standstill mcp`: what an agent may ask, over the Model Context Protocol on standard input and output.
+//! `standstill mcp`: the tools for an agent, over the Model Context Protocol on standard input and
+//! output.
 //!
-//! Whatever runs files is a process of this same program, held to a time, a memory and a length of its answer
-//! ([`bounded`]). It works in one folder and writes into none but the one that was named for it ([`place`]).
+//! Every call that runs files is a process of this program, with limits on its time, its memory and the
+//! length of its answer ([`bounded`]). It works in one folder and writes only into the folder that was
+//! named for it ([`place`]).
 
 #[cfg(any(unix, windows))]
 mod bounded;
@@ -14,7 +16,7 @@ mod rows;
 #[cfg(any(unix, windows))]
 mod tools;
 
-/// Where no program can be started.
+/// For systems on which no program can be started.
 #[cfg(not(any(unix, windows)))]
 pub fn mcp(_: &crate::args::McpArguments) -> Result<crate::exit::Exit, crate::exit::Failure> {
     Err(crate::exit::Failure::usage(
@@ -46,7 +48,7 @@ mod door {
     /// Calls that run at the same time; others wait for their turn.
     const AT_A_TIME: usize = 2;
 
-    /// What a client is told of the whole.
+    /// The description of the server for a client.
     const INSTRUCTIONS: &str = "standstill runs PLCopen motion without hardware: scan scripts (*.scan.json) drive function \
 blocks and axes scan by scan, their claims say what must come of it. Begin with `blocks` for the pins of a block, \
 `check` a script (as text or by its path) for mistakes, claims and goldens, `run` it to see signals, `errors` for what an ErrorID \
@@ -57,7 +59,7 @@ means, `explain` for where two runs part, `plan` for single moves.";
         turns: Semaphore,
     }
 
-    /// Answers a client until it goes.
+    /// Answers a client until it disconnects.
     pub fn mcp(arguments: &McpArguments) -> Result<Exit, Failure> {
         let place = Place::new(arguments)?;
         let system = |error: io::Error| Failure::io("mcp", &error);
@@ -72,7 +74,7 @@ means, `explain` for where two runs part, `plan` for single moves.";
             let streams = (Bounded::new(tokio::io::stdin()), tokio::io::stdout());
             let client = match door.serve(streams).await {
                 Ok(client) => client,
-                // It has gone before it said anything.
+                // It disconnected before its first message.
                 Err(ServerInitializeError::ConnectionClosed(_)) => return Ok(Exit::Passed),
                 Err(error) => {
                     let text = format!("error: mcp: the client did not begin as the protocol says: {error}");

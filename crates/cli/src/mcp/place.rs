@@ -1,4 +1,4 @@
-//! Where a client works: what it may read and write, and how much a call may take.
+//! The workplace of a client: the files it may read and write, and the limits of a call.
 
 use crate::args::McpArguments;
 use crate::exit::{Exit, Failure};
@@ -12,7 +12,7 @@ use std::time::Duration;
 pub struct Place {
     /// What it may read, links followed.
     root: PathBuf,
-    /// What it may write into.
+    /// The folder it may write into.
     write: Option<PathBuf>,
     /// Time of a call.
     pub time: Duration,
@@ -40,7 +40,8 @@ impl Place {
         self.write.is_some()
     }
 
-    /// A file or folder that may be read, as a path below the root. Links are followed, and may not lead out of it.
+    /// A file or folder that may be read, as a path below the root. Links are followed, and may not lead
+    /// out of it.
     pub fn readable(&self, path: &str) -> Result<String, String> {
         let real = fs::canonicalize(self.root.join(path)).map_err(|error| format!("{path}: {error}"))?;
         let Ok(inside) = real.strip_prefix(&self.root) else {
@@ -48,7 +49,7 @@ impl Place {
                 "{path}: it is outside the folder of this server, which is all that is read; start `standstill mcp` there"
             ));
         };
-        // A name that begins with a hyphen is no option.
+        // A name that begins with a hyphen must not become an option.
         let inside = Path::new(".").join(inside);
         inside
             .to_str()

@@ -1,4 +1,4 @@
-//! Some rows and columns of a trace, read line by line: a trace may be longer than what one wants to hold.
+//! Some rows and columns of a trace, read line by line, because a trace may be larger than the memory.
 
 use super::bounded::LONGEST;
 use serde::Deserialize;

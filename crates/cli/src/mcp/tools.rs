@@ -1,4 +1,4 @@
-//! The tools: what they are called, what they take, and how they are answered.
+//! The tools: their names, their arguments, and their answers.
 
 use super::bounded::{self, Said};
 use super::place::Place;
@@ -23,7 +23,7 @@ pub enum Answer {
     Json(Value),
 }
 
-/// The name under which a script that comes as text stands in messages.
+/// The name in messages of a script given as text.
 const AS_TEXT: &str = "script.scan.json";
 
 /// All tools, as a client lists them.
@@ -291,7 +291,7 @@ async fn explain(asked: Explain, place: &Place) -> Result<Answer, String> {
     let Answer::Json(mut answer) = told(bounded::run(place, place.root(), &command, &[]).await?)? else {
         return Err("the program did not answer in JSON".to_owned());
     };
-    // The names that were asked for: what was run stands in files that go.
+    // The names that were asked for, because the run used temporary files.
     join(
         &mut answer,
         json!({"expected": asked.expected, "found": asked.found}),
@@ -299,7 +299,7 @@ async fn explain(asked: Explain, place: &Place) -> Result<Answer, String> {
     Ok(Answer::Json(answer))
 }
 
-/// The trace at a path, or that of the script there, which then is run.
+/// The trace at a path, or that of the script there, which is then run.
 async fn trace(
     path: &str,
     changes: &Map<String, Value>,
@@ -316,7 +316,7 @@ async fn trace(
     let mut command = arguments(&["run", "--json"]);
     command.extend(set(changes)?);
     command.push(format!("--trace={}", text(target)?));
-    // Claims may fail: that is what is to be explained.
+    // Claims may fail, because the failure is the question.
     let ran = Script::of(Some(path.to_owned()), None, place)?
         .run(place, command)
         .await?;
@@ -478,12 +478,12 @@ fn set(values: &Map<String, Value>) -> Result<Vec<String>, String> {
     values.iter().map(one).collect()
 }
 
-/// Whether a command could do what it was asked to: what it found is no failure of the call.
+/// Whether a command could do its work; a negative result is no failure of the call.
 fn judged(said: &Said) -> Result<(), String> {
     let (passed, failed) = (i32::from(Exit::Passed as u8), i32::from(Exit::Failed as u8));
     match said.status {
         Some(status) if status == passed => Ok(()),
-        // The time that is up has this status, too, and nothing on standard output.
+        // A time-out has the same status, and no text on standard output.
         Some(status) if status == failed && !said.out.is_empty() => Ok(()),
         Some(_) => Err(said.err.trim_end().to_owned()),
         None => Err(format!(
@@ -493,8 +493,8 @@ fn judged(said: &Said) -> Result<(), String> {
     }
 }
 
-/// What a command said with `--json`. What it could not do at all is an error; what it could not do with some scripts stands in
-/// the answer.
+/// The output of a command with `--json`. If it could not run at all that is an error; failures of single
+/// scripts are in the answer.
 fn told(said: Said) -> Result<Answer, String> {
     match serde_json::from_str(&said.out) {
         Ok(value) => Ok(Answer::Json(value)),

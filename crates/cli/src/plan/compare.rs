@@ -10,12 +10,13 @@ use crate::table::cell_of_json;
 use standstill_planner::Segment;
 use std::io::{BufRead, Write};
 
-/// The columns; what the order of a plan leaves unbounded is empty.
+/// The columns; quantities that the order of a plan leaves unbounded are empty.
 const HEADER: &str = "case,method,scans,duration,peak_velocity,peak_acceleration,peak_jerk,peak_snap,rms_jerk,\
 over_n_star,refused";
 
-/// Prints one row a case and method as CSV. A case is a line of `standstill plan`, whose method does not
-/// count, and may have `n_star`, the least number of scans known. `name` stands for the input in messages.
+/// Prints one row for each case and method as CSV. A case is a line of `standstill plan`, whose method is
+/// ignored. It may have `n_star`, the least known number of scans. `name` stands for the input in
+/// messages.
 ///
 /// Fails if a line cannot be read, or no method takes it.
 pub fn compare(input: &mut dyn BufRead, name: &str, out: &mut dyn Write) -> Result<Exit, Failure> {
@@ -48,7 +49,7 @@ pub fn compare(input: &mut dyn BufRead, name: &str, out: &mut dyn Write) -> Resu
 
 type Rows = Vec<(&'static str, Result<String, Refusal>)>;
 
-/// What every method makes of a line, without the columns that name case and method.
+/// The results of every method for a line, without the columns that name case and method.
 fn rows(text: &[u8]) -> Result<Rows, Refusal> {
     let mut fields = Fields::of_line(text)?;
     let n_star = match fields.take("n_star") {
@@ -83,7 +84,7 @@ fn row(planned: &Planned, n_star: Option<u32>) -> String {
     .join(",")
 }
 
-/// The row of a case that a method does not take: nothing but the reason.
+/// The row of a case that a method does not take: only the reason.
 fn empty(refusal: &Refusal) -> String {
     format!(",,,,,,,,{}", refusal.code())
 }

@@ -10,7 +10,7 @@ use standstill_trace::file::replace;
 use standstill_trace::svg::{self, PLANS_MAX};
 use standstill_trace::{self as trace, Axis, Cell, Header, Trace};
 
-/// Moments of a segment that are drawn.
+/// Number of moments of a segment that are drawn.
 const STEPS: u32 = 24;
 
 /// Most rows of a plan on a page (scans).
@@ -19,7 +19,7 @@ const ROWS_MAX: u32 = 1_000_000;
 /// The name of the axis that a plan moves on its page.
 const AXIS: &str = "plan";
 
-/// Plans to draw: as many as there are colours.
+/// Plans to draw: at most as many as there are colours.
 #[derive(Debug, Default)]
 pub struct Drawn {
     plans: Vec<svg::Plan>,
@@ -109,7 +109,7 @@ fn given(limits: &Limits) -> trace::Limits {
     }
 }
 
-/// What a plan is called: its id, its method, how long it takes.
+/// The label of a plan: its id, its method, its duration.
 fn label(id: &str, method: &str, planned: &Planned) -> String {
     let own = match serde_json::from_str(id) {
         Ok(serde_json::Value::Null) => String::new(),
@@ -123,7 +123,8 @@ fn label(id: &str, method: &str, planned: &Planned) -> String {
     )
 }
 
-/// The course of a plan from its segments: they tell the velocity and what is above it, the end tells where.
+/// The course of a plan from its segments: they give the velocity and its derivatives, and the end gives
+/// the position.
 fn course(planned: &Planned) -> Vec<[f64; 6]> {
     let (mut course, mut begin, mut way) = (Vec::new(), 0.0, 0.0);
     for segment in &planned.segments {

@@ -1,4 +1,4 @@
-//! The fields of a line: which exist, which values they may have.
+//! The fields of a line: their names and values.
 
 use crate::json::Object;
 use crate::plan::methods::{self, MethodInfo};
@@ -32,7 +32,7 @@ const LIMITS: [&str; 5] = ["velocity", "acceleration", "deceleration", "jerk", "
 /// The fields of `velocity_limits`.
 const DIRECTIONS: [&str; 2] = ["positive", "negative"];
 
-/// The fields of one line, each with its text. The keys are known and stand there once.
+/// The fields of one line, each with its text. The keys are known and unique.
 #[derive(Clone, Debug)]
 pub struct Fields<'a> {
     members: Members<'a>,
@@ -55,7 +55,7 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// What keeps the move from being one from rest to rest, and its value.
+    /// The first field that is not at rest, and its value.
     pub fn first_motion(&self) -> Option<(Field, f64)> {
         let moving = [
             (Field::Velocity, self.start.velocity),
@@ -90,7 +90,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// The fields of a host that has them apart. Keys are checked as those of a line.
+    /// The fields from a host that has them separately. Keys are checked as those of a line.
     pub fn of_members(members: Vec<Member<'a>>) -> Self {
         Self {
             members: Members(members),
@@ -100,23 +100,23 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// The `id` as it stands on the line; `null` if there is none.
+    /// The `id` as it is on the line; `null` if there is none.
     pub fn id(&self) -> &'a str {
         match self.members.get("id") {
             Some(Given::Json(text)) => text,
-            // A host has its `id` itself.
+            // A host keeps the `id` itself.
             Some(Given::Number(_) | Given::Object(_)) | None => "null",
         }
     }
 
-    /// Without a field of this name; gives its text, if it is there once.
+    /// Removes a field of this name; returns its text, if it occurs once.
     pub fn take(&mut self, name: &str) -> Option<Cow<'a, str>> {
         let index = self.members.0.iter().position(|(key, _)| key == name)?;
         let (_, value) = self.members.0.remove(index);
         Some(value.json())
     }
 
-    /// Opens `limits` and checks that all keys exist and stand there once.
+    /// Opens `limits` and checks that all keys exist and are unique.
     pub fn checked(&self) -> Result<Self, Refusal> {
         self.check_keys(
             &self.members,
@@ -202,7 +202,8 @@ impl<'a> Fields<'a> {
     /// The value of a field as JSON, for an answer; `limits.jerk` is a field of `limits`.
     pub fn echo(&self, field: &str) -> Option<String> {
         let text = self.given(field)?.json();
-        // A number no f64 can hold would make the answer unreadable to many, so it goes out as a string.
+        // A number that no f64 can hold would make the answer unreadable to many programs, so it is
+        // written as a string.
         let readable = serde_json::from_str::<serde_json::Value>(&text).is_ok();
         Some(if readable {
             text.into_owned()
@@ -272,7 +273,7 @@ impl<'a> Fields<'a> {
         Ok(self.number(field)?.unwrap_or(absent))
     }
 
-    /// Start state, velocity at the end and limits. Whether they make sense is for the planner to say.
+    /// Start state, velocity at the end and limits. The planner checks whether they are valid.
     pub fn problem(&self) -> Result<Problem, Refusal> {
         let state = |field| Ok(self.number(field)?.unwrap_or(0.0));
         Ok(Problem {
@@ -289,7 +290,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// The limits the motion so far kept; those that are not given are as in `limits`.
+    /// The limits of the motion so far; limits that are not given are as in `limits`.
     pub fn limits_before(&self, limits: &Limits) -> Result<Limits, Refusal> {
         if self.limits_before.0.is_empty() {
             return Ok(*limits);
@@ -303,7 +304,8 @@ impl<'a> Fields<'a> {
         self.limits("limits_before", limits)
     }
 
-    /// `limits` with the velocity bound of each direction: of that and its own in `velocity_limits` the lower one.
+    /// `limits` with a velocity bound for each direction: the lower one of its own bound and that in
+    /// `velocity_limits`.
     pub fn directed(&self, limits: &Limits) -> Result<DirectedLimits, Refusal> {
         let side = |name: &str| {
             let field = format!("velocity_limits.{name}");
@@ -368,7 +370,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// What serde_json says, without the line number: every line is its line 1.
+/// The error of serde_json without the line number, because every line is its line 1.
 fn cause(error: &serde_json::Error) -> String {
     let text = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());

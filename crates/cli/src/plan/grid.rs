@@ -20,7 +20,7 @@ pub fn grid(fields: &Fields<'_>, problem: &Problem, method: Method) -> Result<Pl
     let family = match method {
         Method::Grid if !one_rate => Family::Separate,
         Method::Overlapped if !one_rate => Family::Overlapped,
-        // The published steps know one rate.
+        // The published steps have only one rate.
         Method::Sequential | Method::Grid | Method::Overlapped => {
             let plan = refuse_too_long(fields, &limits, |limits| {
                 GridPlan::new(method, start, target, limits, cycle)
@@ -57,7 +57,7 @@ fn with_one_rate(plan: &GridPlan, asked_for: bool) -> Planned {
     }
 }
 
-/// The plan, or why there is none with the nearest limit there would be one for.
+/// The plan, or the reason why there is none, with the nearest limit that would permit one.
 fn refuse_too_long<T>(
     fields: &Fields<'_>,
     limits: &Limits,
@@ -69,7 +69,7 @@ fn refuse_too_long<T>(
     })
 }
 
-/// As many boxes as the order, also of a move of no length, so that readers need no special case.
+/// As many boxes as the order, even for a move of no length, so that readers need no special case.
 fn boxes(plan: &GridPlan) -> Vec<u32> {
     let mut boxes = plan.boxes().to_vec();
     boxes.resize(plan.order().degree(), 0);
@@ -97,7 +97,7 @@ fn nearest_limit(error: PlanError, limits: &Limits, works: impl Fn(&Limits) -> b
         let follows = limits.deceleration == limits.acceleration;
         let bound = match field {
             Field::LimitVelocity => &mut limits.velocity,
-            // A deceleration that is not given follows.
+            // A deceleration that is not given has the same value.
             Field::LimitAcceleration if follows => {
                 limits.deceleration = value;
                 &mut limits.acceleration

@@ -1,5 +1,5 @@
-//! The table of methods. A method that is built later gets its function here, and its own fields if it has
-//! some; everything else follows from the table.
+//! The table of methods. A new method needs its function here, and its own fields if it has some;
+//! everything else follows from the table.
 
 use crate::plan::fields::{Fields, Problem};
 use crate::plan::grid::grid;
@@ -112,7 +112,7 @@ pub struct Planned {
 }
 
 impl Planned {
-    /// A plan without what only some methods tell.
+    /// A plan without the fields that only some methods have.
     pub const fn new(
         duration: f64,
         scans: u32,
@@ -160,7 +160,7 @@ pub fn all() -> impl Iterator<Item = &'static MethodInfo> {
     METHODS.into_iter()
 }
 
-/// Plans what a line asks for; gives the name of the method as well.
+/// Plans a line; also returns the name of the method.
 pub fn plan(fields: &Fields<'_>) -> Result<(&'static str, Planned), Refusal> {
     let problem = fields.problem()?;
     let default = if problem.first_motion().is_some() || fields.has("velocity_limits") {

@@ -27,7 +27,7 @@ pub use fields::{Given, Member};
 pub use methods::Planned;
 pub use refusal::Refusal;
 
-/// The files to write, each if it is wanted.
+/// The files to write; absent ones are not wanted.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Files<'a> {
     /// The set-points of every plan, as CSV.
@@ -40,12 +40,12 @@ pub struct Files<'a> {
 
 /// Answers every line of `input` that is not blank, in order. `name` stands for the input in messages.
 ///
-/// Flushes `out` before it waits for more input, so that a program can hold a conversation.
+/// Flushes `out` before it waits for more input, so that a program can exchange lines with it.
 pub fn plan(input: &mut dyn BufRead, name: &str, out: &mut dyn Write) -> Result<Exit, Failure> {
     answer(input, name, out, &mut |_| Ok(()))
 }
 
-/// As [`plan`]; what is planned goes to the files as well.
+/// As [`plan`]; planned lines also go to the files.
 pub fn plan_to_files(
     input: &mut dyn BufRead,
     name: &str,
@@ -67,7 +67,8 @@ pub fn plan_to_files(
     Ok(exit)
 }
 
-/// Plans what a host asks for that has the fields of a line apart, each key once: the name of the method, and the plan.
+/// Plans for a host that has the fields of a line separately, each key once. Returns the name of the
+/// method, and the plan.
 ///
 /// # Errors
 /// [`Refusal`], as on a line.
@@ -143,7 +144,7 @@ fn each_line(
             limit::doing(format!("line {number} of {name}"));
             each(number, text)?;
         }
-        // There may be no end to the input, and nobody wants the answers.
+        // The input may be endless, and nobody reads the answers.
         if out::is_closed() {
             break;
         }

@@ -56,7 +56,7 @@ pub fn online(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal
     let end = if *end_velocity == 0.0 && *end_acceleration == 0.0 {
         plan.at(plan.scans().into())
     } else {
-        // Where it is at the first instant with both, not at the scan after it.
+        // The place at the first instant with both, not at the scan after it.
         Setpoint {
             velocity: *end_velocity,
             acceleration: *end_acceleration,
@@ -170,7 +170,7 @@ fn targets(fields: &Fields<'_>, cycle: f64) -> Result<Vec<(u32, f64)>, Refusal> 
     let mut changes = Vec::new();
     for (time, target) in pairs {
         let scan = scans(time, cycle).ok_or_else(|| too_long(fields))?;
-        // Of several targets at one scan the last holds.
+        // If there are several targets at one scan the last one counts.
         changes.pop_if(|(last, _)| *last == scan);
         changes.push((scan, target));
     }

@@ -1,4 +1,4 @@
-//! Why a line was not planned.
+//! The reason why a line was not planned.
 
 use crate::json::{Object, number, string};
 use crate::plan::fields::Fields;
@@ -49,7 +49,7 @@ impl Refusal {
         }
     }
 
-    /// Of one field; its value is what the line says, if it says anything.
+    /// Of one field; its value is that of the line, if it has one.
     pub fn of_field(code: Code, fields: &Fields<'_>, field: &str, message: impl Into<String>) -> Self {
         Self {
             code,
@@ -97,7 +97,7 @@ impl Refusal {
                 value,
                 nearest,
             } => (Code::Unreachable, field.name(), Some(value), Some(nearest)),
-            // The planner may learn to refuse for further reasons before this program knows them.
+            // The planner may get further reasons before this program knows them.
             other => return Self::of_line(other.to_string()),
         };
         let mut refusal = Self::of_field(code, fields, field, error.to_string());

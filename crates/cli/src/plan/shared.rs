@@ -1,4 +1,4 @@
-//! What several methods check and tell alike.
+//! Checks and answers that several methods share.
 
 use crate::json::number;
 use crate::plan::fields::{Fields, Problem};
@@ -67,7 +67,7 @@ pub fn check_limits(
 /// Refuses an end velocity above its limit; the limit is the nearest.
 pub fn check_end_velocity(fields: &Fields<'_>, problem: &Problem) -> Result<(), Refusal> {
     let (value, limit) = (problem.end_velocity, problem.limits.velocity);
-    // A limit that makes no sense is for the planner to refuse.
+    // The planner refuses an invalid limit.
     if limit > 0.0 && value.abs() > limit {
         let message = "`end_velocity` is above `limits.velocity`".to_owned();
         let nearest = number(limit.copysign(value));

@@ -7,7 +7,8 @@ use hyper::{Response, StatusCode};
 use serde_json::Value;
 use standstill_trace::printable;
 
-/// What holds for every answer: it is what it says it is, no other page may read or frame it, and the next time it is asked for anew.
+/// The headers of every answer: its type is as declared, no other page may read or frame it, and the
+/// browser must ask for it anew.
 const ALWAYS: [(&str, &str); 5] = [
     ("x-content-type-options", "nosniff"),
     ("cross-origin-resource-policy", "same-origin"),
@@ -38,7 +39,7 @@ impl Answer {
         Self::bytes("application/json", value.to_string().into_bytes())
     }
 
-    /// What was asked for stands at another path.
+    /// The requested page is at another path.
     pub fn elsewhere(path: &str) -> Self {
         Self {
             status: 302,
@@ -47,7 +48,7 @@ impl Answer {
         .with("location", path.to_owned())
     }
 
-    /// What was asked for is as it was.
+    /// The requested page has not changed.
     pub fn unchanged(tag: &str) -> Self {
         Self {
             status: 304,
@@ -69,7 +70,7 @@ impl Answer {
             StatusCode::from_u16(self.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
         let fixed = ALWAYS.iter().map(|(name, value)| (*name, (*value).to_owned()));
         for (name, value) in fixed.chain(self.headers) {
-            // A value that no header may have is left out; of ours none is.
+            // An invalid header value is left out; ours are all valid.
             if let Ok(value) = HeaderValue::try_from(value) {
                 response
                     .headers_mut()

@@ -17,10 +17,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::SystemTime;
 
-/// Most bytes of a file that a script is or names; the page reads no more.
+/// Most bytes of a script, and of a file that it names; the page reads no more.
 const BYTES_MAX: usize = 1 << 20;
 
-/// Most scripts that are listed, and most names that are looked at for it.
+/// Most scripts in the list, and most names that are checked for it.
 const LISTED_MAX: usize = 2_000;
 const NAMES_MAX: usize = 100_000;
 
@@ -30,10 +30,10 @@ const KNOWN_MAX: usize = 32;
 /// Folders in which nobody edits: they may hold very many files.
 const LEFT_OUT: [&str; 2] = ["target", "node_modules"];
 
-/// When a file was saved, and its length; nothing of one that is not there.
+/// The time of saving and the length of a file; none for a missing one.
 type Stamp = Option<(Option<SystemTime>, u64)>;
 
-/// A script as it was given out last.
+/// A script as it was sent last.
 #[derive(Debug)]
 struct Known {
     /// The files it was made of.
@@ -46,7 +46,7 @@ struct Known {
 #[derive(Debug)]
 pub struct Folder {
     name: String,
-    /// As the system itself knows it.
+    /// The system's own path.
     root: PathBuf,
     allowed: Vec<PathBuf>,
     known: Mutex<BTreeMap<PathBuf, Known>>,
@@ -89,7 +89,7 @@ impl Folder {
         Ok(Value::from(groups))
     }
 
-    /// Paths of the scripts, sorted; what cannot be read is as if it were not there.
+    /// Paths of the scripts, sorted; an item that cannot be read is ignored.
     fn scripts(&self) -> Vec<String> {
         let (mut found, mut folders, mut looked) = (Vec::new(), vec![PathBuf::new()], 0);
         while let Some(folder) = folders.pop() {
@@ -118,8 +118,9 @@ impl Folder {
         found
     }
 
-    /// A script with the files it names: `{"name", "text", "files", "lacks"}`, where a file that is no text is `{"base64": ".."}` and
-    /// `lacks` says why others cannot be had. `tag` is that of the answer which the page has.
+    /// A script with the files it names: `{"name", "text", "files", "lacks"}`. A file that is no text is
+    /// `{"base64": ".."}`, and `lacks` gives the reasons why others are missing. `tag` belongs to the
+    /// answer that the page has.
     pub fn script(&self, path: &str, tag: Option<&str>) -> Result<Answer, Answer> {
         let inner = within(path)?;
         if !path.ends_with(EXTENSION) {
@@ -160,7 +161,7 @@ impl Folder {
         let bytes = bounded(file, length).map_err(|why| plain(413, &format!("{path}: {why}")))?;
         let text = String::from_utf8(bytes)
             .map_err(|_| plain(415, &format!("{path}: it is not UTF-8; save it as UTF-8")))?;
-        // It is read for the files that it names: what is wrong with it the page says.
+        // It is read for the names of its files; the page reports its faults.
         let all = std::cell::RefCell::new(&mut files);
         let _ = read_with_programs(
             &text,
@@ -189,7 +190,7 @@ impl Known {
     }
 }
 
-/// The files that a script names, as they are read.
+/// The files that a script names, in the order of reading.
 struct Files<'a> {
     script: &'a Path,
     allowed: &'a [PathBuf],
@@ -199,12 +200,12 @@ struct Files<'a> {
 }
 
 impl Files<'_> {
-    /// The bytes of a file; what came of it is kept for the page.
+    /// The bytes of a file; the result is kept for the page.
     fn load(&mut self, name: &str) -> Result<Vec<u8>, String> {
         let place = self.script.parent().unwrap_or(Path::new("")).join(name);
         self.stamps.push((place.clone(), stamp(&place)));
         let bytes = beside(self.script, name, self.allowed, "script").and_then(|path| {
-            // A pipe would be waited for.
+            // Reading a pipe would block.
             if !fs::metadata(&path).map_err(|error| error.to_string())?.is_file() {
                 return Err("it is no regular file".to_owned());
             }

@@ -1,8 +1,9 @@
-//! `standstill serve`: the playground as a tool of the desk, with the scripts of a folder in it.
+//! `standstill serve`: the playground as a local tool, with the scripts of a folder.
 //!
-//! What stands here: who is answered, and by what. What does not: running a script, which the page does. Nothing is written, and
-//! the loopback address is the only one it listens on. Other pages in the same browser can send requests there, too: those that
-//! came under another name are refused, and no answer is for other pages to read.
+//! This module decides which requests are answered, and how. The page runs the scripts. Nothing is
+//! written, and the server listens only on the loopback address. Other pages in the same browser can also
+//! send requests there: requests under another host name are refused, and no answer can be read by other
+//! pages.
 
 #[cfg(any(unix, windows))]
 mod answer;
@@ -14,7 +15,7 @@ mod site;
 #[cfg(any(unix, windows))]
 pub use desk::serve;
 
-/// Where there is no network.
+/// For systems without a network.
 #[cfg(not(any(unix, windows)))]
 pub fn serve(_: &crate::args::ServeArguments) -> Result<crate::exit::Exit, crate::exit::Failure> {
     Err(crate::exit::Failure::usage(
@@ -47,16 +48,17 @@ mod desk {
     use tokio::net::TcpListener;
     use tokio::runtime;
 
-    /// Connections that cannot be taken, one after the other, before it gives up: there may be too many for a moment.
+    /// Consecutive failures to accept a connection before it gives up, because there may be too many for
+    /// a moment.
     const FAILED_MAX: u32 = 100;
 
     /// Where the scripts of the folder are, beside the pages.
     const SCRIPTS: &str = "/folder/";
 
-    /// What picks scripts in the page; here it has those of the folder, too.
+    /// The list of scripts for the page; here it includes those of the folder.
     const LIST: &str = "/playground/scripts.json";
 
-    /// What every answer comes from.
+    /// The source of every answer.
     struct Desk {
         site: Site,
         folder: Folder,
@@ -78,7 +80,7 @@ mod desk {
             Failure::Told(Exit::Io, format!("error: port {port}: {why}; {remedy}"))
         };
         let asked = arguments.port;
-        // One thread answers all: what it waits for is the network.
+        // One thread answers all, because it waits only for the network.
         let runtime = runtime::Builder::new_current_thread().enable_all().build();
         let runtime = runtime.map_err(|error| failed(asked, &error))?;
         let listener = runtime.block_on(TcpListener::bind((Ipv4Addr::LOCALHOST, asked)));
@@ -101,7 +103,7 @@ mod desk {
     }
 
     impl Desk {
-        /// Answers every connection, however long others say nothing; what ended it.
+        /// Answers every connection, even while others are silent; returns what ended it.
         async fn answer_all(self, listener: &TcpListener) -> io::Error {
             let desk = Arc::new(self);
             let mut failed = 0;
@@ -121,7 +123,7 @@ mod desk {
                     let answer = desk.found(&request).unwrap_or_else(|refusal| refusal);
                     ready(Ok::<_, Infallible>(answer.response()))
                 });
-                // Who asked may have gone.
+                // The client may be gone.
                 tokio::spawn(
                     http1::Builder::new()
                         .timer(TokioTimer::new())
@@ -130,9 +132,9 @@ mod desk {
             }
         }
 
-        /// The answer, or one that says what is wrong.
+        /// The answer, or one with the error.
         fn found<B>(&self, request: &Request<B>) -> Result<Answer, Answer> {
-            // A value that is no ASCII is none of ours.
+            // A value that is not ASCII is not ours.
             let header = |name| {
                 request
                     .headers()
@@ -168,7 +170,8 @@ mod desk {
         }
     }
 
-    /// Whether a page under this name is ours: any other one may stand for this machine, too, if its owner says so.
+    /// Whether a page under this host name is ours: the owner of any other name may let it refer to this
+    /// machine.
     fn is_ours(host: &str, port: u16) -> bool {
         let host = host.to_ascii_lowercase();
         let name = match host.strip_suffix(&format!(":{port}")) {

@@ -8,13 +8,13 @@ use std::fs::{self, File};
 use std::io::{self, Read as _};
 use std::path::{Component, Path, PathBuf};
 
-/// What a folder must have to be taken for the page.
+/// A file that a folder must have to count as the page.
 const FIRST: &str = "playground/index.html";
 
-/// Bytes of a file that is given out, at most: one is read as a whole.
+/// Most bytes of a file that is sent, because it is read as a whole.
 const BYTES_MAX: usize = 256 << 20;
 
-/// Types by the endings of names; a browser must be told of some.
+/// Types by file name extension; a browser needs some of them.
 const KINDS: [(&str, &str); 10] = [
     ("html", "text/html; charset=utf-8"),
     ("js", "text/javascript; charset=utf-8"),
@@ -36,7 +36,7 @@ pub struct Site {
 }
 
 impl Site {
-    /// The folder that was named, or the first that is there of those where one may be expected.
+    /// The named folder, or the first existing one of the usual folders.
     pub fn find(named: Option<&Path>) -> Result<Self, Failure> {
         let places = named.map_or_else(expected, |folder| vec![folder.to_owned()]);
         let found = places.iter().find(|folder| folder.join(FIRST).is_file());
@@ -89,7 +89,8 @@ impl Site {
     }
 }
 
-/// Where the page may be: where it is built, in the folder of the program, and where the program is built.
+/// The usual folders of the page: where it is built, in the folder of the program, and where the program
+/// is built.
 fn expected() -> Vec<PathBuf> {
     let mut places = vec![PathBuf::from("target/site")];
     let program = std::env::current_exe().ok();
@@ -103,7 +104,7 @@ fn expected() -> Vec<PathBuf> {
 /// The path of an address as one that leads down only.
 pub fn within(path: &str) -> Result<PathBuf, Answer> {
     let is_plain = |part: Component<'_>| matches!(part, Component::Normal(_));
-    // What separates on one system is part of a name on another; a colon names drives and streams.
+    // A separator of one system is part of a name on another; a colon names drives and streams.
     let is_odd = path.contains(['\\', ':']) || path.chars().any(char::is_control);
     let path = Path::new(path);
     if is_odd || !path.components().all(is_plain) {
@@ -112,7 +113,8 @@ pub fn within(path: &str) -> Result<PathBuf, Answer> {
     Ok(path.to_owned())
 }
 
-/// An open file below a folder, and its length (bytes). A link must not lead out; a pipe would be waited for.
+/// An open file below a folder, and its length (bytes). A link must not lead out; reading a pipe would
+/// block.
 pub fn open(root: &Path, inner: &Path) -> Result<(File, usize), Answer> {
     let name = shown(inner);
     let path = root.join(inner);

@@ -1,4 +1,4 @@
-//! `standstill soak blocks`: random programs over random axes, with every rule held in every scan.
+//! `standstill soak blocks`: random programs over random axes, with every rule checked in every scan.
 
 use super::{Trial, soak};
 use crate::exit::{Exit, Failure};
@@ -14,7 +14,7 @@ use std::path::Path;
 /// Failing episodes that are made smaller and kept as scripts; further ones are only counted.
 const KEPT: usize = 10;
 
-/// What came of the episodes so far. Adding one to another is the same as having seen all its episodes.
+/// The results of the episodes so far. The sum of two equals the result of all their episodes.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Episodes {
@@ -96,7 +96,8 @@ impl Trial for Episodes {
             refused,
             faults,
             turned_back,
-            // A sum, so that it does not matter how episodes are grouped; the number tells equal ones apart.
+            // A sum, so that the grouping of episodes does not matter; the number distinguishes equal
+            // ones.
             digest: (digest ^ number).wrapping_mul(0x9e37_79b9_7f4a_7c15),
             failed: u64::from(scripts.is_some()),
             scripts: scripts.into_iter().collect(),

@@ -1,8 +1,8 @@
-//! `standstill soak`: random cases without end, each held against what is claimed.
+//! `standstill soak`: an endless series of random cases, each checked against the claims.
 //!
-//! Cases come in chains, chains in batches. A chain follows from the seed and its number alone, and what batches saw
-//! is added up in their order, so the figures depend neither on how many threads there are nor on where a run was
-//! interrupted.
+//! Cases are grouped in chains, and chains in batches. A chain depends only on the seed and its number,
+//! and results of batches are added in their order. So the figures do not depend on the number of
+//! threads, or on interruptions of a run.
 
 mod blocks;
 mod planner;
@@ -28,7 +28,7 @@ use std::time::{Duration, Instant};
 /// Time between two writings of the state.
 const SAVE_EVERY: Duration = Duration::from_secs(5);
 
-/// What is tried, and what is made of what came of it.
+/// A kind of case, and the sum of its results.
 trait Trial: Default + Send + Serialize + DeserializeOwned {
     /// What one case is called, in the plural.
     const CASES: &str;
@@ -49,7 +49,7 @@ trait Trial: Default + Send + Serialize + DeserializeOwned {
     fn failed(&self) -> u64;
 }
 
-/// What came of `count` cases.
+/// The results of `count` cases.
 fn soak<T: Trial>(seed: u64, count: u64, resume: Option<&Path>) -> Result<T, Failure> {
     let mut state = match resume {
         Some(path) => State::<T>::read(path, seed)?,
@@ -67,7 +67,8 @@ fn soak<T: Trial>(seed: u64, count: u64, resume: Option<&Path>) -> Result<T, Fai
     if let Some(path) = resume {
         state.write(path)?;
     }
-    // The last chain may be cut short; a longer run goes through all of it, so the state does without.
+    // The last chain may be cut short. A longer run goes through all of it, so it is not part of the
+    // state.
     let mut tally = state.tally;
     let rest = count % T::LINKS;
     if rest > 0 {
@@ -76,7 +77,7 @@ fn soak<T: Trial>(seed: u64, count: u64, resume: Option<&Path>) -> Result<T, Fai
     Ok(tally)
 }
 
-/// Goes on until so many chains are done, on all processors.
+/// Continues until this many chains are done, on all processors.
 fn run<T: Trial>(state: &mut State<T>, chains: u64, file: Option<&Path>) -> Result<(), Failure> {
     let (seed, first) = (state.seed, state.chains);
     let mut progress = Progress::new(true);
@@ -117,7 +118,7 @@ fn run<T: Trial>(state: &mut State<T>, chains: u64, file: Option<&Path>) -> Resu
             scope.spawn(move || {
                 loop {
                     let begin = next.fetch_add(T::BATCH, Ordering::Relaxed);
-                    // Nobody listens any more once something went wrong.
+                    // After an error nobody receives any more.
                     if begin >= chains || send.send((begin, batch(seed, begin, chains))).is_err() {
                         return;
                     }

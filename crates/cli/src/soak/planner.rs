@@ -1,4 +1,4 @@
-//! `standstill soak planner`: replans at random, each held against what is claimed of plans.
+//! `standstill soak planner`: random replans, each checked against the claims about plans.
 
 use super::tally::Tally;
 use super::{Trial, soak};

@@ -1,4 +1,4 @@
-//! How far a run has come, as a file.
+//! The progress of a run, as a file.
 
 use super::Trial;
 use crate::exit::{Exit, Failure};
@@ -12,14 +12,14 @@ use std::path::Path;
 /// Version of the file's form.
 const FORM: u32 = 1;
 
-/// What is needed to go on.
+/// The data needed to continue.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct State<T> {
     standstill_soak: u32,
-    /// Of the program: another one may plan otherwise.
+    /// Version of the program, because another one may plan differently.
     version: String,
-    /// All chains follow from it.
+    /// The seed of all chains.
     pub seed: u64,
     /// Chains done.
     pub chains: u64,

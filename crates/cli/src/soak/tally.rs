@@ -1,4 +1,4 @@
-//! What came of the replans so far.
+//! The results of the replans so far.
 
 use serde::{Deserialize, Serialize};
 use standstill_planner::Rung;
@@ -8,7 +8,7 @@ use std::fmt;
 /// Failing lines that are kept for each kind of goal; further ones are only counted.
 const KEPT: usize = 20;
 
-/// Counts, worst figures and failing lines. Adding one to another is the same as having seen all its cases.
+/// Counts, worst figures and failing lines. The sum of two equals the result of all their cases.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tally {
@@ -18,7 +18,7 @@ pub struct Tally {
     moving: u64,
     /// Replans whose start was known to need no excess.
     viable: u64,
-    /// Plans that told of an excess.
+    /// Plans that reported an excess.
     exceeding: u64,
     rungs: [u64; 4],
     /// Most ramps solved for a plan, steps of a root, segments.
@@ -29,7 +29,7 @@ pub struct Tally {
     miss: f64,
     sample: f64,
     peak: f64,
-    /// Replans refused because they take more scans than a plan counts.
+    /// Replans refused because they take more scans than a plan can count.
     pub long: u64,
     /// Replans that failed.
     pub failed: u64,
@@ -69,7 +69,7 @@ impl Tally {
         self.peak = self.peak.max(peak);
     }
 
-    /// Counts a failure; `id` says where it was and what is wrong.
+    /// Counts a failure; `id` gives its place and the broken claim.
     pub fn fail(&mut self, case: &Case, id: &str) {
         self.count(case);
         self.failed += 1;
