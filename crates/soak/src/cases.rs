@@ -1,4 +1,4 @@
-//! Random replans that follow each other, and how to write one as a line of `standstill plan`.
+//! Random replans in chains, and each as a line of `standstill plan`.
 
 use crate::random::Random;
 use standstill_planner::grid::{self, Family};
@@ -10,7 +10,7 @@ use standstill_planner::{
 /// Most scans of a plan.
 const MOST_SCANS: f64 = 2_147_483_647.0;
 
-/// What a replan is to reach.
+/// The goal of a replan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
     /// Rest at a position, from rest, on the sample grid (u).
@@ -26,9 +26,9 @@ pub enum Goal {
 /// One replan.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
-    /// The state the axis has.
+    /// The state of the axis.
     pub start: Setpoint,
-    /// Where it is to go.
+    /// The goal.
     pub goal: Goal,
     /// The limits from now on.
     pub limits: Limits,
@@ -84,8 +84,8 @@ impl Case {
         }
     }
 
-    /// Whether it may well take more scans than a plan counts: some time that no plan is much shorter than takes that
-    /// many.
+    /// Whether it probably takes more scans than a plan can count: some time that is close to a lower
+    /// bound takes that many.
     pub fn is_long(&self) -> bool {
         let (way, end) = match self.goal {
             Goal::Grid(target) | Goal::Position(target) => (target - self.start.position, 0.0),
@@ -132,7 +132,7 @@ impl Case {
         let bound = |(_, value): &(&str, Option<f64>)| value.is_some_and(f64::is_finite);
         let object = |members: &[(&str, Option<f64>)]| {
             let members = members.iter().filter(|member| bound(member));
-            // Adding 0.0 takes the sign off zero.
+            // Adding 0.0 removes the sign of zero.
             let members = members.map(|(key, value)| format!("\"{key}\":{:?}", value.unwrap_or(0.0) + 0.0));
             members.collect::<Vec<_>>().join(",")
         };
@@ -198,7 +198,7 @@ impl Plan {
         }
     }
 
-    /// What the plan tells of exceeding.
+    /// The excess that the plan reports.
     pub fn excess(&self) -> Option<Excess> {
         match self {
             Self::Grid(_) | Self::Unequal(_) => None,
@@ -207,7 +207,7 @@ impl Plan {
         }
     }
 
-    /// The largest magnitudes the plan tells of.
+    /// The largest magnitudes that the plan reports.
     pub fn peaks(&self) -> Peaks {
         match self {
             Self::Grid(plan) => unbounded_where_none(plan.peaks()),
@@ -242,7 +242,7 @@ fn unbounded_where_none(peaks: grid::Peaks) -> Peaks {
     }
 }
 
-/// How the limits of a chain change from replan to replan.
+/// The change of a chain's limits from replan to replan.
 #[derive(Clone, Copy, Debug)]
 enum Change {
     Never,
@@ -250,19 +250,19 @@ enum Change {
     All,
 }
 
-/// A chain of replans: each starts where a random scan of the one before finds the axis.
+/// A chain of replans: each starts at a random scan of the one before.
 #[derive(Debug)]
 pub struct Chain {
     random: Random,
-    /// The limits all others are a part of.
+    /// The upper bounds of all other limits.
     widest: Limits,
     change: Change,
     cycle: f64,
-    /// A length the limits make typical (u).
+    /// A typical length for the limits (u).
     way: f64,
     /// The highest velocity a goal may have (u/s).
     fastest: f64,
-    /// What positions count from (u).
+    /// The origin of positions (u).
     origin: f64,
     start: Setpoint,
     before: Limits,
@@ -275,7 +275,7 @@ impl Chain {
         Self::of(Random::new(seed, number))
     }
 
-    /// The chain these numbers make. In every sixth some limits are what nobody reaches, or next to nothing.
+    /// The chain of these numbers. In every sixth some limits are never reached, or almost 0.
     pub fn of(mut random: Random) -> Self {
         let order = [Order::Two, Order::Three, Order::Four][random.below(3) as usize];
         let typical = limits(&mut random, order);
@@ -319,7 +319,7 @@ impl Chain {
     /// Draws the next replan.
     pub fn next_case(&mut self) -> Case {
         let limits = self.limits();
-        // What fits under limits fits under larger ones.
+        // A motion that fits under limits also fits under larger ones.
         let viable = self.start.is_at_rest() || self.viable && contains(&limits, &self.before);
         let case = Case {
             start: self.start,
@@ -333,12 +333,12 @@ impl Chain {
         case
     }
 
-    /// Draws the scan at which `plan` is left; it may be its end or behind it.
+    /// Draws the scan at which `plan` is left; it may be its end or later.
     pub fn leave(&mut self, plan: &Plan) -> u64 {
         self.random.below(u64::from(plan.scans()) + 2)
     }
 
-    /// Goes on from `scan` of `plan`, all of which `keeps` its limits or not.
+    /// Continues from `scan` of `plan`; `keeps` says whether the whole plan keeps its limits.
     pub fn follow(&mut self, plan: &Plan, scan: u64, keeps: bool) {
         self.start = plan.at(scan);
         self.viable = keeps || scan >= u64::from(plan.scans());
@@ -356,7 +356,7 @@ impl Chain {
             }
             _ => {
                 let target = self.target();
-                // From rest both ways to plan take their turn.
+                // From rest both kinds of planning take turns.
                 if self.start.is_at_rest() && self.random.one_in(2) {
                     Goal::Grid(target)
                 } else {
@@ -366,7 +366,7 @@ impl Chain {
         }
     }
 
-    /// A goal velocity (u/s), now and then exactly the limit, unless that is what nobody reaches.
+    /// A goal velocity (u/s), sometimes exactly the limit, unless that is never reached.
     fn velocity(&mut self, limits: &Limits) -> f64 {
         let most = limits.velocity.min(self.fastest);
         let speed = match self.random.below(4) {
@@ -428,10 +428,11 @@ fn contains(outer: &Limits, inner: &Limits) -> bool {
         && inner.snap <= outer.snap
 }
 
-/// `typical`, with some of its limits what programs write for none, or anything from 1e-12 to the largest number.
+/// `typical`, with some of its limits replaced by the usual values for "no limit", or by anything from
+/// 1e-12 to the largest number.
 ///
-/// The rates are at most 10^4 times apart in what they do: a ramp that changes between two such rates keeps the lower
-/// one to 1e-9 of the higher (docs/planner-ramps.md, section 7).
+/// The effects of the rates differ by at most 10^4: a ramp that changes between two such rates keeps the
+/// lower one to 1e-9 of the higher (docs/planner-ramps.md, section 7).
 pub(crate) fn extreme(random: &mut Random, typical: &Limits, cycle: f64) -> Limits {
     let mut limits = *typical;
     let bounds = [
@@ -459,8 +460,8 @@ pub(crate) fn extreme(random: &mut Random, typical: &Limits, cycle: f64) -> Limi
     limits
 }
 
-/// Limits of the proportions servo axes have, in units of length and time a thousand times smaller to a
-/// thousand times larger; at order 4 every eighth set has no jerk limit.
+/// Limits with the proportions of servo axes, in units of length and time a thousand times smaller to a
+/// thousand times larger. At order 4 every eighth set has no jerk limit.
 fn limits(random: &mut Random, order: Order) -> Limits {
     let velocity = random.log_between(0.01, 10.0);
     let acceleration = velocity * random.log_between(1.0, 300.0);

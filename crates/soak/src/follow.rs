@@ -1,14 +1,14 @@
 //! Follows published segments as polynomials and finds their extremes.
 //!
-//! It shares no code with the planner: what the planner claims is held against this. Only `+ - * /` and
-//! square root, so that the figures are the same everywhere.
+//! It shares no code with the planner, because it checks the planner's claims. Only `+ - * /` and square
+//! root, so that the figures are the same everywhere.
 
 use standstill_planner::{Order, Segment, Setpoint};
 
-/// Halvings that bring an interval down to neighbouring numbers, or so near that nothing depends on it.
+/// Halvings of an interval to neighbouring numbers, or so near that nothing depends on the rest.
 const HALVINGS: u32 = 60;
 
-/// What happens along a list of segments.
+/// The course of a list of segments.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Followed {
     /// The state at the end; the position counts from the start.
@@ -19,8 +19,8 @@ pub struct Followed {
     pub low: f64,
     /// See `low`.
     pub high: f64,
-    /// Largest acceleration while the speed grows, while it falls, and where the speed is too near zero to
-    /// tell (u/s^2).
+    /// Largest acceleration while the speed grows, while it falls, and while it is too near zero to
+    /// decide (u/s^2).
     pub growing: f64,
     /// See `growing`.
     pub falling: f64,
@@ -30,8 +30,8 @@ pub struct Followed {
     pub jerk: f64,
     /// See `jerk`.
     pub snap: f64,
-    /// Largest jumps between segments of the derivatives that may not jump: velocity (u/s), acceleration
-    /// (u/s^2), jerk (u/s^3).
+    /// Largest jumps between segments of the derivatives that must be continuous: velocity (u/s),
+    /// acceleration (u/s^2), jerk (u/s^3).
     pub jumps: [f64; 3],
 }
 
@@ -77,7 +77,7 @@ pub fn state_at(start: &Setpoint, segments: &[Segment], mut time: f64) -> Setpoi
         time -= segment.duration;
         state = next.after(segment.duration);
     }
-    // Nothing but the velocity remains.
+    // Only the velocity remains.
     Setpoint {
         position: state.position + state.velocity * time,
         velocity: state.velocity,
@@ -107,7 +107,7 @@ impl Followed {
         for time in [-segment.jerk / segment.snap, early, late] {
             knots.add(time);
         }
-        // Between the knots so far the velocity rises or falls, so it has one zero there or none.
+        // Between these knots the velocity rises or falls, so it has one zero there or none.
         for (from, to) in knots.clone().intervals() {
             if segment.velocity(from) * segment.velocity(to) < 0.0 {
                 knots.add(crossing(segment, from, to));
@@ -224,7 +224,7 @@ impl Knots {
         }
     }
 
-    /// Adds an instant if it lies inside the segment; one that does not exist is NaN or infinite.
+    /// Adds an instant if it lies inside the segment; a missing one is NaN or infinite.
     fn add(&mut self, time: f64) {
         if time > 0.0 && time < self.duration && self.len < self.times.len() {
             self.times[self.len] = time;
@@ -238,7 +238,7 @@ impl Knots {
     }
 }
 
-/// The zeros of `c + b t + a t^2`, in the form that loses no digits; NaN or infinite where there is none.
+/// The zeros of `c + b t + a t^2`, in the form that loses no digits; NaN or infinite if there is none.
 fn zeros(c: f64, b: f64, a: f64) -> [f64; 2] {
     let root = (b * b - 4.0 * a * c).sqrt();
     let sum = -0.5 * (b + root.copysign(b));

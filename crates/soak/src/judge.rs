@@ -1,4 +1,4 @@
-//! Holds a plan against what is claimed of plans.
+//! Checks a plan against the claims about plans.
 
 use crate::cases::{Case, Goal, Plan};
 use crate::follow::{Followed, follow, state_at};
@@ -6,46 +6,48 @@ use standstill_planner::kernel::MAX_STEPS;
 use standstill_planner::online::MAX_SOLVES;
 use standstill_planner::{Excess, Order, Setpoint};
 
-/// How far a limit may be exceeded, a target missed, a derivative jump: relative to the limit, to the way at
-/// the velocity limit, to the limit.
+/// The tolerance for a limit, a target and a jump: relative to the limit, to the way at the velocity
+/// limit, to the limit.
 const RELATIVE: f64 = 1e-9;
 
-/// Speeds up to this part of the limit count as none: the derivatives tell the direction
-/// (docs/planner-ramps.md, section 4), and either bound of the acceleration may hold.
+/// Speeds up to this part of the limit count as none: the derivatives give the direction
+/// (docs/planner-ramps.md, section 4), and either bound of the acceleration may apply.
 const STILL: f64 = 1e-9;
 
-/// A velocity limit this many times higher than a plan's speeds says nothing of them.
+/// A velocity limit this many times higher than a plan's speeds is no measure of them.
 const REACH: f64 = 1024.0 * 1024.0;
 
-/// What an acceleration is off by, relative to the largest one it comes from: a tenth of [`RELATIVE`].
+/// The error of an acceleration, relative to the largest one it comes from: a tenth of [`RELATIVE`].
 const CHANGED: f64 = 1e-10;
 
-/// What sums of positions resolve, relative to them.
+/// The resolution of sums of positions, relative to them.
 const RESOLVED: f64 = 32.0 * f64::EPSILON;
 
-/// What the clock of a plan resolves, relative to the time it has run: an instant is a 64-bit number, too.
+/// The resolution of a plan's clock, relative to the time it has run: an instant is also a 64-bit number.
 const TICK: f64 = 2.0 * f64::EPSILON;
 
-/// What was measured on a plan, each relative; what a plan cannot be measured by is 0.
+/// The measurements of a plan, each relative; a quantity that cannot be measured is 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Measured {
-    /// Above the limits of velocity, acceleration, jerk and snap, where nothing forces the plan out of them.
+    /// Excess over the limits of velocity, acceleration, jerk and snap, if nothing forces the plan out of
+    /// them.
     pub excess: [f64; 4],
-    /// Above the excess of velocity, acceleration and jerk that the plan tells of.
+    /// Excess of velocity, acceleration and jerk beyond that which the plan reports.
     pub untold: [f64; 3],
     /// Jumps of velocity, acceleration and jerk between segments.
     pub jumps: [f64; 3],
-    /// From the target to where the segments end.
+    /// Distance of the end of the segments from the target.
     pub miss: f64,
-    /// From a set-point to the segments.
+    /// Distance of a set-point from the segments.
     pub sample: f64,
-    /// From the peaks the plan tells of to those of the segments.
+    /// Difference of the reported peaks from those of the segments.
     pub peak: f64,
-    /// Whether all of the plan keeps its limits, so that from anywhere on it the rest of it does.
+    /// Whether the whole plan keeps its limits, so that its rest does from anywhere on it.
     pub keeps: bool,
 }
 
-/// Judges `plan`, which at `scan` is left for the next one: what was measured, or what is wrong.
+/// Judges `plan`, which is left at `scan` for the next one. Returns the measurements, or the broken
+/// claim.
 pub fn judge(case: &Case, plan: &Plan, scan: u64) -> Result<Measured, String> {
     let order = case.limits.order();
     let segments = plan.segments();
@@ -55,7 +57,7 @@ pub fn judge(case: &Case, plan: &Plan, scan: u64) -> Result<Measured, String> {
     if let Some(what) = cut_short(plan) {
         return Err(what);
     }
-    // What a plan comes nowhere near is no measure of its speeds.
+    // A limit far above the speeds of a plan is no measure of them.
     let end = match case.goal {
         Goal::Grid(_) | Goal::Position(_) => 0.0,
         Goal::Passing(_, velocity) | Goal::Velocity(velocity) => velocity,
@@ -109,16 +111,16 @@ fn cut_short(plan: &Plan) -> Option<String> {
     cut.then(|| format!("{solves} ramps solved, {steps} steps of a root"))
 }
 
-/// What differences are relative to.
+/// The scale of differences.
 struct Scale {
-    /// The longest way in the time looked at (u).
+    /// The longest way in the examined time (u).
     way: f64,
-    /// What positions themselves resolve (u).
+    /// The resolution of the positions (u).
     resolved: f64,
     velocity: f64,
     acceleration: f64,
     jerk: f64,
-    /// By how much velocity, acceleration and jerk change in a tick of the clock.
+    /// The changes of velocity, acceleration and jerk in a tick of the clock.
     tick: [f64; 3],
 }
 
@@ -148,7 +150,7 @@ impl Scale {
         }
     }
 
-    /// Differences of velocity, acceleration and jerk beyond what the clock resolves.
+    /// Differences of velocity, acceleration and jerk beyond the resolution of the clock.
     fn beyond_tick(&self, differences: [f64; 3]) -> [f64; 3] {
         let mut beyond = differences;
         for (difference, tick) in beyond.iter_mut().zip(self.tick) {
@@ -157,7 +159,7 @@ impl Scale {
         beyond
     }
 
-    /// A difference of positions relative to the way, beyond what positions resolve.
+    /// A difference of positions relative to the way, beyond the resolution of positions.
     fn position(&self, difference: f64) -> f64 {
         let beyond = difference.abs() - self.resolved;
         if beyond > 0.0 { beyond / self.way } else { 0.0 }
@@ -173,7 +175,7 @@ impl Scale {
         let mut most = self
             .position(setpoint.position - case.start.position - state.position)
             .max(velocity / self.velocity);
-        // What may jump has two values at a switch.
+        // A derivative that may jump has two values at a switch.
         if order >= Order::Three {
             most = most.max(acceleration / self.acceleration);
         }
@@ -187,13 +189,13 @@ impl Scale {
 fn relative<const N: usize>(values: [f64; N], scales: [f64; N]) -> [f64; N] {
     let mut relative = values;
     for (value, scale) in relative.iter_mut().zip(scales) {
-        // Nothing in nothing is nothing.
+        // 0 of 0 is 0.
         *value = if *value == 0.0 { 0.0 } else { *value / scale };
     }
     relative
 }
 
-/// How far from the goal the segments end.
+/// The distance of the end of the segments from the goal.
 fn miss(case: &Case, plan: &Plan, followed: &Followed, scale: &Scale) -> Result<f64, String> {
     let (target, velocity) = match case.goal {
         Goal::Grid(target) | Goal::Position(target) => (Some(target), 0.0),
@@ -210,7 +212,7 @@ fn miss(case: &Case, plan: &Plan, followed: &Followed, scale: &Scale) -> Result<
     Ok(position.max((followed.end.velocity - velocity).abs() / scale.velocity))
 }
 
-/// How far the peaks the plan tells of are from those of its segments.
+/// The difference of the reported peaks from those of the segments.
 fn peak(plan: &Plan, followed: &Followed, scale: &Scale, order: Order) -> f64 {
     let peaks = plan.peaks();
     let mut most = ((peaks.velocity - followed.speed()).abs() / scale.velocity)
@@ -221,7 +223,7 @@ fn peak(plan: &Plan, followed: &Followed, scale: &Scale, order: Order) -> f64 {
     most
 }
 
-/// Holds the extremes against the limits, and against the excess the plan tells of.
+/// Checks the extremes against the limits, and against the reported excess.
 fn limits(
     case: &Case,
     plan: &Plan,
@@ -274,7 +276,7 @@ fn limits(
     let Some(told) = told else {
         return turns_back(case, followed);
     };
-    // A stop in the middle of a reversal turns back, which is told of in the same way.
+    // A stop in the middle of a reversal turns back, which is reported in the same way.
     let reversal = Excess {
         velocity: told.velocity,
         ..Excess::default()
@@ -301,11 +303,12 @@ fn limits(
     Ok(())
 }
 
-/// Scans at the start, in the middle and at the end of a plan whose set-points are looked at.
+/// Scans at the start, in the middle and at the end of a plan whose set-points are checked.
 const WINDOW: u64 = 8;
 
-/// Holds backward differences of published positions against the limits, where nothing forces the plan out of them and
-/// some limit is so far from the others that a piece of the plan is lost in its clock if it is not kept apart.
+/// Checks backward differences of published positions against the limits. It does so if nothing forces
+/// the plan out of them and some limit is far from the others, because then a piece of the plan could be
+/// lost in its clock.
 fn published(case: &Case, plan: &Plan) -> Result<(), String> {
     let limits = &case.limits;
     let higher = limits.acceleration.max(limits.deceleration);
@@ -322,10 +325,10 @@ fn published(case: &Case, plan: &Plan) -> Result<(), String> {
         let mut values: Vec<f64> = (first..=first + WINDOW)
             .map(|scan| plan.at(scan).position)
             .collect();
-        // The end of the plan enters its last piece, which may be all of it.
+        // The end of the plan enters its last piece, which may be the whole plan.
         let ends = plan.at(scans).position.abs().max(case.start.position.abs());
         let largest = values.iter().fold(ends, |most, value| most.max(value.abs()));
-        // The clock resolves a position as a position does.
+        // The clock resolves a position no better than its number does.
         let clock = limits.velocity.min(largest / case.cycle) * case.cycle * (first + WINDOW) as f64;
         let mut resolved = RESOLVED * (largest + clock);
         for (degree, bound) in bounds.into_iter().enumerate() {
@@ -335,7 +338,7 @@ fn published(case: &Case, plan: &Plan) -> Result<(), String> {
                 .collect();
             resolved = 2.0 * resolved / case.cycle;
             let most = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-            // A target that was passed on is behind the end of the plan.
+            // A target that was passed is behind the end of the plan.
             if !(most <= bound * (1.0 + RELATIVE) + resolved) {
                 return Err(format!(
                     "published difference {} is {most:e} near scan {first}",
@@ -347,7 +350,7 @@ fn published(case: &Case, plan: &Plan) -> Result<(), String> {
     Ok(())
 }
 
-/// A stop that tells of no excess must keep the direction of motion.
+/// A stop without a reported excess must keep the direction of motion.
 fn turns_back(case: &Case, followed: &Followed) -> Result<(), String> {
     let v = case.start.velocity;
     let slack = RELATIVE * case.limits.velocity;
@@ -356,7 +359,7 @@ fn turns_back(case: &Case, followed: &Followed) -> Result<(), String> {
     } else if v < -slack {
         followed.high
     } else {
-        // Standing still the acceleration decides.
+        // At rest the acceleration decides.
         return Ok(());
     };
     if case.goal == Goal::Velocity(0.0) && back > slack {
@@ -381,7 +384,7 @@ fn ends(case: &Case, plan: &Plan, order: Order, followed: &Followed, scale: &Sca
     }
     for scan in [last, last + 1] {
         let found = plan.at(scan);
-        // Where it is while it moves on is seen by `Measured::sample`.
+        // The place during the motion is checked by `Measured::sample`.
         let expected = match case.goal {
             Goal::Grid(target) | Goal::Position(target) => Setpoint::at_rest(target),
             Goal::Passing(_, velocity) | Goal::Velocity(velocity) => Setpoint {
@@ -389,7 +392,8 @@ fn ends(case: &Case, plan: &Plan, order: Order, followed: &Followed, scale: &Sca
                 ..Setpoint::at_rest(found.position)
             },
         };
-        // On the grid the last switch is at the last scan; what may jump has not done so just before it.
+        // On the grid the last switch is at the last scan; a derivative that may jump has not jumped just
+        // before it.
         let smooth = if scan == last && plan.is_on_grid() {
             without_jumps(&found, order)
         } else {

@@ -17,13 +17,13 @@ pub use cases::{Case, Chain, Goal, Plan};
 pub use judge::{Measured, judge};
 pub use random::Random;
 
-/// Replans of a chain that a fuzzer's bytes make.
+/// Replans of the chain that a fuzzer's bytes make.
 const FUZZED: u32 = 6;
 
 /// Plans and judges the chain that `bytes` make.
 ///
 /// # Errors
-/// What is wrong with the first plan that fails, and its replan as a line of `standstill plan`.
+/// The broken claim of the first plan that fails, and its replan as a line of `standstill plan`.
 pub fn fuzz(bytes: &[u8]) -> Result<(), String> {
     let mut chain = Chain::of(Random::of_bytes(bytes));
     for link in 0..FUZZED {

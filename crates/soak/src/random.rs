@@ -4,7 +4,7 @@ use std::vec::IntoIter;
 
 use standstill_testkit as testkit;
 
-/// The numbers of [`testkit::Random`]. A fuzzer can say what comes first.
+/// The numbers of [`testkit::Random`]. A fuzzer can supply the first ones.
 #[derive(Debug)]
 pub struct Random {
     given: IntoIter<u64>,
@@ -21,7 +21,7 @@ impl Random {
         }
     }
 
-    /// Eight bytes are a number each; what is not given is the stream 0 of seed 0.
+    /// Each eight bytes are a number; after the bytes it continues with stream 0 of seed 0.
     pub fn of_bytes(bytes: &[u8]) -> Self {
         let given = bytes.as_chunks().0.iter().map(|word| u64::from_le_bytes(*word));
         Self {
@@ -50,10 +50,10 @@ impl Random {
         low + (high - low) * unit
     }
 
-    /// From `low` to `high` with every power as likely.
+    /// From `low` to `high` with every power equally likely.
     ///
-    /// The binary digits of the exponent pick square roots of `high / low`: a logarithm would not give the
-    /// same bits everywhere.
+    /// The binary digits of the exponent choose square roots of `high / low`: a logarithm would not give
+    /// the same bits everywhere.
     pub fn log_between(&mut self, low: f64, high: f64) -> f64 {
         let (mut value, mut root) = (low, high / low);
         let mut digits = self.bits();

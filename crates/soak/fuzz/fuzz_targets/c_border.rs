@@ -1,5 +1,6 @@
-//! Bytes as calls of the C library: any function, in any order, with any structure in its place. Nothing may be undefined,
-//! nothing may panic, every result is a code of the list, and a call that was refused writes nothing.
+//! Bytes as calls of the C library: any function, in any order, with any structure in its place. There
+//! must be no undefined behaviour and no panic, every result must be a code of the list, and a refused
+//! call must write nothing.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -7,7 +8,7 @@ use standstill_capi::*;
 use std::ffi::c_char;
 use std::ptr::{from_mut, from_ref, null_mut};
 
-/// What is left of the input; zeros when it has run out.
+/// The rest of the input; zeros when it has run out.
 struct Bytes<'a>(&'a [u8]);
 
 impl Bytes<'_> {
@@ -21,8 +22,8 @@ impl Bytes<'_> {
         u64::from_le_bytes(std::array::from_fn(|_| self.byte()))
     }
 
-    /// A structure of these bytes, a double of a size machines have in most of its words, and its own size in front in
-    /// most cases.
+    /// A structure of these bytes. Most of its words are doubles of a realistic size, and in most cases
+    /// the size field is right.
     fn fill(&mut self, words: &mut [u64], size: usize) {
         for word in words.iter_mut() {
             *word = match self.byte() {
@@ -35,7 +36,7 @@ impl Bytes<'_> {
         if self.byte() < 240 {
             words[0] = words[0] & !0xFFFF_FFFF | size as u64;
         } else {
-            // Never more than there is.
+            // Never more than exists.
             words[0] = words[0] & !0xFFFF_FFFF | u64::from(self.byte()) % (8 * words.len() as u64 + 1);
         }
     }
@@ -64,8 +65,8 @@ fn play(bytes: &mut Bytes<'_>) {
     };
     let mut needed = 0;
     let mut runtime = null_mut();
-    // SAFETY: here and below all pointers are null, or lead to what their types say; sizes in front are never more than
-    // what is there, and arrays are as long as their counts.
+    // SAFETY: here and below all pointers are null or valid for their types; size fields are never larger
+    // than the memory, and arrays are as long as their counts.
     unsafe {
         assert_eq!(standstill_runtime_size(&config, &mut needed), 0);
         let mut storage = vec![0_u128; needed.div_ceil(16)];
@@ -78,7 +79,7 @@ fn play(bytes: &mut Bytes<'_>) {
         let mut keys = [0_u64; 6];
         let mut now = 0_i64;
         let mut next = 0;
-        // Of recorders: one that was taken away is not freed before the runtime.
+        // Of recorders: a removed one is not freed before the runtime.
         let mut memories = Vec::new();
         for _ in 0..600 {
             if bytes.0.is_empty() {
@@ -94,7 +95,7 @@ fn play(bytes: &mut Bytes<'_>) {
                     drive[0] = size_of::<DriveSetup>() as u64;
                     standstill_axis_defaults(from_mut(&mut axis).cast());
                     standstill_drive_defaults(from_mut(&mut drive).cast());
-                    // Limits that do, then a few words of anything.
+                    // Valid limits, then a few random words.
                     for (word, limit) in axis[1..6].iter_mut().zip([10.0, 100.0, 100.0, 1000.0, 20_000.0_f64]) {
                         *word = limit.to_bits();
                     }
@@ -121,7 +122,7 @@ fn play(bytes: &mut Bytes<'_>) {
                     if given[0] as u32 as usize >= 8 {
                         given[0] = given[0] & 0xFFFF_FFFF | u64::from(bytes.byte() % 4) << 32;
                     }
-                    // Arrays: of words that are there, and counts that they have room for or the library refuses.
+                    // Arrays of existing words, with counts that fit or that the library refuses.
                     let records = [0x3FF0_0000_0000_0000_u64; 40 * 5];
                     let layout = info.flat_inputs(standstill_fb::flat::Pointer::NATIVE);
                     for (index, _) in info.tables() {

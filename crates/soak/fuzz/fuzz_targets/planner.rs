@@ -1,4 +1,4 @@
-//! Chains of replans that libFuzzer makes: every plan is held against what is claimed of plans.
+//! Chains of replans that libFuzzer makes: every plan is checked against the claims about plans.
 
 #![no_main]
 

@@ -20,8 +20,8 @@ use crate::rules::Kind;
 /// Most axes of a machine.
 const AXES: u64 = 3;
 
-/// Played more often than chance would have it: a curve, one that waits for an edge and one that ends that, or limits that
-/// are written while moves blend.
+/// Sequences that are played more often than by chance: a curve, a command that waits for an edge and one
+/// that ends it, limits that are written while moves blend.
 const FAVOURED: [&[&str]; 22] = [
     &["MC_PositionProfile"],
     &["MC_VelocityProfile"],
@@ -107,8 +107,8 @@ fn limits(random: &mut Random, cycle: f64) -> Limits {
     }
 }
 
-/// An axis; every part of its configuration differs from the default once in some axes. In every eighth some rates are what
-/// programs write for "no limit"; its velocity stays, so that programs know how fast it is.
+/// An axis; every part of its configuration differs from the default in some axes. In every eighth some
+/// rates are the usual values for "no limit"; its velocity stays, so that programs know how fast it is.
 fn axis(random: &mut Random, cycle: f64) -> AxisSetup {
     let typical = limits(random, cycle);
     let limits = if random.one_in(8) {
@@ -171,11 +171,11 @@ fn axis(random: &mut Random, cycle: f64) -> AxisSetup {
             on_master_lost: one_of(random, &[OnMasterLost::Error, OnMasterLost::Hold]),
             actual_filter: one_of(random, &[0, 1, 4, 16, 64]),
             actual_lead: random.one_in(4),
-            // Not a draw of its own: seeds that found something keep what they stand for.
+            // Not a draw of its own, so that seeds that found something keep their meaning.
             cam_continuity: (limits.velocity.to_bits() & 1 == 0).then_some(0),
         };
     }
-    // What the configuration says no to goes.
+    // A value that the configuration refuses is removed.
     if config.check().is_err() {
         config.profile = MoveProfile::Overlapped;
     }
@@ -192,7 +192,7 @@ fn axis(random: &mut Random, cycle: f64) -> AxisSetup {
     AxisSetup { config, drive }
 }
 
-/// What is looked after beside the set-points.
+/// The supervision beside the set-points.
 fn supervise(random: &mut Random, config: &mut AxisConfig, cycle: f64) {
     let way = config.limits.velocity * cycle;
     if random.one_in(6) {
@@ -213,7 +213,7 @@ fn supervise(random: &mut Random, config: &mut AxisConfig, cycle: f64) {
     }
 }
 
-/// What else a machine decides of its axes.
+/// Other settings of a machine's axes.
 fn choices(random: &mut Random, config: &mut AxisConfig) {
     let limits = config.limits;
     if random.one_in(5) {
@@ -296,7 +296,7 @@ fn drive(random: &mut Random, config: &AxisConfig, cycle: f64) -> DriveSetup {
     }
 }
 
-/// A motor that can turn what the axis asks for, most of the time.
+/// A motor that can usually turn what the axis asks for.
 fn motor(random: &mut Random, limits: &Limits) -> MotorSetup {
     let inertia = random.log_between(0.01, 10.0);
     let rated_torque = inertia * limits.acceleration * random.log_between(0.3, 3.0);
@@ -359,7 +359,7 @@ fn plant(
     DriveSetup::Plant(setup.with_gains(cycle))
 }
 
-/// What stands along the travel, now and then.
+/// Switches along the travel, sometimes.
 fn switches(random: &mut Random, config: &AxisConfig, cycle: f64) -> Switches {
     let way = config.limits.velocity * cycle;
     let mut place = |least: f64, most: f64| config.position + way * random.log_between(least, most);
@@ -381,7 +381,7 @@ fn switches(random: &mut Random, config: &AxisConfig, cycle: f64) -> Switches {
     }
 }
 
-/// A homing that the drive has what is needed for; what the configuration says no to goes.
+/// A homing whose needs the drive meets; a value that the configuration refuses is removed.
 fn homing(random: &mut Random, config: &mut AxisConfig, drive: &DriveSetup, cycle: f64) {
     if !random.one_in(2) {
         return;
@@ -530,7 +530,7 @@ fn tables(random: &mut Random, info: &BlockInfo, limits: &Limits, cycle: f64) ->
 /// Points of a profile that most axes can follow from rest: time since the one before (ns), value, and whether the
 /// curve is level there.
 fn points(random: &mut Random, of: &str, limits: &Limits, cycle: f64) -> Vec<Vec<f64>> {
-    // Time in which the axis gets to its velocity and back, by all that limits it.
+    // Time in which the axis reaches its velocity and comes back, by all its limits.
     let jerk = limits.jerk.min(limits.acceleration / cycle);
     let snap = limits.snap.min(jerk / cycle);
     let slow = limits.velocity / limits.acceleration.min(limits.deceleration)
@@ -608,7 +608,7 @@ mod tests {
     use standstill_fb::Group;
     use std::collections::BTreeSet;
 
-    /// A block that programs do not play would be believed without being tried.
+    /// A block that programs do not play would count as correct without a test.
     #[test]
     fn every_block_of_an_axis_is_played() {
         for info in REGISTRY.iter().filter(|info| info.group != Group::Standard) {
@@ -668,7 +668,7 @@ mod tests {
         ]
         .concat();
         let missing: Vec<_> = all.iter().filter(|path| !played.contains(*path)).collect();
-        // What is drawn lies around the place where an axis begins, so that may be 0.
+        // Drawn places are around the place where an axis begins, so that place may be 0.
         assert_eq!(missing, ["axis.position"]);
     }
 }

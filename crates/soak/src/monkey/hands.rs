@@ -1,4 +1,4 @@
-//! Who does things: a monkey that presses everything, and its minutes read out again.
+//! The actors of a run: a monkey that presses everything, and a replay of its record.
 
 use super::draw::one_of;
 use super::run::{Hands, Instance};
@@ -14,7 +14,7 @@ const PAUSE: f64 = 150.0;
 /// One in this many numbers is one that no pin should get.
 const BAD: u64 = 60;
 
-/// Numbers no pin should have.
+/// Numbers that no pin should get.
 const BAD_NUMBERS: [f64; 9] = [
     f64::NAN,
     1e-300,
@@ -27,7 +27,7 @@ const BAD_NUMBERS: [f64; 9] = [
     1e9,
 ];
 
-/// Presses at random, and keeps minutes.
+/// Presses at random, and keeps a record.
 #[derive(Debug)]
 pub struct Monkey<'a> {
     random: &'a mut Random,
@@ -43,7 +43,7 @@ pub struct Monkey<'a> {
 }
 
 impl<'a> Monkey<'a> {
-    /// Draws from `random` as it goes.
+    /// Takes its numbers from `random`.
     pub fn new(random: &'a mut Random, cycle: f64) -> Self {
         Self {
             random,
@@ -55,7 +55,7 @@ impl<'a> Monkey<'a> {
         }
     }
 
-    /// What is done in this scan.
+    /// The actions in this scan.
     fn draw(&mut self, machine: &Bench, instances: &[Instance]) {
         self.broken.resize(machine.axes().len(), false);
         let axis = self.random.below(machine.axes().len() as u64) as usize;
@@ -88,7 +88,7 @@ impl<'a> Monkey<'a> {
             });
             return;
         }
-        // Out of operation what brings it back is pressed more often.
+        // Out of operation, the inputs that bring it back are pressed more often.
         let wanted = match state {
             AxisState::ErrorStop if self.random.one_in(2) => Some("MC_Reset"),
             AxisState::Disabled if self.random.one_in(2) => Some("MC_Power"),
@@ -120,7 +120,7 @@ impl<'a> Monkey<'a> {
         });
     }
 
-    /// Some inputs of an instance take other values.
+    /// Changes some inputs of an instance.
     fn fill_in(&mut self, block: usize, instance: &Instance, axis: &Axis, actions: &mut Vec<Action>) {
         for (pin, entry) in instance.block.info().pins().enumerate() {
             if entry.direction != Direction::Input || Some(pin) == instance.trigger {
@@ -134,7 +134,7 @@ impl<'a> Monkey<'a> {
         }
     }
 
-    /// A value for a pin; none leaves it as it is.
+    /// A value for a pin; none leaves it unchanged.
     fn value(&mut self, instance: &Instance, pin: &Pin, axis: &Axis) -> Option<Value> {
         let (kind, block) = (instance.kind, instance.block.info().name);
         match pin.ty {
@@ -156,8 +156,7 @@ impl<'a> Monkey<'a> {
                 Some(Value::Lreal(one_of(self.random, &BAD_NUMBERS)))
             }
             PinType::Lreal => self.number(block, pin.name, axis).map(Value::Lreal),
-            // Which tracks work.
-            // A slot, and how often it was given away.
+            // The mask of tracks, or a cam's number: a slot, and the number of times it was used.
             PinType::Dword if pin.name == "CamTableID" => {
                 let (slot, generation) = (self.random.below(3) as u32, 1 + self.random.below(4) as u32);
                 Some(Value::Dword((generation << 16) | (slot + 1)))
@@ -169,7 +168,7 @@ impl<'a> Monkey<'a> {
             } else {
                 2 + self.random.below(4) as i16
             })),
-            // Ratios, small ones more often, now and then none.
+            // Ratios, small ones more often, sometimes 0.
             PinType::Int => Some(Value::Int(self.random.below(9) as i16 - 4)),
             PinType::Uint => Some(Value::Word(self.random.below(5) as u16)),
             PinType::Word | PinType::Time | PinType::Axis(_) | PinType::Table(_) => None,
@@ -189,7 +188,7 @@ impl<'a> Monkey<'a> {
                     _ => near,
                 })
             }
-            // Of a profile: where the axis is, or 0, or anywhere.
+            // For a profile: the place of the axis, or 0, or anywhere.
             "Offset" if block == "MC_PositionProfile" => match self.random.below(8) {
                 0 => Some(0.0),
                 1 => Some(self.length(way)),
@@ -200,7 +199,7 @@ impl<'a> Monkey<'a> {
             } else {
                 0.0
             }),
-            // Now and then one with which the times are none.
+            // Sometimes one with which the times become 0.
             "TimeScale" if self.random.one_in(8) => Some(self.random.log_between(1e-300, 1e300)),
             "TimeScale" => Some(self.random.between(0.8, 2.0)),
             // Of a parameter: a software limit near, or a limit of motions.
@@ -209,7 +208,7 @@ impl<'a> Monkey<'a> {
             "PositionScale" | "VelocityScale" | "AccelerationScale" => Some(self.random.between(-1.0, 1.0)),
             // Of the window of a probe.
             "FirstPosition" | "LastPosition" => Some(axis.setpoint().position + self.length(way)),
-            // It is not supported, which need not be tried all the time.
+            // It is not supported, so it need not be tried often.
             "MasterStartDistance" => Some(if self.random.one_in(10) { way } else { 0.0 }),
             "MasterSyncPosition" => Some(if self.random.one_in(2) {
                 0.0
@@ -232,7 +231,7 @@ impl<'a> Monkey<'a> {
             }
             "Acceleration" => self.magnitude(limits.acceleration),
             "Deceleration" => self.magnitude(limits.deceleration),
-            // Unlimited, every power is as good.
+            // If unlimited, every power of ten is equally good.
             "Jerk" if limits.jerk.is_infinite() => {
                 Some(limits.acceleration / self.cycle * self.random.log_between(1e-3, 1e18))
             }
@@ -242,12 +241,12 @@ impl<'a> Monkey<'a> {
             }
             "Jerk" => self.magnitude(limits.jerk),
             "Snap" => self.magnitude(limits.snap),
-            // Factors, and whatever comes: around 1.
+            // Factors and all others: around 1.
             _ => Some(self.random.between(0.0, 1.25)),
         }
     }
 
-    /// Some scans' way, in either direction, now and then none.
+    /// A way of some scans, in either direction, sometimes 0.
     fn length(&mut self, way: f64) -> f64 {
         if self.random.one_in(12) {
             return 0.0;
@@ -256,7 +255,7 @@ impl<'a> Monkey<'a> {
         self.random.signed(length)
     }
 
-    /// Half of the time what the axis has.
+    /// The default of the axis in half of the cases.
     fn magnitude(&mut self, limit: f64) -> Option<f64> {
         if self.random.one_in(2) {
             Some(0.0)
@@ -265,7 +264,7 @@ impl<'a> Monkey<'a> {
         }
     }
 
-    /// Part of a limit, now and then more than it.
+    /// A part of a limit, sometimes more than it.
     fn part(&mut self, limit: f64) -> Option<f64> {
         limit.is_finite().then(|| {
             let part = if self.random.one_in(20) { 1.5 } else { 1.0 };
@@ -289,7 +288,7 @@ impl Hands for Monkey<'_> {
     }
 }
 
-/// Does what stands in the steps of a scenario.
+/// Performs the steps of a scenario.
 #[derive(Debug)]
 pub struct Replay<'a> {
     steps: core::slice::Iter<'a, Step>,

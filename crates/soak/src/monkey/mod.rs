@@ -1,7 +1,9 @@
-//! A monkey at the pins of real blocks over real axes: random programs, and every rule held in every scan.
+//! A monkey at the pins of real blocks over real axes: random programs, and every rule checked in every
+//! scan.
 //!
-//! An episode is a machine drawn at random and what a monkey does with it for some scans. What it does is written
-//! down, so an episode that breaks a rule can be repeated, made smaller and told as a scan script.
+//! An episode is a machine drawn at random and the actions of a monkey on it for some scans. The actions
+//! are recorded, so an episode that breaks a rule can be repeated, made smaller and written as a scan
+//! script.
 
 mod draw;
 mod hands;
@@ -17,12 +19,12 @@ pub use shrink::{shrink, shrink_by};
 use crate::random::Random;
 use hands::{Monkey, Replay};
 
-/// What came of an episode.
+/// The result of an episode.
 #[derive(Clone, Debug)]
 pub struct Episode {
     /// What was seen.
     pub seen: Seen,
-    /// The first rule that was broken, and what it takes to do so.
+    /// The first broken rule, and the scenario that breaks it.
     pub failure: Option<(Failure, Scenario)>,
 }
 
@@ -35,7 +37,7 @@ pub fn play(seed: u64, number: u64, scans: u64) -> Episode {
     }
 }
 
-/// As [`play`], with the minutes whatever came of it.
+/// As [`play`], with the record in every case.
 pub fn record(seed: u64, number: u64, scans: u64) -> (Seen, Option<Failure>, Scenario) {
     let mut random = Random::new(seed, number);
     let mut scenario = draw::scenario(&mut random, scans);

@@ -1,4 +1,4 @@
-//! The run of a scenario through the executor, with every rule held in every scan.
+//! The run of a scenario through the executor, with every rule checked in every scan.
 
 use super::scenario::{Action, Bench, FAULT_CODE, FaultKind, Scenario, axis_id, kind_of};
 use crate::rules::arrows::{Part, Reach};
@@ -15,10 +15,10 @@ use standstill_drives::simulated::SimulatedDrive;
 use standstill_fb::{AnyInstance, Context, Value};
 use standstill_scan::{Executor, ProgramConfig, ProgramFault, ProgramId, Programs, ScanTime, TaskConfig};
 
-/// Who does something in a scan.
+/// The actor in a scan.
 pub trait Hands {
-    /// What is done at the latch of `scan`; called with the machine and the instances as the scan before left
-    /// them.
+    /// The action at the latch of `scan`; called with the machine and the instances in the state after
+    /// the last scan.
     fn next(&mut self, scan: u64, machine: &Bench, instances: &[Instance]) -> Option<Action>;
 }
 
@@ -27,21 +27,21 @@ pub trait Hands {
 pub struct Instance {
     /// The block.
     pub block: BlockInstance,
-    /// What it is to the rules.
+    /// Its kind for the rules.
     pub kind: Kind,
     /// Index of its axis.
     pub axis: usize,
-    /// What its last call left.
+    /// The outputs of its last call.
     pub shown: Shown,
     /// Execute, Enable or JogForward, if it has one of them.
     pub trigger: Option<usize>,
-    /// Execute or Enable as it stands, and as it stood at the last call.
+    /// Execute or Enable now, and at the last call.
     pub on: bool,
     was_on: bool,
     outputs: Outputs,
     command: Option<CommandId>,
     fate: Option<Fate>,
-    /// What it gave last, ended or not, and what it had in motion then (B19).
+    /// Its last command, ended or not, and the one it had in motion then (B19).
     given: [Option<CommandId>; 2],
 }
 
@@ -69,15 +69,15 @@ pub enum Who {
     Axis(usize),
 }
 
-/// What was seen in a run.
+/// The observations of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seen {
     /// Scans done.
     pub scans: u64,
     /// Commands accepted.
     pub accepted: u64,
-    /// Commands that ended in Done, CommandAborted and Error; those replaced by their own instance are not among
-    /// them.
+    /// Commands that ended in Done, CommandAborted and Error, except those replaced by their own
+    /// instance.
     pub ended: [u64; 3],
     /// Commands refused.
     pub refused: u64,
@@ -85,7 +85,7 @@ pub struct Seen {
     pub faults: u64,
     /// Stops in the middle of a reversal, which turned back.
     pub turned_back: u64,
-    /// Folds what was published and shown, to the bit.
+    /// Hash of all that was published and shown, to the bit.
     pub digest: u64,
 }
 
@@ -97,7 +97,7 @@ impl Seen {
     }
 }
 
-/// One program: calls every instance and holds the rules.
+/// One program: calls every instance and checks the rules.
 struct Run<'a, H> {
     hands: &'a mut H,
     instances: Vec<Instance>,
@@ -108,14 +108,15 @@ struct Run<'a, H> {
     /// The state of each axis as last seen.
     states: Vec<AxisState>,
     following: Vec<bool>,
-    /// The set-point of each axis is measured: a torque is held, or what takes over from one is not at rest yet.
+    /// Whether the set-point of each axis is measured: a torque is held, or the motion that took over
+    /// from one is not at rest yet.
     measured: Vec<bool>,
     /// The motion of each axis that no instance follows, as recorded.
     orphans: Vec<Option<CommandId>>,
     /// Records taken from the ring so far, and those of this scan.
     taken: u64,
     records: Vec<Record>,
-    /// How often the coordinates of each axis had moved when they were looked at last.
+    /// Number of coordinate moves of each axis at the last check.
     moves: Vec<u32>,
     failure: Option<Failure>,
     seen: Seen,
@@ -142,7 +143,7 @@ impl Instance {
         }
     }
 
-    /// Whether it waits in the buffer of its axis, as far as its outputs tell.
+    /// Whether it waits in the buffer of its axis, as far as its outputs show.
     fn waits(&self) -> bool {
         let elsewhere =
             matches!(self.block.info().name, "MC_Reset" | "MC_TouchProbe") || self.kind.is_superimposed();
@@ -165,7 +166,7 @@ impl Instance {
     }
 }
 
-/// Runs `scenario` with `hands` doing what happens instead of its steps.
+/// Runs `scenario` with `hands` as the actor instead of its steps.
 ///
 /// Ends at the first broken rule.
 pub fn run(scenario: &Scenario, hands: &mut impl Hands) -> (Seen, Option<Failure>) {
@@ -255,7 +256,7 @@ impl<H: Hands> Run<'_, H> {
         }
     }
 
-    /// State changes of all axes since they were last looked at.
+    /// State changes of all axes since the last check.
     fn follow_states(&mut self, part: Part, scan: u64, axes: &[Axis<Standard>]) {
         for (index, axis) in axes.iter().enumerate() {
             let (was, now) = (self.states[index], axis.state());
@@ -268,7 +269,8 @@ impl<H: Hands> Run<'_, H> {
         }
     }
 
-    /// Under a torque the set-point is the actual state (docs/torque.md), which no limit of the axis binds.
+    /// Under a torque the set-point is the actual state (docs/torque.md), which no limit of the axis
+    /// bounds.
     fn follow_torques(&mut self, axes: &[Axis<Standard>]) {
         for (measured, axis) in self.measured.iter_mut().zip(axes) {
             let is_held = axis.order().torque.is_some();
@@ -276,7 +278,7 @@ impl<H: Hands> Run<'_, H> {
         }
     }
 
-    /// Calls an instance and looks at what it shows.
+    /// Calls an instance and checks its outputs.
     fn call(&mut self, index: usize, context: &mut Context<'_, Standard>) -> Result<(), Broken> {
         let instance = &mut self.instances[index];
         let axis = &context.axes[instance.axis];
@@ -293,7 +295,7 @@ impl<H: Hands> Run<'_, H> {
         instance.block.call(context);
         let axis = &context.axes[instance.axis];
         let (was, now) = (instance.shown, instance.outputs.read(&instance.block));
-        // An edge that is ignored is none.
+        // An ignored edge does not count as one.
         let ignored = ignoring && axis.newest_command() == newest;
         let (executed, execute) = (instance.was_on || ignored, instance.on);
         instance.was_on = execute;
@@ -328,12 +330,13 @@ impl<H: Hands> Run<'_, H> {
                 .find(|id| axis.active_command() == Some(*id));
             instance.given = [Some(axis.newest_command()), moving];
         } else if now.error && instance.command.is_some() {
-            // What has completed and goes on, as a profile with a velocity at its end, needs nobody.
+            // A command that has completed and continues, as a profile with a velocity at its end, needs
+            // no follower.
             let is_over = |id: &CommandId| axis.fate(*id) == Fate::Done;
             instance.given = instance.given.map(|id| id.filter(is_over));
         }
         if instance.kind == Kind::Jog {
-            // Its commands follow each other; what became of one of them is not what it shows.
+            // Its commands follow each other, so the fate of one of them is not its output.
             if axis.newest_command() != newest {
                 self.seen.accepted += 1;
                 (instance.command, instance.fate) = (Some(axis.newest_command()), None);
@@ -375,7 +378,7 @@ impl<H: Hands> Run<'_, H> {
         Ok(())
     }
 
-    /// What is so after the motion step.
+    /// The checks after the motion step.
     fn check_axis(
         &mut self,
         index: usize,
@@ -387,7 +390,7 @@ impl<H: Hands> Run<'_, H> {
         self.seen.fold(setpoint.position.to_bits() ^ (state as u64) << 52);
         let following = axis.is_following();
         if following || self.following[index] || self.measured[index] {
-            // On its way back into operation it takes over where the feedback is.
+            // On its way back into operation it takes over at the actual place.
             self.tracks[index].forget();
         }
         if self.measured[index] {
@@ -438,7 +441,7 @@ impl<H: Hands> Run<'_, H> {
         }
         let (state, owned) = (axis.state(), axis.active_command().is_some());
         self.check_followed(index, axis)?;
-        // What is superimposed is asked for only where there may be something: the answer is long.
+        // The superimposed motion is read only if there may be one, because the answer is long.
         let added = if beside_held || (state == AxisState::DiscreteMotion && !owned) {
             axis.outlook().superimposed.and_then(|beside| beside.command)
         } else {
@@ -476,7 +479,8 @@ impl<H: Hands> Run<'_, H> {
         )
     }
 
-    /// No motion without a block: what owns the axis or waits is an instance's, or recorded to be nobody's any more.
+    /// No motion without a block: an owner or a waiting command belongs to an instance, or is recorded as
+    /// orphaned.
     fn check_followed(&self, index: usize, axis: &Axis<Standard>) -> Result<(), Broken> {
         let instances = || self.instances.iter().filter(|instance| instance.axis == index);
         let broken = |what| Err(Broken { id: "R97", what });
@@ -501,8 +505,8 @@ impl<H: Hands> Run<'_, H> {
         Ok(())
     }
 
-    /// Takes what was recorded since the last call. The ring holds [`LOG_KEPT`] records and a scan may have more, so this is
-    /// called after every block.
+    /// Takes the records since the last call. The ring holds [`LOG_KEPT`] records and a scan may have
+    /// more, so this is called after every block.
     fn collect(&mut self, log: &Log) {
         let new = log.total() - self.taken;
         assert!(new <= LOG_KEPT as u64, "the ring has lost some of {new} records");
@@ -510,7 +514,7 @@ impl<H: Hands> Run<'_, H> {
         self.taken = log.total();
     }
 
-    /// Where coordinates moved, differences mean nothing.
+    /// Across a move of coordinates, differences have no meaning.
     fn follow_coordinates(&mut self, axes: &[Axis<Standard>]) {
         for (index, axis) in axes.iter().enumerate() {
             let moves = axis.coordinates();
@@ -522,7 +526,7 @@ impl<H: Hands> Run<'_, H> {
         }
     }
 
-    /// What was recorded in this scan: the rules that ask for a record.
+    /// The records of this scan, and the rules that require a record.
     fn read_records(&mut self, time: ScanTime, machine: &Bench) {
         self.collect(machine.log());
         let mut found = None;
@@ -576,8 +580,8 @@ impl<H: Hands> Run<'_, H> {
     }
 }
 
-/// What the jerk and the snap of a plan are off by for the rounding of positions: nothing, but on a curve, whose stretches have
-/// polynomials of degree 7 (docs/profiles.md).
+/// The error of a plan's jerk and snap by the rounding of positions: none, except on a curve, whose
+/// stretches have polynomials of degree 7 (docs/profiles.md).
 fn resolution(plan: &StandardPlan) -> [f64; 2] {
     let StandardPlan::Profile(profile) = plan else {
         return [0.0; 2];
@@ -611,8 +615,8 @@ fn ended(fate: Fate) -> [bool; 3] {
     }
 }
 
-/// A command waits, is active, ends, and nothing of that twice; MC_Stop is done while it holds the axis, and a
-/// superimposed one may have to wait again.
+/// A command waits, is active, and ends, each at most once. MC_Stop is done while it holds the axis, and
+/// a superimposed command may have to wait again.
 fn check_life(was: Option<Fate>, now: Fate, kind: Kind) -> Result<(), Broken> {
     let stage = |fate: Fate| match fate {
         Fate::Waiting => 0,

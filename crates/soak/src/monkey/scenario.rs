@@ -1,4 +1,4 @@
-//! A run as data: axes, block instances in call order, and what is done to them in which scan.
+//! A run as data: axes, block instances in call order, and the actions in each scan.
 
 use crate::rules::Kind;
 use standstill_axis::{AxisConfig, AxisId, Standard};
@@ -10,7 +10,7 @@ use standstill_scan::Machine;
 /// Axes over simulated drives, as scan scripts have them.
 pub type Bench = Machine<Standard, SimulatedDrive>;
 
-/// Everything a run follows from.
+/// The full definition of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     /// Length of a scan (ns).
@@ -21,7 +21,7 @@ pub struct Scenario {
     pub axes: Vec<AxisSetup>,
     /// Instances in call order.
     pub blocks: Vec<BlockSetup>,
-    /// What happens, in order of scans.
+    /// The actions, in order of scans.
     pub steps: Vec<Step>,
 }
 
@@ -119,23 +119,24 @@ impl FaultKind {
 /// The code faults show.
 pub const FAULT_CODE: u16 = 7;
 
-/// What a block is to the rules where its tables are not empty.
+/// The kind of a block for the rules if its tables are not empty.
 pub fn kind_of(info: &BlockInfo) -> Kind {
     match info.name {
-        // Without a drive that holds a torque it is always refused, and that must leave the axis alone.
+        // Without a drive that holds a torque it is always refused, and the refusal must not change the
+        // axis.
         "MC_PositionProfile" | "MC_VelocityProfile" | "MC_AccelerationProfile" | "MC_TorqueControl" => {
             Kind::Motion
         }
-        // The drive sees no edge: it waits until it is aborted, or finds the probe taken.
+        // The drive has no edges: it waits until it is aborted, or finds the probe in use.
         "MC_TouchProbe" => Kind::Administrative,
         "MC_DigitalCamSwitch" | "MC_ReadActualTorque" => Kind::Reading,
         // Their pins are the inputs and outputs of an axis.
         "MC_ReadDigitalInput" | "MC_ReadDigitalOutput" => Kind::Reading,
         "MC_WriteDigitalOutput" => Kind::Administrative,
         "MC_GearIn" | "MC_GearInPos" | "MC_CombineAxes" | "MC_CamIn" => Kind::Motion,
-        // Beside the coupling, which owns the axis; without one it is refused.
+        // It works beside the coupling, which owns the axis; without one it is refused.
         "MC_PhasingAbsolute" | "MC_PhasingRelative" => Kind::Administrative,
-        // Its command owns the axis, but the block does not show that.
+        // Its command owns the axis, but the block's outputs do not show that.
         "MC_GearOut" | "MC_CamOut" => Kind::Administrative,
         // It takes some calls, and moves nothing.
         "MC_CamTableSelect" => Kind::Administrative,
@@ -149,8 +150,8 @@ pub fn axis_pins(info: &'static BlockInfo) -> impl Iterator<Item = (usize, &'sta
     pins.filter(|(_, pin)| matches!(pin.ty, PinType::Axis(_)))
 }
 
-/// The axis of `count` at a pin of a block of `axis`: a master is the next one, so that all of them could make a ring, and a
-/// second master the one after that, the same one of two.
+/// The axis of `count` at a pin of a block of `axis`. A master is the next axis, so that all of them
+/// could form a ring; a second master is the one after that, which is the same one if there are two.
 pub fn wired(pin: &Pin, axis: usize, count: usize) -> usize {
     let further = match pin.name {
         "Master" | "Master1" => 1,

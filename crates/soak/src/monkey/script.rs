@@ -36,7 +36,7 @@ impl Scenario {
             .map_or("", |pin| pin.name)
     }
 
-    /// The script. With a failure it claims that what broke the rule does not happen.
+    /// The script. With a failure it claims that the broken rule holds.
     pub fn script(&self, failure: Option<&Failure>) -> String {
         let mut text = String::new();
         let title = failure.map_or_else(
@@ -113,7 +113,7 @@ impl Scenario {
         text
     }
 
-    /// That what broke the rule does not happen.
+    /// The claim that the broken rule holds.
     fn claim(&self, failure: &Failure) -> String {
         let scan = failure.scan;
         let range = format!("    {{\"from\": {scan}, \"to\": {scan}");
@@ -192,7 +192,7 @@ fn cell_text(field: &Pin, cell: f64) -> String {
         PinType::Bool => (cell != 0.0).to_string(),
         PinType::Lreal => number(cell),
         PinType::Time => {
-            // What is more is read as the longest TIME there is.
+            // A larger value is read as the longest possible TIME.
             let ns = (cell.abs() as u64).min(i64::MAX as u64);
             let sign = if cell < 0.0 { "-" } else { "" };
             format!("\"T#{sign}{}us{}ns\"", ns / 1000, ns % 1000)
@@ -213,14 +213,14 @@ fn members(axis: &AxisSetup) -> Vec<String> {
     members
 }
 
-/// A drive that is not as ideal drives are by default.
+/// A drive that differs from the default ideal drive.
 fn drive<T>(name: &str, object: &Object<T>, setup: &T, plain: &T) -> Option<String> {
     let members = keys(object, setup, plain);
     let is_plain = name == "ideal" && members.is_empty();
     (!is_plain).then(|| format!("\"drive\": {{\"{name}\": {{{}}}}}", members.join(", ")))
 }
 
-/// The keys of an object that differ from the default, and those that it needs; none if there is nothing to say.
+/// The keys of an object that differ from the default, and those that it needs; none if there are none.
 fn keys<T>(object: &Object<T>, of: &T, plain: &T) -> Vec<String> {
     let differs =
         |key: &&Key<T>| !key.is_same(of, plain) || key.null.as_ref().is_some_and(|null| (null.is)(of));
@@ -232,7 +232,7 @@ fn keys<T>(object: &Object<T>, of: &T, plain: &T) -> Vec<String> {
         .collect()
 }
 
-/// What a key holds, as a script has it.
+/// The value of a key, in the form of a script.
 fn held<T>(key: &Key<T>, of: &T, plain: &T) -> Option<String> {
     if key.null.as_ref().is_some_and(|null| (null.is)(of)) {
         return Some("null".to_owned());

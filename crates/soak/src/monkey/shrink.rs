@@ -8,7 +8,7 @@ use standstill_axis::{AxisConfig, Limits, StartState};
 use standstill_drives::simulated::DriveSetup;
 use standstill_fb::Value;
 
-/// Scans run at most to find a smaller one.
+/// Most scans that are run to find a smaller one.
 const BUDGET: u64 = 4_000_000;
 
 struct Shrinker<J> {
@@ -19,7 +19,7 @@ struct Shrinker<J> {
     budget: u64,
 }
 
-/// The smallest scenario found that breaks the same rule as `scenario`, and how it does so.
+/// The smallest scenario found that breaks the same rule as `scenario`, and its failure.
 pub fn shrink(failure: Failure, scenario: Scenario) -> (Failure, Scenario) {
     shrink_by(failure, scenario, |candidate| {
         let (seen, failure) = replay(candidate);
@@ -27,7 +27,8 @@ pub fn shrink(failure: Failure, scenario: Scenario) -> (Failure, Scenario) {
     })
 }
 
-/// As [`shrink`], with another judge: what it tells of a scenario is how many scans it ran, and what broke in them.
+/// As [`shrink`], with another judge, which returns the number of scans that a scenario ran and its
+/// failure.
 pub fn shrink_by<J>(failure: Failure, scenario: Scenario, judge: J) -> (Failure, Scenario)
 where
     J: Fn(&Scenario) -> (u64, Option<Failure>),
@@ -76,7 +77,7 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
         }
     }
 
-    /// Nothing happens after the failure.
+    /// Removes all actions after the failure.
     fn end(&mut self) {
         let last = self.failure.scan;
         self.best.scans = last + 1;
@@ -141,7 +142,7 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
         }
     }
 
-    /// Every part of a configuration as it is by default.
+    /// Sets each part of a configuration to its default.
     fn plainer_axes(&mut self) {
         let mut keys: Vec<_> = AXIS.keys.iter().collect();
         AXIS.each(&mut |key| keys.push(key));
@@ -166,7 +167,7 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
         }
     }
 
-    /// Values that hold from the start, instead of steps.
+    /// Replaces steps by values that hold from the start.
     fn fewer_changes(&mut self) {
         let mut index = 0;
         while index < self.best.steps.len() {
@@ -230,7 +231,7 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
         let scan = |index: usize| self.best.steps.get(index).map_or(0, |step| step.scan);
         match index.checked_sub(1) {
             Some(before) => scan(index) - scan(before),
-            // A script's edge needs a scan before it.
+            // An edge of a script needs a scan before it.
             None => scan(index).saturating_sub(1),
         }
     }
@@ -272,7 +273,7 @@ fn without(config: &AxisConfig, path: &str) -> AxisConfig {
     plain
 }
 
-/// Every number of a scenario that could be another one; one of them becomes another.
+/// Every number of a scenario that can be changed; one of them is changed.
 fn numbers(scenario: &mut Scenario, change: Option<(usize, f64)>) -> Vec<f64> {
     let mut all = Vec::new();
     let mut look = |number: f64| {

@@ -1,4 +1,4 @@
-//! States change only along the arrows of the state diagram, and each arrow has its part of a scan.
+//! States change only along the arrows of the state diagram, and each arrow belongs to a part of a scan.
 
 use super::{Broken, rule};
 use standstill_axis::{ARROWS, AxisEvent, AxisState};
@@ -10,7 +10,7 @@ pub enum Part {
     Feedback,
     /// One call of a block.
     Call,
-    /// The call in which a profile that owns the axis gives its points, or cannot.
+    /// The call in which a profile that owns the axis gives its points, or fails to.
     DueCall,
     /// The motion step.
     Motion,
@@ -22,7 +22,8 @@ impl Part {
         use AxisEvent as E;
         match self {
             Self::Feedback => (
-                // A queued MC_SetPosition takes effect before the blocks, and what waits behind it starts.
+                // A queued MC_SetPosition takes effect before the blocks, and the command behind it
+                // starts.
                 &[
                     E::PowerOn,
                     E::PowerOff,
@@ -47,8 +48,8 @@ impl Part {
                 ],
                 1,
             ),
-            // A profile that cannot start gives way to the next command, and without one an axis in motion fails: from
-            // any state leads the arrow of an error (note 1 of the diagram).
+            // A profile that cannot start gives way to the next command. If there is none, an axis in
+            // motion fails: the arrow of an error starts at every state (note 1 of the diagram).
             Self::DueCall => (
                 &[
                     E::MotionDone,

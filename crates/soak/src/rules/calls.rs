@@ -1,10 +1,10 @@
-//! Rules on what one call of one instance shows.
+//! Rules on the outputs of one call of one instance.
 
 use super::{Broken, rule};
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, BlockInfo, Value};
 
-/// What an instance is to the rules.
+/// The kind of an instance for the rules.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// Execute, and a command that owns the axis or waits.
@@ -21,7 +21,7 @@ pub enum Kind {
     Administrative,
     /// MC_Power.
     Power,
-    /// Everything with Enable but MC_Power.
+    /// All blocks with Enable except MC_Power.
     Reading,
     /// No block of an axis, or not of its motion.
     Other,
@@ -37,7 +37,7 @@ impl Kind {
             "MC_MoveSuperimposed" => Self::Superimposed,
             "MC_HaltSuperimposed" => Self::HaltSuperimposed,
             "MC_Power" => Self::Power,
-            // They wait for, or switch, what a drive has beside its motion; here nothing comes from there.
+            // They wait for, or switch, peripherals of a drive; these drives have none.
             "MC_TouchProbe" | "MC_DigitalCamSwitch" => Self::Other,
             // The drives here have no torque.
             "MC_TorqueControl" | "MC_ReadActualTorque" => Self::Other,
@@ -52,7 +52,7 @@ impl Kind {
         }
     }
 
-    /// Whether its command lies beside the owner.
+    /// Whether its command is beside the owner.
     pub fn is_superimposed(self) -> bool {
         matches!(self, Self::Superimposed | Self::HaltSuperimposed)
     }
@@ -63,7 +63,7 @@ impl Kind {
     }
 }
 
-/// The outputs the rules look at; those a block does not have are FALSE.
+/// The outputs that the rules read; missing ones are FALSE.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Shown {
     /// Busy.
@@ -92,7 +92,7 @@ impl Shown {
         Outputs::of(block.info()).read(block)
     }
 
-    /// What does not tell errors apart.
+    /// The outputs without the number of the error.
     pub fn without_error_id(self) -> Self {
         Self { error_id: 0, ..self }
     }
@@ -103,7 +103,7 @@ impl Shown {
     }
 }
 
-/// Where the pins of [`Shown`] stand in a block's table.
+/// The indices of the pins of [`Shown`] in a block's table.
 #[derive(Clone, Copy, Debug)]
 pub struct Outputs {
     flags: [Option<usize>; 8],
@@ -131,7 +131,7 @@ impl Outputs {
         }
     }
 
-    /// As the block's last call left them.
+    /// The outputs of the block's last call.
     pub fn read(&self, block: &BlockInstance) -> Shown {
         let flag = |place: Option<usize>| place.and_then(|place| block.get(place)) == Some(Value::Bool(true));
         let [busy, active, done, aborted, error, reached, status, valid] = self.flags.map(flag);
@@ -162,7 +162,7 @@ pub struct Call {
     pub executed: bool,
     /// Execute or Enable now.
     pub execute: bool,
-    /// What the call before left.
+    /// The outputs of the last call.
     pub was: Shown,
     /// What it shows now.
     pub now: Shown,
@@ -172,7 +172,7 @@ pub struct Call {
     pub powered: bool,
 }
 
-/// Rules on what a call shows.
+/// Rules on the outputs of a call.
 ///
 /// # Errors
 /// The rule that does not hold.
@@ -213,7 +213,7 @@ pub fn check_call(call: &Call) -> Result<(), Broken> {
     }
 }
 
-/// The outputs of a command beside each other; how many of Busy, Done, CommandAborted, Error are TRUE.
+/// The outputs of a command together: how many of Busy, Done, CommandAborted and Error are TRUE.
 fn check_outputs(now: &Shown) -> Result<u32, Broken> {
     let count = u32::from(now.busy) + u32::from(now.done) + u32::from(now.aborted) + u32::from(now.error);
     rule(

@@ -1,18 +1,20 @@
 //! Set-points stay inside the software limits.
 //!
-//! A motion that was inside does not come out, whatever is commanded: what would is refused or stops before. Only
-//! ramps to rest that nobody can refuse may, those after an error or without power, and what moves the coordinates.
+//! A motion that was inside does not come out, whatever is commanded: a motion that would is refused or
+//! stops before. Exceptions are ramps to rest that cannot be refused, those after an error or without
+//! power, and moves of the coordinates.
 
 use super::{Broken, rule};
 use standstill_axis::{Axis, AxisState, Planner};
 
-/// By how much a set-point may be outside, relative to the distance between the limits.
+/// The tolerance of a set-point outside, relative to the distance between the limits.
 const RELATIVE: f64 = 1e-9;
 
 /// No software limits.
 const NONE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
-/// The software limits in force, infinite where there is none: what the configuration says, and what was written since.
+/// The software limits in force, infinite if there is none: those of the configuration, and those written
+/// since.
 fn limits_of<P: Planner>(axis: &Axis<P>) -> (f64, f64) {
     let on = |number| axis.bool_parameter(number) == Ok(true);
     let at = |number, off| {
@@ -28,7 +30,7 @@ fn limits_of<P: Planner>(axis: &Axis<P>) -> (f64, f64) {
 #[derive(Clone, Copy, Debug)]
 pub struct Fence {
     limits: (f64, f64),
-    /// It was inside with the last set-point, from where it is not to come out.
+    /// It was inside with the last set-point, and must not come out.
     inside: bool,
 }
 
@@ -46,7 +48,7 @@ impl Fence {
         self.inside = false;
     }
 
-    /// Looks at the set-point published in a scan.
+    /// Checks the set-point published in a scan.
     ///
     /// # Errors
     /// The rule that does not hold.
@@ -64,7 +66,7 @@ impl Fence {
         let near = RELATIVE * if apart.is_finite() { apart } else { position.abs() };
         let is_inside = position >= min - near && position <= max + near;
         let was_inside = core::mem::replace(&mut self.inside, is_inside);
-        // A search looks for what the limits refer to, so they do not hold yet (docs/homing.md).
+        // A homing searches the reference of the limits, so they do not apply yet (docs/homing.md).
         let exempt = matches!(axis.state(), AxisState::ErrorStop | AxisState::Homing);
         let commanded = !(axis.is_following() || exempt || axis.outlook().going_off);
         rule(

@@ -1,4 +1,4 @@
-//! A slave in gear is where the law of its gear puts it, row after row (G1, G11, G31).
+//! A slave in gear is at the place that the law of its gear gives, row after row (G1, G11, G31).
 
 use super::{Broken, rule};
 use standstill_axis::{Axis, AxisId, CommandId, Standard};
@@ -9,7 +9,7 @@ struct Leg {
     gear: (AxisId, i32, u16),
     /// Its position (u).
     at: f64,
-    /// By how much the slave sees it ahead (u of the master).
+    /// The phase shift by which the slave sees it ahead (u of the master).
     phase: f64,
     turn: Option<f64>,
 }
@@ -20,7 +20,7 @@ impl Leg {
         f64::from(numerator) / f64::from(denominator)
     }
 
-    /// How far the slave has to go since it was at `from`.
+    /// The way that the slave must have moved since it was at `from`.
     fn way_since(&self, from: &Self) -> f64 {
         self.ratio() * (way(self.at, from.at, self.turn) + (self.phase - from.phase))
     }
@@ -37,7 +37,7 @@ impl Leg {
 struct Row {
     legs: [Option<Leg>; 2],
     command: Option<CommandId>,
-    /// What is superimposed on the law (u).
+    /// The superimposed distance (u).
     superimposed: f64,
     slave: f64,
 }
@@ -70,9 +70,9 @@ impl Law {
     /// A row of the axis, whose masters are among `axes`.
     ///
     /// # Errors
-    /// It is off the law by more than two roundings of every number that enters.
+    /// It is off the law by more than two roundings of every number in it.
     pub fn check(&mut self, axis: &Axis<Standard>, axes: &[Axis<Standard>]) -> Result<(), Broken> {
-        // What it sees of actual values is not published; a cam is judged by tests of its own.
+        // Its view of actual values is not published; a cam is judged by tests of its own.
         if !axis.is_in_gear() || axis.follows_actual() || axis.is_on_a_cam() {
             self.forget();
             return Ok(());

@@ -1,21 +1,22 @@
 //! Set-points and their differences keep the limits of the axis.
 //!
-//! A set-point tells velocity, acceleration, jerk and snap of the motion at an instant; the backward differences
-//! of the published positions tell them without trusting that. Both are held against the limits of the axis,
-//! superimposed motions included, because what is published is the sum. Nothing is allowed beyond them: what a motion
-//! within the limits of the axis led to, its limits can bring back. The one thing that cannot always be avoided is
-//! that a stop in the middle of a reversal turns back, and only this may be recorded ([`check_excess`]).
+//! A set-point gives velocity, acceleration, jerk and snap of the motion at an instant; the backward
+//! differences of the published positions give them independently. Both are checked against the limits of
+//! the axis, superimposed motions included, because the sum is published. No excess is permitted: the
+//! limits of the axis can bring back every state that a motion within them led to. There is one exception
+//! that cannot always be avoided: a stop in the middle of a reversal turns back. Only this may be
+//! recorded ([`check_excess`]).
 
 use super::{Broken, rule};
 use standstill_axis::{Axis, AxisConfig, Excess, Limits, Planner, Setpoint};
 
-/// By how much a limit may be exceeded, relative to it.
+/// The tolerance of a limit, relative to it.
 const RELATIVE: f64 = 1e-9;
 
-/// Up to this part of the velocity limit the direction of motion is not told by the velocity.
+/// Up to this part of the velocity limit the velocity does not give the direction of motion.
 const STILL: f64 = 1e-9;
 
-/// What a 64-bit instant of a plan resolves, relative to the time since its start.
+/// The resolution of a plan's 64-bit instant, relative to the time since its start.
 const TICK: f64 = 2.0 * f64::EPSILON;
 
 /// Differences of positions, newest first; what the next scan's are made of.
@@ -24,7 +25,7 @@ const KEPT: usize = 4;
 /// Positions that makes.
 const KNOWN: usize = KEPT + 1;
 
-/// What one axis published lately.
+/// The recent set-points of one axis.
 #[derive(Clone, Debug)]
 pub struct Track {
     limits: Limits,
@@ -32,7 +33,7 @@ pub struct Track {
     turn: Option<f64>,
     /// Powers of the cycle from 1 to 4, by which differences of that order are divided.
     over: [f64; KEPT],
-    /// The last position, the ways to it and to those before, and how many positions that is made of.
+    /// The last position, the ways to it and to those before, and the number of these positions.
     position: f64,
     ways: [f64; KEPT],
     known: usize,
@@ -43,13 +44,13 @@ pub struct Track {
     moving: u32,
     /// Scans of the longest motion planned since.
     longest: u32,
-    /// The last motion is what it was in the scan before, so nothing has to be looked at.
+    /// The motion is the same as in the last scan and at rest, so no check is needed.
     resting: bool,
-    /// What jerk and snap of a curve are off by for the rounding of its positions.
+    /// The error of a curve's jerk and snap by the rounding of its positions.
     off: [f64; 2],
 }
 
-/// What may be recorded as unavoidable: that a stop turns back, with no more than the velocity limit.
+/// The only excess that may be recorded as unavoidable: a stop turns back, within the velocity limit.
 ///
 /// # Errors
 /// The rule that does not hold.
@@ -61,7 +62,7 @@ pub fn check_excess(excess: &Excess, limits: &Limits) -> Result<(), Broken> {
     )
 }
 
-/// What a motion of the axis keeps at most: its limits, or what its stops have where that is more.
+/// The largest limits of a motion of the axis: its own, or those of its stops if they are higher.
 fn most(config: &AxisConfig) -> Limits {
     let limits = config.limits;
     let stop = config.stop.unwrap_or_default();
@@ -101,31 +102,32 @@ impl Track {
         }
     }
 
-    /// Differences across this scan mean nothing: coordinates moved, or the set-point follows the feedback.
+    /// Differences across this scan have no meaning: coordinates moved, or the set-point follows the
+    /// feedback.
     pub fn forget(&mut self) {
         self.known = 0;
         self.resting = false;
     }
 
-    /// A motion is planned that leads from one position to another in `scans` scans, perhaps some turns away: what it
-    /// publishes is rounded there, and its instants are counted back from its end.
+    /// A motion is planned that leads from one position to another in `scans` scans, perhaps some turns
+    /// away: its positions are rounded there, and its instants are counted back from its end.
     pub fn leads(&mut self, from: f64, to: f64, scans: u32) {
         self.largest = self.largest.max(from.abs()).max(to.abs());
         self.longest = self.longest.max(scans);
         self.resting = false;
     }
 
-    /// It moves by a plan beside a law or a cam that is so far away: what it publishes is rounded there, too.
+    /// It moves by a plan beside a law or a cam at this distance: its positions are rounded there, too.
     pub fn is_beside(&mut self, deviation: f64) {
         self.largest = self.largest.max(deviation.abs());
     }
 
-    /// Jerk and snap of the motion planned last are off by this for the rounding of its positions.
+    /// The jerk and the snap of the last planned motion have this error by the rounding of its positions.
     pub fn resolves(&mut self, off: [f64; 2]) {
         self.off = off;
     }
 
-    /// It moves `ratio` times as `master` does: so are the roundings of that.
+    /// It moves `ratio` times as `master` does, and so do the roundings.
     pub fn follows(&mut self, master: &Self, ratio: f64) {
         let largest = (ratio * master.largest).abs();
         self.largest = self.largest.max(largest);
@@ -134,7 +136,7 @@ impl Track {
         self.resting = false;
     }
 
-    /// Holds the set-point published in a scan, and the differences it makes, against the limits.
+    /// Checks the set-point published in a scan, and its differences, against the limits.
     ///
     /// # Errors
     /// The rule that does not hold.
@@ -158,14 +160,14 @@ impl Track {
         self.check_state(setpoint)?;
         self.push(setpoint.position);
         self.check_differences()?;
-        // All that is looked back at is at rest.
+        // All earlier positions that are used are at rest.
         self.resting = still && self.known == KNOWN && self.ways == [0.0; KEPT];
         Ok(())
     }
 
     fn check_state(&self, setpoint: &Setpoint) -> Result<(), Broken> {
         let limits = &self.limits;
-        // What the clock of the plan resolves: an instant late by a tick has another state.
+        // The resolution of the plan's clock: an instant late by a tick has another state.
         let tick = TICK * f64::from(self.moving) * self.cycle;
         let inside =
             |value: f64, limit: f64, rate: f64| value.abs() <= limit * (1.0 + RELATIVE) + tick * rate;
@@ -218,7 +220,7 @@ impl Track {
         self.ways[0] = way;
         self.known = KNOWN.min(self.known + 1);
         if self.known == 1 {
-            // It is not known where it came from.
+            // The position before is not known.
             self.ways = [0.0; KEPT];
             self.unwrapped = position;
         } else {
@@ -227,9 +229,10 @@ impl Track {
         self.largest = self.largest.max(self.unwrapped.abs()).max(position.abs());
     }
 
-    /// `|d_k| <= limit_k (1 + 1e-9) + 2^k r / cycle^k`: the continuous plan keeps the limits, so its differences do,
-    /// and each position is off by at most r, a unit in the last place of the largest position so far and what the
-    /// velocity makes of two in that of the time since rest, or of the longest motion planned since.
+    /// `|d_k| <= limit_k (1 + 1e-9) + 2^k r / cycle^k`: the continuous plan keeps the limits, so its
+    /// differences do. Each position has an error of at most r: a unit in the last place of the largest
+    /// position so far, plus the velocity times two units in the last place of the time since rest, or of
+    /// the longest motion planned since.
     fn check_differences(&mut self) -> Result<(), Broken> {
         const WHAT: [&str; KEPT] = [
             "the first difference of positions exceeds the velocity limit",
@@ -237,11 +240,12 @@ impl Track {
             "the third difference of positions exceeds the jerk limit",
             "the fourth difference of positions exceeds the snap limit",
         ];
-        // The first position that is known has no way to it.
+        // The first known position has no way to it.
         let known = self.known - 1;
         let limits = &self.limits;
         let [now, before, ..] = self.ways;
-        // The velocity may have changed its sign within the scans looked at: it did so from or to no more than this.
+        // The velocity may have changed its sign within the examined scans, from or to at most this
+        // value.
         let higher_bound = limits.acceleration.max(limits.deceleration);
         let may_turn = now * before <= 0.0 || now.abs().min(before.abs()) <= higher_bound * self.over[1];
         let acceleration = if known < 2 || may_turn {

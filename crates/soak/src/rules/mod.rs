@@ -1,7 +1,7 @@
-//! What must hold in every scan, whatever is done with blocks and axes: said once, for the breadth-first search
-//! over all states and for the random runs of `standstill soak blocks`.
+//! The rules of every scan, for any actions on blocks and axes. They are defined once for the
+//! breadth-first search over all states and for the random runs of `standstill soak blocks`.
 //!
-//! A rule that does not hold is told by its id in `docs/requirements` and what is wrong. Nothing here allocates.
+//! A broken rule is reported by its id in `docs/requirements` and its fault. Nothing here allocates.
 
 pub mod arrows;
 mod calls;
@@ -13,7 +13,7 @@ mod truth;
 pub use calls::{Call, Kind, Outputs, Shown, check_call};
 pub use truth::{Held, Truth, check_truth};
 
-/// A rule that does not hold.
+/// A broken rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Broken {
     /// Its id.

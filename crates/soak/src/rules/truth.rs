@@ -1,12 +1,12 @@
-//! Rules on what is so after the motion step, whichever instance was called when (R69).
+//! Rules on the state after the motion step, for any order of calls (R69).
 
 use super::{Broken, rule};
 use standstill_axis::AxisState;
 
-/// A command an instance holds, as its next call would show it.
+/// A command that an instance holds, as its next call would show it.
 #[derive(Clone, Copy, Debug)]
 pub struct Held {
-    /// It lies beside the owner.
+    /// It is beside the owner.
     pub superimposed: bool,
     /// Not ended.
     pub busy: bool,
@@ -14,7 +14,7 @@ pub struct Held {
     pub active: bool,
 }
 
-/// What is known of an axis.
+/// The known state of an axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Truth {
     /// Its state.
@@ -27,11 +27,11 @@ pub struct Truth {
     pub waiting: usize,
     /// A command that waits for a place of its master, beside the owner.
     pub awaited: bool,
-    /// The first of them moves the coordinates: it waits for the next latch whatever the state.
+    /// The first of them moves the coordinates: it waits for the next latch in every state.
     pub shift_due: bool,
     /// A superimposed command, and whether the added motion is its own.
     pub added: Option<bool>,
-    /// No instance holds the superimposed command: its own began anew and was refused.
+    /// No instance holds the superimposed command: its own was triggered anew and refused.
     pub orphaned: bool,
 }
 
