@@ -1,11 +1,11 @@
-//! What other systems call pins and number enumerations differently: data, in `dialects.txt`.
+//! Different names of pins and numbers of enumerations in other systems: data, in `dialects.txt`.
 
 use standstill_blocks::REGISTRY;
 use standstill_fb::{BlockInfo, EnumInfo, Pin, PinType};
 
 const DATA: &str = include_str!("../dialects.txt");
 
-/// A way to call pins and to number enumerations; the default is our own, which is the standard's.
+/// The names of pins and numbers of enumerations; the default is our own, which is the standard's.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Dialect {
     name: String,
@@ -86,25 +86,25 @@ impl Dialect {
         &self.name
     }
 
-    /// Types and what they are called there.
+    /// Types and their names in the dialect.
     #[must_use]
     pub fn types(&self) -> &[(String, String)] {
         &self.types
     }
 
-    /// Types, their elements, and what these are called there.
+    /// Types, their elements, and the elements' names in the dialect.
     #[must_use]
     pub fn names(&self) -> &[(String, String, String)] {
         &self.names
     }
 
-    /// Types whose elements have other numbers there: type, number, element.
+    /// Types whose elements have other numbers in the dialect: type, number, element.
     #[must_use]
     pub fn numbers(&self) -> &[(String, i32, String)] {
         &self.numbers
     }
 
-    /// Blocks, their pins, and what these are called there.
+    /// Blocks, their pins, and the pins' names in the dialect.
     #[must_use]
     pub fn pins(&self) -> &[(String, String, String)] {
         &self.pins
@@ -119,8 +119,8 @@ impl Dialect {
         other.map_or(pin.name, |(_, _, name)| name)
     }
 
-    /// Elements of an enumeration with the numbers they have there, ours at the end of each; those unknown there are
-    /// left out.
+    /// Elements of an enumeration with their numbers in the dialect, with ours at the end of each;
+    /// elements unknown there are left out.
     pub(crate) fn elements(&self, of: &EnumInfo) -> Vec<(&'static str, i32, i32)> {
         let numbered = |name: &'static str, ours: i32| {
             if !self.renumbers(of) {

@@ -1,4 +1,5 @@
-//! What a guest in WebAssembly imports: as data for those who write hosts and compilers, as a header for guests in C.
+//! The imports of a WebAssembly guest: as data for authors of hosts and compilers, and as a header for
+//! guests in C.
 
 use crate::File;
 use crate::c::{NOTICE, types};

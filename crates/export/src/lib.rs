@@ -66,15 +66,15 @@ impl Target {
 pub struct File {
     /// Its name, without a folder.
     pub name: String,
-    /// What is in it; lines end in LF.
+    /// Its contents; lines end in LF.
     pub text: String,
 }
 
-/// Everything `target` needs. C names begin with `prefix`; pins and numbers of shims in Structured Text and of the
-/// XML library are those of `dialect`.
+/// All files of `target`. C names begin with `prefix`. `dialect` gives the pins and numbers of shims in
+/// Structured Text and of the XML library.
 pub fn export(target: Target, prefix: &Prefix, dialect: &Dialect) -> Vec<File> {
     let headers = || c::files(prefix);
-    // A program in Structured Text may become a guest, too: the header alone.
+    // A program in Structured Text may also become a guest, which needs only the header.
     let for_both = || {
         let mut files = headers();
         files.extend(guest::files(prefix).into_iter().take(1));

@@ -1,6 +1,7 @@
-//! Shims for matiec: bodies in C between `{{` and `}}`, pins through `GetFbVar` and `SetFbVar`, and what runs a program.
+//! Shims for matiec: bodies in C between `{{` and `}}`, pins through `GetFbVar` and `SetFbVar`, and the
+//! code that runs a program.
 //!
-//! These two respect forcing, do not depend on the layout of an instance, and work in a guest, too.
+//! These two respect forcing, do not depend on the layout of an instance, and also work in a guest.
 
 use crate::File;
 use crate::dialect::Dialect;
@@ -14,7 +15,7 @@ const SYNTAX: Syntax = Syntax {
     numbered_enumerations: false,
 };
 
-/// What a host calls, and what matiec leaves to it.
+/// The functions that a host calls, and those that matiec expects from it.
 const MAIN: &str = r#"
 #include "standstill_shim.h"
 #include "iec_types_all.h"
@@ -103,8 +104,8 @@ pub(crate) fn files(prefix: &Prefix, dialect: &Dialect) -> Vec<File> {
 fn block(out: &mut String, info: &BlockInfo, dialect: &Dialect) {
     let name = function(info);
     *out += &st::head(info, dialect, SYNTAX);
-    // SetFbVar does not evaluate its value for a pin that is forced, so the call stands by itself.
-    // Names are upper-cased in the generated C. A private variable has a name no pin has.
+    // SetFbVar does not evaluate its value for a forced pin, so the call is a statement of its own. Names
+    // are upper-cased in the generated C. A private variable has a name that no pin has.
     *out += "  VAR\n    Standstill_Key : ULINT;\n  END_VAR\n  {{\n";
     let _ = writeln!(
         out,

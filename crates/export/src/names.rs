@@ -2,11 +2,11 @@
 
 use standstill_fb::{BlockInfo, Group};
 
-/// What all names in C begin with.
+/// The beginning of all names in C.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Prefix(String);
 
-/// A prefix that does not do.
+/// An invalid prefix.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the prefix is `{0}`: give a C identifier of at most 32 lower-case letters, digits and underscores that begins with a \
@@ -22,7 +22,7 @@ impl Default for Prefix {
 
 impl Prefix {
     /// # Errors
-    /// [`BadPrefix`] unless it is a lower-case C identifier that no compiler has for itself.
+    /// [`BadPrefix`] unless it is a lower-case C identifier that no compiler reserves.
     pub fn new(text: &str) -> Result<Self, BadPrefix> {
         let good = text.len() <= 32
             && text.starts_with(|letter: char| letter.is_ascii_lowercase())
@@ -47,7 +47,7 @@ impl Prefix {
         self.0.to_ascii_uppercase()
     }
 
-    /// A text written for the default prefix, with this one.
+    /// A text written for the default prefix, changed to this one.
     pub fn applied(&self, text: &str) -> String {
         text.replace("standstill_", &format!("{}_", self.lower()))
             .replace("STANDSTILL_", &format!("{}_", self.upper()))
@@ -76,7 +76,7 @@ pub(crate) fn function(info: &BlockInfo) -> String {
     snake(info.name)
 }
 
-/// What a block is called where the blocks of IEC 61131-3 are there already: those of ours then have the prefix.
+/// The name of a block in systems that already have the blocks of IEC 61131-3: ours then have the prefix.
 pub(crate) fn pou(info: &BlockInfo) -> String {
     if info.group == Group::Standard {
         format!("STANDSTILL_{}", info.name)

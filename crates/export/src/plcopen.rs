@@ -9,7 +9,7 @@ use standstill_blocks::REGISTRY;
 use standstill_fb::{BlockInfo, Direction, Pin, PinType, Value};
 use std::fmt::Write as _;
 
-/// The schema has a date where it wants one; a file that is the same every day says this one.
+/// The schema requires a date; a file that is the same every day has this one.
 const DATE: &str = "2026-01-01T00:00:00";
 
 pub(crate) fn files(prefix: &Prefix, dialect: &Dialect) -> Vec<File> {
@@ -125,7 +125,7 @@ fn block(out: &mut String, info: &BlockInfo, prefix: &Prefix, dialect: &Dialect)
         "      <pou name=\"{}\" pouType=\"functionBlock\">\n        <interface>",
         prefix.applied(&pou(info))
     );
-    // The order of the sections in the schema's examples; it has no order of its own.
+    // The order of the sections in the schema's examples; the schema itself requires no order.
     for (direction, section) in [
         (Direction::InOut, "inOutVars"),
         (Direction::Input, "inputVars"),

@@ -1,7 +1,8 @@
 //! Shims for rusty: declarations with `{external}`, and a C file with their bodies.
 //!
-//! An instance is a C structure there: a pointer to a table first, then pins in the order of declaration, VAR_IN_OUT as
-//! pointers. The C file asserts where each pin lies, so a compiler with another idea of it refuses the file.
+//! There an instance is a C structure: first a pointer to a table, then pins in the order of declaration,
+//! VAR_IN_OUT as pointers. The C file asserts the offset of each pin, so a compiler with another layout
+//! refuses the file.
 
 use crate::File;
 use crate::c::c_type;
@@ -69,7 +70,7 @@ fn bodies(dialect: &Dialect) -> String {
 fn block(out: &mut String, info: &BlockInfo, dialect: &Dialect) {
     let name = function(info);
     let _ = writeln!(out, "struct standstill_{name}_fb {{\n    void *table;");
-    // Of two pointers the first is the table; all that follows lies by the rules of C for 64 bits.
+    // The first of two pointers is the table; the rest follows the rules of C for 64 bits.
     let mut asserts = String::new();
     let mut at = 8;
     for pin in info.pins() {
@@ -83,7 +84,7 @@ fn block(out: &mut String, info: &BlockInfo, dialect: &Dialect) {
         );
         at += size;
     }
-    // Behind the pins: what the library says, and the key.
+    // After the pins: the result of the library, and the key.
     let result = at.max(8).next_multiple_of(4);
     let key = (result + 4).next_multiple_of(8);
     let _ = writeln!(
@@ -113,7 +114,7 @@ fn block(out: &mut String, info: &BlockInfo, dialect: &Dialect) {
                  in.{field}_count = (uint32_t)self->{field}->count;\n    }}"
             ),
             PinType::Enum(of) => {
-                // VAR_IN_OUT is a pointer whatever its type.
+                // VAR_IN_OUT is a pointer for any type.
                 let value = if pin.direction == Direction::InOut {
                     format!("(self->{field} != NULL ? *self->{field} : 0)")
                 } else {
@@ -135,7 +136,7 @@ fn block(out: &mut String, info: &BlockInfo, dialect: &Dialect) {
     *out += "    }\n}\n\n";
 }
 
-/// The C type of a member with what follows it, and its size, which is its alignment.
+/// The C type of a member with its declarator, and its size, which is also its alignment.
 fn member(pin: &Pin) -> (String, usize) {
     match (pin.ty, pin.ty.scalar()) {
         (PinType::Axis(_), _) => ("struct standstill_reference *".to_owned(), 8),

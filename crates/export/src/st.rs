@@ -1,4 +1,4 @@
-//! What the shims in Structured Text share: types, declarations, initial values.
+//! The common part of the shims in Structured Text: types, declarations, initial values.
 
 use crate::c::tables;
 use crate::dialect::{Dialect, enumerations};
@@ -13,7 +13,7 @@ pub(crate) struct Syntax {
     pub numbered_enumerations: bool,
 }
 
-/// The comment every shim begins with.
+/// The comment at the begin of every shim.
 pub(crate) fn notice(what: &str, dialect: &Dialect) -> String {
     let names = match dialect.name() {
         "" => String::new(),
@@ -30,7 +30,7 @@ pub(crate) fn notice(what: &str, dialect: &Dialect) -> String {
 pub(crate) fn types(dialect: &Dialect, syntax: Syntax) -> String {
     let mut out = String::from("TYPE\n");
     for name in ["AXIS_REF", "MC_INPUT_REF", "MC_OUTPUT_REF"] {
-        // All live state stays in the runtime, so a copy is as good as a reference.
+        // All live state is in the runtime, so a copy works like a reference.
         let _ = writeln!(
             out,
             "  {name} : STRUCT\n    Number : DINT; (* the first axis is 1; 0 is none *)\n  END_STRUCT;"
@@ -111,7 +111,7 @@ pub(crate) fn head(info: &BlockInfo, dialect: &Dialect, syntax: Syntax) -> Strin
     out
 }
 
-/// The initial value of an input, where it is not that of its type.
+/// The initial value of an input, if it differs from that of its type.
 fn initial(info: &BlockInfo, index: usize, pin: &Pin, dialect: &Dialect, syntax: Syntax) -> String {
     if pin.direction != Direction::Input {
         return String::new();
@@ -132,8 +132,8 @@ fn initial(info: &BlockInfo, index: usize, pin: &Pin, dialect: &Dialect, syntax:
     }
 }
 
-/// The number, where the type is a plain one; else the element, unless it is the first one and so the initial value
-/// anyway.
+/// The number, if the type is a plain one; otherwise the element, unless it is the first one and so the
+/// initial value anyway.
 fn initial_element(of: &EnumInfo, ours: i32, dialect: &Dialect, syntax: Syntax) -> String {
     let elements = dialect.elements(of);
     let found = (0..).zip(&elements).find(|(_, (_, _, number))| *number == ours);
@@ -150,8 +150,8 @@ fn initial_element(of: &EnumInfo, ours: i32, dialect: &Dialect, syntax: Syntax) 
     }
 }
 
-/// Whether an enumeration has to be a number with a comment: its numbers are not in order, and the compiler takes no
-/// others.
+/// Whether an enumeration has to be a number with a comment: its numbers are not in order, and the
+/// compiler accepts no others.
 fn is_plain(elements: &[(&'static str, i32, i32)], syntax: Syntax) -> bool {
     let in_order = (0..)
         .zip(elements)
@@ -159,8 +159,8 @@ fn is_plain(elements: &[(&'static str, i32, i32)], syntax: Syntax) -> bool {
     !syntax.numbered_enumerations && !in_order
 }
 
-/// A C function for each enumeration a dialect numbers in its own way; a number it does not know becomes one the block
-/// refuses with its ErrorID.
+/// A C function for each enumeration that a dialect numbers differently. An unknown number becomes one
+/// that the block refuses with its ErrorID.
 pub(crate) fn translations(dialect: &Dialect) -> String {
     let mut out = String::new();
     for info in enumerations().iter().filter(|info| dialect.renumbers(info)) {
@@ -177,7 +177,7 @@ pub(crate) fn translations(dialect: &Dialect) -> String {
     out
 }
 
-/// `value` as the library numbers the enumeration.
+/// `value` with the library's number of the enumeration.
 pub(crate) fn translated(of: &EnumInfo, value: &str, dialect: &Dialect) -> String {
     if dialect.renumbers(of) {
         format!("standstill_{}_of((int32_t){value})", of.name.to_ascii_lowercase())
@@ -186,7 +186,8 @@ pub(crate) fn translated(of: &EnumInfo, value: &str, dialect: &Dialect) -> Strin
     }
 }
 
-/// The header a shim's C parts need: where its runtime is, and how TIME is made into nanoseconds.
+/// The header for the C parts of a shim: the place of its runtime, and the conversion of TIME to
+/// nanoseconds.
 pub(crate) fn shim_header(time: &str, dialect: &Dialect) -> String {
     format!(
         "/* What the shims of standstill need in C: give it to the compiler with -include.\n *\n{} */\n\n\

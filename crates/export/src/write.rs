@@ -15,14 +15,14 @@ pub struct WriteError {
     pub source: io::Error,
 }
 
-/// Writes `files` into `folder`, which is made if it is not there.
+/// Writes `files` into `folder`, which is made if it does not exist.
 ///
-/// Everything is written beside its place first and moved there when all of it stands, so that a full disk leaves what
-/// was there before.
+/// All files are written beside their places first and moved there when all are complete, so that a full
+/// disk leaves the earlier files.
 ///
 /// # Errors
-/// [`WriteError`] names the file or folder; nothing has changed then but for a failing rename in a folder that could be
-/// written, after which each file is whole, old or new.
+/// [`WriteError`] names the file or folder. Nothing has changed then, except after a failed rename in a
+/// writable folder: then each file is whole, old or new.
 pub fn write(folder: &Path, files: &[File]) -> Result<(), WriteError> {
     let at = |path: &Path| {
         let path = path.to_owned();
@@ -36,7 +36,7 @@ pub fn write(folder: &Path, files: &[File]) -> Result<(), WriteError> {
             return Err(at(&place)(io::Error::from(io::ErrorKind::IsADirectory)));
         }
         let part = beside(file);
-        // Whatever has this name already, a link perhaps, gives way to a new file.
+        // An item that already has this name, perhaps a link, is replaced by a new file.
         let _ = fs::remove_file(&part);
         let new = fs::File::options().write(true).create_new(true).open(&part);
         new.and_then(|mut new| new.write_all(file.text.as_bytes()))
@@ -50,7 +50,7 @@ pub fn write(folder: &Path, files: &[File]) -> Result<(), WriteError> {
     });
     if moved.is_err() {
         for file in files {
-            // One that was never written, or moved already, is not there.
+            // A file that was never written, or is already moved, does not exist.
             let _ = fs::remove_file(beside(file));
         }
     }

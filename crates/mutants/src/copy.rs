@@ -1,4 +1,4 @@
-//! The copy of the repository that holds the sampled points, each behind a choice made at run time.
+//! The copy of the repository with the sampled points, each behind a choice at run time.
 
 use crate::points::Point;
 use serde_json::Value;
@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-/// The variable that chooses; 0 and nothing choose none.
+/// The variable that chooses a point; 0 and no value choose none.
 pub const CHOICE: &str = "STANDSTILL_MUTANT";
 
-/// The variable that names a file for the numbers of the points that are reached.
+/// The variable that names a file for the numbers of the points that were reached.
 pub const REACHED: &str = "STANDSTILL_MUTANTS_REACHED";
 
 const HOOK: &str = r#"//! Which change of the sources is in force.
@@ -46,15 +46,15 @@ fn note(number: usize, path: &str) {
 }
 "#;
 
-/// The crates whose sources are changed: folder, and the way from there to the hook.
+/// The crates whose sources are changed: folder, and the path from there to the hook.
 pub const CRATES: [(&str, &str); 3] = [
     ("crates/axis", "../mutant-hook"),
     ("blocks", "../crates/mutant-hook"),
     ("crates/fb", "../mutant-hook"),
 ];
 
-/// The crates whose tests are asked about what the scripts do not see, and a test of theirs that takes too long for
-/// that: the search through all states.
+/// The crates whose tests run for points that the scripts do not see, and a test of theirs that takes too
+/// long for that: the search through all states.
 const TESTED: [&str; 6] = ["axis", "fb", "blocks", "drives", "scan", "soak"];
 const TOO_LONG: &str = "search";
 
@@ -70,8 +70,8 @@ pub struct Test {
 }
 
 impl Copy {
-    /// A fresh copy of what git knows at `from`, with `sampled` in it; number n is place n - 1. Files that stay as they
-    /// are keep their time, so that Cargo builds only what changed.
+    /// A fresh copy of git's files at `from`, with `sampled` in it; number n is index n - 1. Unchanged
+    /// files keep their time, so that Cargo builds only what changed.
     pub fn new(from: &Path, sampled: &[Point]) -> Result<Self, Box<dyn Error>> {
         let root = from.join("target/mutants/copy");
         let listed = Command::new("git")
@@ -121,7 +121,8 @@ impl Copy {
         cargo
     }
 
-    /// Builds the program that runs scripts. Points that do not compile are the error's: their numbers.
+    /// Builds the program that runs scripts. On a compile error: the numbers of the points that do not
+    /// compile.
     pub fn build(&self) -> Result<Result<PathBuf, BTreeSet<usize>>, Box<dyn Error>> {
         let arguments = [
             "build",
@@ -160,7 +161,7 @@ impl Copy {
         Ok(Err(broken))
     }
 
-    /// Builds the tests that are asked.
+    /// Builds the tests that are run.
     pub fn build_tests(&self) -> Result<Vec<Test>, Box<dyn Error>> {
         let mut arguments = vec!["test", "--no-run", "--message-format=json", "--lib", "--tests"];
         let packages = TESTED.map(|name| format!("standstill-{name}"));
@@ -196,8 +197,8 @@ fn woven(file: &str, text: &str, sampled: &[Point]) -> String {
     out
 }
 
-/// Writes `text` from `from` to `to` with the points therein. In the changed piece there is no other choice: only one
-/// is ever made.
+/// Writes `text` from `from` to `to` with its points. The changed piece has no other choice, because only
+/// one is ever made.
 fn weave(out: &mut String, text: &str, points: &mut &[(usize, &Point)], from: usize, to: usize) -> usize {
     let mut at = from;
     while let Some(((number, point), rest)) = points.split_first()
@@ -219,7 +220,7 @@ fn weave(out: &mut String, text: &str, points: &mut &[(usize, &Point)], from: us
     to
 }
 
-/// The choices in these lines (from 1), or the one that begins last before them.
+/// The choices in these lines (from 1), or the last one that begins before them.
 fn numbers_at(text: &str, from: usize, to: usize) -> Vec<usize> {
     let numbers = |line: &str| {
         let after = line.split("_hook::on(").skip(1);
@@ -254,7 +255,7 @@ fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     fs::write(path, bytes)
 }
 
-/// Removes what an earlier copy left behind.
+/// Removes the remains of an earlier copy.
 fn remove_others(folder: &Path, kept: &BTreeSet<PathBuf>) -> std::io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();

@@ -9,18 +9,18 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 use std::{env, fs, process, thread};
 
-/// Something that passes or fails.
+/// A program that passes or fails.
 #[derive(Debug)]
 pub struct Trial {
     pub name: String,
     program: PathBuf,
     arguments: Vec<String>,
     folder: PathBuf,
-    /// How long it takes without a change.
+    /// Its duration without a change.
     takes: Duration,
-    /// The points it comes by: only these can it see.
+    /// The points that it reaches: it can see only these.
     reached: BTreeSet<usize>,
-    /// How many points it has seen so far.
+    /// The number of points it has seen so far.
     kills: AtomicUsize,
 }
 
@@ -42,7 +42,7 @@ impl Trial {
         let mut trials = Vec::new();
         for entry in fs::read_dir(root.join("scan-tests"))? {
             let folder = entry?.file_name().to_string_lossy().into_owned();
-            // What other scripts include are no scripts.
+            // Files that other scripts include are not scripts.
             if folder != "include" {
                 let arguments = vec!["test".to_owned(), format!("scan-tests/{folder}")];
                 trials.push(Self::new(folder, program.to_owned(), arguments, root.to_owned()));
@@ -73,7 +73,7 @@ impl Trial {
         command
             .args(&self.arguments)
             .current_dir(&self.folder)
-            // Judgements take all processors already; nothing may write a golden.
+            // Judgements already use all processors; nothing may write a golden.
             .envs([
                 ("RAYON_NUM_THREADS", "1"),
                 ("RUST_TEST_THREADS", "1"),
@@ -85,7 +85,7 @@ impl Trial {
         command
     }
 
-    /// Whether all is well; what takes ten times as long as without a change hangs.
+    /// Whether it passes; a program that takes ten times as long as without a change counts as hanging.
     fn passes(&self, mut command: Command) -> bool {
         let mut child = command.spawn().expect("a program that was built");
         let until = Instant::now() + (10 * self.takes).max(Duration::from_secs(10));
@@ -102,7 +102,7 @@ impl Trial {
         }
     }
 
-    /// Without a change it must pass; notes how long that takes and what it comes by.
+    /// Without a change it must pass; notes its duration and the points it reaches.
     fn prove(&mut self) -> Result<(), String> {
         let (path, start) = (
             env::temp_dir().join(format!("reached-{}", process::id())),
@@ -131,16 +131,16 @@ impl Trial {
         seen
     }
 
-    /// How long it takes to see a point, on average.
+    /// The average time to see a point.
     fn price(&self) -> Duration {
         self.takes / (1 + self.kills.load(Ordering::Relaxed) as u32)
     }
 }
 
-/// What came of a point.
+/// The verdict on a point.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// No trial comes by it.
+    /// No trial reaches it.
     NotReached,
     /// No trial fails.
     NotSeen,
@@ -148,7 +148,7 @@ pub enum Verdict {
     SeenBy(String),
 }
 
-/// What `trials` say of each of `numbers`, those first that see most in a second.
+/// The verdict of `trials` on each of `numbers`. Trials that see most per second come first.
 pub fn judge(trials: &mut [Trial], numbers: &[usize]) -> Result<Vec<Verdict>, String> {
     trials.iter_mut().try_for_each(Trial::prove)?;
     let trials = &*trials;

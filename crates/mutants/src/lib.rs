@@ -45,7 +45,7 @@ struct Args {
 /// Does what the command line asks for.
 ///
 /// # Errors
-/// What keeps it from that.
+/// The reason for a failure.
 pub fn run() -> Result<(), Box<dyn Error>> {
     let args = Args::parse();
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -59,7 +59,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
         points.retain(|point| args.of.iter().any(|text| point.key.contains(text)));
     }
 
-    // A change elsewhere in the sources moves no point in or out of the sample.
+    // A change elsewhere in the sources moves no point into or out of the sample.
     points.sort_by_cached_key(|point| drawn(args.seed, &point.key));
     let (copy, program) = loop {
         let copy = Copy::new(&root, &points[..args.count.min(points.len())])?;
@@ -120,7 +120,7 @@ struct Judged<'a> {
     equivalent: bool,
     by_script: bool,
     seen: bool,
-    /// Of the scripts, and of the tests if they were asked.
+    /// Of the scripts, and of the tests if they were run.
     verdicts: (Verdict, Option<Verdict>),
 }
 
@@ -193,7 +193,7 @@ impl Equivalents {
         }
     }
 
-    /// Each is a change that can be made today.
+    /// Each must be a change that is possible today.
     fn check(&self, points: &[Point]) -> Result<(), String> {
         let keys: BTreeSet<_> = points.iter().map(|point| &point.key).collect();
         let stale: Vec<_> = self.0.keys().filter(|key| !keys.contains(key)).cloned().collect();

@@ -1,4 +1,4 @@
-//! Where the sources can be changed a little, and how: one [`Point`] for each change.
+//! The places where the sources can be changed a little, and the changes: one [`Point`] for each.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -9,7 +9,7 @@ use syn::{BinOp, Expr, Stmt, UnOp};
 /// One small change of one file.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// What names the change as long as its function keeps its name and the changed piece its text.
+    /// The identity of the change, as long as its function keeps its name and the changed piece its text.
     pub key: String,
     /// The file, relative to the root of the repository.
     pub file: String,
@@ -39,8 +39,8 @@ pub fn variants(files: &[(String, String, syn::File)]) -> BTreeMap<String, Vec<S
     enums.0
 }
 
-/// Every point of a file. Left out: tests, `const` (no choice at run time there), patterns, types, macros but
-/// `matches!`, and functions that only make text.
+/// Every point of a file. Left out: tests, `const` (no choice at run time there), patterns, types, macros
+/// except `matches!`, and functions that only make text.
 pub fn points(
     file: &str,
     text: &str,
@@ -59,7 +59,7 @@ pub fn points(
     finder.points
 }
 
-/// Operators and methods that stand for each other, either way.
+/// Operators and methods that replace each other, in both directions.
 const SWAPS: [[&str; 2]; 20] = [
     ["<", ">="],
     [">", "<="],
@@ -99,7 +99,7 @@ impl<'a> Finder<'a> {
     }
 
     fn add(&mut self, node: &impl Spanned, mutated: &str, statement: bool) {
-        // Types and constants have expressions of their own; code that runs stands in a function.
+        // Types and constants have expressions of their own; code that runs is in a function.
         if self.within.is_empty() {
             return;
         }
@@ -144,7 +144,7 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// What decides between two ways; `let` among `&&` can be no value.
+    /// A condition between two ways; a `let` among `&&` cannot be a value.
     fn condition(&mut self, condition: &Expr) {
         match condition {
             Expr::Let(_) => {}

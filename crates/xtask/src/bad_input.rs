@@ -1,4 +1,4 @@
-//! `docs/bad-input.md` from the tables that `blocks/tests/bad_input` holds the blocks against.
+//! `docs/bad-input.md`, from the tables that `blocks/tests/bad_input` tests the blocks with.
 
 use crate::{Generated, NOTICE, root};
 use standstill_axis::ErrorId;

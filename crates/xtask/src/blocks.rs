@@ -35,7 +35,7 @@ fn in_time(text: &mut String, picture: &Picture) {
     );
 }
 
-/// What the block is held to, and what of that vendors do otherwise.
+/// The rules of the block, and the differences of vendors.
 fn rules(text: &mut String, info: &BlockInfo, requirements: &Requirements) {
     let rules = requirements.of_block(info.name);
     let (vendors, standard): (Vec<_>, Vec<_>) =

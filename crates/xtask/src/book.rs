@@ -1,18 +1,18 @@
-//! The book as a folder of pages: what mdBook makes of `docs`, with the files outside of it that its pages link to, and
-//! no link that leads nowhere.
+//! The book as a folder of pages: mdBook's output of `docs`, with the files outside of it that its pages
+//! link to, and without dead links.
 
 use crate::root;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-/// Completes what mdBook wrote to `built`/docs; what is wrong with its links.
+/// Completes mdBook's output in `built`/docs; returns the faults of its links.
 ///
 /// # Errors
 /// A file that cannot be read or written.
 pub fn complete(built: &Path) -> std::io::Result<Vec<String>> {
     for page in files(&built.join("docs"))? {
-        // GitHub shows the README of a folder, mdBook calls it index; links are written for the former.
+        // GitHub shows the README of a folder, mdBook names it index; links are written for the former.
         if page.ends_with("index.html") {
             let readme = page.with_file_name("README.md");
             let within = readme.strip_prefix(built).expect("below the book");
@@ -24,7 +24,7 @@ pub fn complete(built: &Path) -> std::io::Result<Vec<String>> {
     let pages: Vec<_> = files(&built.join("docs"))?
         .into_iter()
         .filter(|path| path.extension().is_some_and(|found| found == "html"))
-        // Its links are absolute: it is shown for any address.
+        // Its links are absolute, because it is shown for any address.
         .filter(|path| !path.ends_with("404.html"))
         .collect();
     let texts: BTreeMap<_, _> = pages
@@ -57,7 +57,7 @@ pub fn complete(built: &Path) -> std::io::Result<Vec<String>> {
                         fs::create_dir_all(target.parent().expect("a folder"))?;
                         fs::copy(source, &target)?;
                     }
-                    // A folder of the repository, to look around in.
+                    // A folder of the repository, for browsing.
                     Ok(source) if source.is_dir() => fs::create_dir_all(&target)?,
                     _ => problem("leads nowhere"),
                 }

@@ -1,7 +1,7 @@
-//! `docs/faults.md`: every ErrorID with its cause, what a trace shows of it, and its remedy.
+//! `docs/faults.md`: every ErrorID with its cause, its appearance in a trace, and its remedy.
 //!
-//! Cause and remedy come from the table of errors, the traces from the goldens, the words between them from
-//! `crates/xtask/faults.txt`.
+//! Cause and remedy come from the table of errors, the traces from the goldens, the texts between them
+//! from `crates/xtask/faults.txt`.
 
 mod golden;
 
@@ -21,7 +21,7 @@ struct Class {
     errors: Vec<Section>,
 }
 
-/// What the file says of one error.
+/// The text of the file about one error.
 #[derive(Debug)]
 struct Section {
     number: u16,
@@ -30,7 +30,7 @@ struct Section {
     remedy: String,
 }
 
-/// Where an error is to be seen.
+/// The place where an error is shown.
 #[derive(Debug)]
 enum Shown {
     /// In no golden.
@@ -50,7 +50,7 @@ struct Scene {
     after: usize,
 }
 
-/// Everything the guide is made of.
+/// The sources of the guide.
 #[derive(Debug)]
 pub struct Faults {
     classes: Vec<Class>,
@@ -87,7 +87,7 @@ impl Faults {
                 ..*scene
             });
         }
-        // A refusal at the edge tells more than the end of a command that waited.
+        // A refusal at the edge says more than the end of a command that waited.
         self.first(|event| event.shows(id.number()) && event.text.starts_with("+Execute"))
             .or_else(|| self.first(|event| event.shows(id.number())))
     }
@@ -120,8 +120,8 @@ impl Faults {
         Some((golden, lines.collect()))
     }
 
-    /// What is wrong: an error that nothing shows and no reason given, a scene that does not show its error or
-    /// has a subject without events, a section for a number that is not in use, a class without introduction.
+    /// The faults: an error that nothing shows without a reason; a scene that does not show its error or
+    /// has a subject without events; a section for an unused number; a class without introduction.
     pub fn problems(&self) -> Vec<String> {
         let mut found = Vec::new();
         for id in errors() {
@@ -297,7 +297,7 @@ mod tests {
         faults.problems().join("\n")
     }
 
-    /// The problems with this line in place of what the file says of the error.
+    /// The problems if this line replaces the text of the file about the error.
     fn with(line: &str) -> String {
         problems(|faults| {
             let new = section(line);

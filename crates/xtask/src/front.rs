@@ -9,7 +9,7 @@ use std::fs;
 /// The test.
 const SCRIPT: &str = "scan-tests/tutorial/abort.scan.json";
 
-/// What its title in the picture is.
+/// Its title in the picture.
 const NAME: &str = "abort.scan.json";
 
 /// The change that makes it fail, step 4 of the tutorial.
@@ -18,7 +18,8 @@ const CHANGE: [&str; 2] = [
     r#""Position": 0, "Velocity": 100, "BufferMode": "mcBuffered"}"#,
 ];
 
-/// The picture for light and for dark pages: a page picks one, since a picture on its own knows its reader's system alone.
+/// The picture for light and for dark pages. A page chooses one, because a picture itself knows only the
+/// reader's system.
 pub fn pictures() -> [Generated; 2] {
     let path = root().join(SCRIPT);
     let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{SCRIPT}: {error}"));

@@ -1,4 +1,5 @@
-//! The tables of keys of axes and drives in the page on scan scripts: from the tables that the reader and the schema use.
+//! The tables of keys of axes and drives in the page on scan scripts, from the tables that the reader and
+//! the schema use.
 
 use crate::{Generated, root};
 use standstill_axis::keys::{AXIS, Holds, Object};
@@ -9,7 +10,7 @@ use std::fs;
 /// The page; everything else in it is written by hand.
 const PAGE: &str = "docs/scan-scripts.md";
 
-/// Keys of an axis that are none of its configuration.
+/// Keys of an axis that are not part of its configuration.
 const OTHERS: [(&str, &str, &str); 2] = [
     ("unit", "label of the axis's unit u", "empty"),
     ("drive", "the drive of the axis, see below", "ideal, no delay"),
@@ -18,7 +19,7 @@ const OTHERS: [(&str, &str, &str); 2] = [
 /// The page with its tables made anew.
 ///
 /// # Panics
-/// If the page is not there, or has no place for a table.
+/// If the page does not exist, or has no place for a table.
 pub fn page() -> Generated {
     let path = root().join(PAGE);
     let mut text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{PAGE}: {error}"));
@@ -44,7 +45,7 @@ pub fn page() -> Generated {
     }
 }
 
-/// A row for every key, but for those at `left_out`, and for those in it.
+/// A row for every key except those in `left_out`, and for keys in an object.
 fn rows<T>(object: &Object<T>, left_out: &[&str]) -> String {
     let keys = object.keys.iter().filter(|key| !left_out.contains(&key.path));
     keys.map(|key| {

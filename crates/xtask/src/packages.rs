@@ -1,4 +1,4 @@
-//! What the published packages say of themselves: a README each, and what a registry asks for.
+//! The descriptions of the published packages: a README each, and the fields that a registry requires.
 
 use crate::{Generated, NOTICE, root};
 use std::fs;
@@ -15,7 +15,7 @@ pub struct Package {
 }
 
 impl Package {
-    /// The members of the workspace that are meant for others.
+    /// The members of the workspace that are published.
     pub fn published() -> Vec<Self> {
         let manifest = read("Cargo.toml");
         let members = between(&manifest, "members = [", "]").expect("a list of members");
@@ -35,7 +35,7 @@ impl Package {
             .collect()
     }
 
-    /// What a registry, or somebody who finds the package there, would miss.
+    /// The parts that a registry, or a reader there, would miss.
     pub fn problems(&self) -> Vec<String> {
         let mut problems = Vec::new();
         let mut must = |holds: bool, what: &str| {
@@ -65,7 +65,7 @@ impl Package {
         problems
     }
 
-    /// The README at the registry: what the crate's own documentation begins with.
+    /// The README at the registry: the beginning of the crate's own documentation.
     fn readme(&self) -> Generated {
         let source = ["src/lib.rs", "src/main.rs"].map(|file| root().join(&self.folder).join(file));
         let source = source
@@ -104,7 +104,7 @@ fn between<'a>(text: &'a str, before: &str, after: &str) -> Option<&'a str> {
     Some(text.split_once(before)?.1.split_once(after)?.0)
 }
 
-/// Links of rustdoc, which lead nowhere outside of it, as the words they stand on.
+/// The text without links of rustdoc, which lead nowhere outside of it.
 fn without_links(text: &str) -> String {
     let mut out = String::new();
     let mut rest = text;

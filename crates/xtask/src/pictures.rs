@@ -8,10 +8,10 @@ use standstill_trace::svg::{report, svg};
 use std::collections::BTreeMap;
 use std::fs;
 
-/// What the pictures show of an axis, beside its states and the Booleans, where their line does not say.
+/// The default signals of an axis in pictures, beside its states and the Booleans.
 const SIGNALS: &str = "Position,Velocity";
 
-/// The signals of a picture that shows what a report shows: all of them, and the claims.
+/// The signals of a picture with the contents of a report: all of them, and the claims.
 const REPORT: &str = "report";
 
 /// A line of the list.
@@ -19,7 +19,7 @@ const REPORT: &str = "report";
 pub struct Picture {
     /// A block, or a name.
     pub name: String,
-    /// What it shows of each axis.
+    /// The signals it shows of each axis.
     signals: Vec<String>,
     /// The script, relative to the repository root.
     pub script: String,
@@ -29,7 +29,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Where the picture is, relative to the repository root.
+    /// The path of the picture, relative to the repository root.
     pub fn path(&self) -> String {
         let name = self.name.to_lowercase();
         if name.contains('/') {

@@ -1,8 +1,8 @@
 //! `docs/requirements/`: every id, its rule in a few words, and the tests that cover it.
 //!
-//! The rules stand in `crates/xtask/requirements/*.txt`, one a line behind its id, and so do the gaps, each
-//! with its reason. A scan script claims ids with `covers`; a Rust test with a comment `Covers: R21, S3` of its
-//! own above it.
+//! The rules are in `crates/xtask/requirements/*.txt`, one a line behind its id, and so are the gaps,
+//! each with its reason. A scan script claims ids with `covers`; a Rust test with a comment
+//! `Covers: R21, S3` of its own above it.
 
 use crate::{Generated, NOTICE, root};
 use std::collections::{BTreeMap, BTreeSet};
@@ -81,7 +81,7 @@ impl Requirements {
         Some(reason)
     }
 
-    /// What is wrong: an id with neither test nor gap or with both, a claim or a gap of an unknown id.
+    /// The faults: an id with neither test nor gap or with both, a claim or a gap of an unknown id.
     pub fn problems(&self) -> Vec<String> {
         let mut found = Vec::new();
         let known: BTreeSet<&str> = self.ids().collect();

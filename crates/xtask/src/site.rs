@@ -3,10 +3,11 @@
 use std::fs;
 use std::path::Path;
 
-/// Where the pages of a folder of scripts stand, and the folder: `scan-tests/` and this.
+/// The folders of pages about scripts, and the folders of the scripts: `scan-tests/` and this.
 const FOLDERS: [&str; 2] = ["gallery", "tutorial"];
 
-/// Adds links into the playground to the pages of the book in `site`/docs that tell of a script; how many.
+/// Adds links into the playground to the pages of the book in `site`/docs that describe a script; returns
+/// their number.
 ///
 /// A page links to `scan-tests/FOLDER/NAME.scan.json`: behind that link comes one to `playground/?gallery=NAME`.
 ///
@@ -36,7 +37,7 @@ pub fn link(site: &Path) -> std::io::Result<usize> {
     Ok(links)
 }
 
-/// The text of a page with its links, and how many were added. `up` leads from the page to the site.
+/// The text of a page with its links, and the number added. `up` leads from the page to the site.
 fn with_links(text: &str, up: &str) -> (String, usize) {
     let mut linked = String::new();
     let mut rest = text;

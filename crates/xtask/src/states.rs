@@ -46,7 +46,7 @@ const fn blocks(on: AxisEvent) -> &'static [&'static str] {
     }
 }
 
-/// What stands at an arrow: the blocks, or some of many, and what is not the begin of a command.
+/// The label of an arrow: the blocks, or some of many, or an event that no command begins.
 fn label(on: AxisEvent) -> String {
     match (on, blocks(on)) {
         (AxisEvent::MotionDone, _) => "done".to_owned(),
@@ -144,7 +144,7 @@ fn picture() -> String {
     svg
 }
 
-/// A line between two boxes, shifted to its right so that the way back has its own.
+/// A line between two boxes, shifted to its right so that the way back has a line of its own.
 fn line(arrow: &Arrow) -> String {
     const SHIFT: f64 = 9.0;
     let ((x0, y0), (x1, y1)) = (place(arrow.from), place(arrow.to));
@@ -162,7 +162,7 @@ fn line(arrow: &Arrow) -> String {
         "<path d=\"M{:.1} {:.1}L{:.1} {:.1}\"{dash} marker-end=\"url(#head)\"/>\n",
         start.0, start.1, end.0, end.1
     );
-    // Beside the line, on the side that is its own; nearer to where it starts, for many end at one box.
+    // Beside the line, on its own side; nearer to its start, because many lines end at one box.
     let at = |part: f64| {
         (
             start.0 + (end.0 - start.0) * part,
@@ -223,7 +223,8 @@ mod tests {
     use super::*;
     use standstill_trace::Cell;
 
-    /// In the picture of each block's page there is a scan in which it begins, and its axis is in the state then.
+    /// In the picture of each block's page, the block begins in some scan, and its axis is in the state
+    /// then.
     #[test]
     fn the_blocks_at_the_arrows_lead_where_runs_show() {
         let pictures = crate::pictures::pictures();

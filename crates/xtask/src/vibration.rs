@@ -12,7 +12,7 @@ const CYCLE: f64 = 0.001;
 /// Length of every move (rad).
 const WAY: f64 = 1.0;
 
-/// Scans looked at after the end.
+/// Scans after the end that are examined.
 const AFTER: u32 = 400;
 
 /// Bands of the frequency of the load on its spring, the motor held (Hz).
@@ -35,7 +35,8 @@ const PLANT: Plant = Plant {
 
 const LOAD_INERTIA: f64 = 0.05;
 
-/// What is compared: a name and limits with which the move takes 400 scans: way/v + v/a + a/j + j/s = 0.4 s.
+/// The compared moves: a name, and limits with which the move takes 400 scans: way/v + v/a + a/j + j/s =
+/// 0.4 s.
 const MOVES: [(&str, Limits); 3] = {
     const INF: f64 = f64::INFINITY;
     const fn limits(acceleration: f64, jerk: f64, snap: f64) -> Limits {

@@ -1,7 +1,7 @@
 //! `docs/compliance.md` and `docs/compliance.json`: the standard's catalogue beside the registry.
 //!
-//! The catalogue is data of ours in `crates/xtask/standard`; what is supported follows from the registry and
-//! from calls of its blocks. Nothing here names a block of the registry.
+//! The catalogue is our own data in `crates/xtask/standard`; the supported part follows from the registry
+//! and from calls of its blocks. Nothing here names a block of the registry.
 
 mod json;
 mod page;
@@ -71,7 +71,7 @@ pub struct Compliance {
 }
 
 impl Compliance {
-    /// Puts the catalogue beside the registry; runs every block a few times.
+    /// Compares the catalogue with the registry; runs every block a few times.
     pub fn read() -> Self {
         Self::of(Standard::read())
     }
@@ -93,8 +93,9 @@ impl Compliance {
         }
     }
 
-    /// What keeps the statement from being true: a block without a B pin, a pin that is neither the standard's nor
-    /// marked as an extension, one of another kind, place or type than the standard's, a comment on nothing.
+    /// The faults of the statement: a block without a B pin; a pin that is neither the standard's nor
+    /// marked as an extension; a pin of another kind, place or type than the standard's; a comment on
+    /// nothing.
     pub fn problems(&self) -> Vec<String> {
         let mut found = Vec::new();
         for block in &self.blocks {
@@ -193,7 +194,8 @@ fn is_same(standard: &StandardPin, pin: &Pin) -> bool {
     standard.name == pin.name && standard.kind == pin.direction
 }
 
-/// Whether a pin may have this type without a word about it: the standard leaves the width of REAL and WORD open.
+/// Whether a pin may have this type without a comment: the standard leaves the width of REAL and WORD
+/// open.
 fn is_type_of(standard: &str, here: &str) -> bool {
     let wider: &[&str] = match standard {
         "REAL" => &["LREAL"],
@@ -241,7 +243,7 @@ fn row(standard: &Standard, block: &StandardBlock, info: Option<&BlockInfo>, kno
     let (mut supported, mut remark) = (pin.is_some(), String::new());
     if let (Some(info), Some(pin)) = (info, pin) {
         let refused = probe::refused(info, pin);
-        // A BOOL that may have only one value is no input; an enumeration may lack elements.
+        // A BOOL with only one permitted value is no input; an enumeration may lack elements.
         supported = pin.ty != PinType::Bool || refused.is_empty();
         let refused = refused
             .iter()

@@ -5,11 +5,11 @@ use super::{Compliance, KINDS, Statement};
 use crate::NOTICE;
 use std::fmt::Write;
 
-/// Name and version of the standard, as page and data say it.
+/// Name and version of the standard, for page and data.
 pub const STANDARD: &str =
     "PLCopen TC2, Function blocks for motion control, Part 1 and 2, version 2.0 (2011)";
 
-/// What the statement is, as page and data say it.
+/// The nature of the statement, for page and data.
 pub const NATURE: &str = "A self-declaration, assessed by the project itself and by nobody else. It is not a \
                           certificate and was not submitted to PLCopen.";
 

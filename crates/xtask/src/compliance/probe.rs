@@ -1,4 +1,4 @@
-//! What a block does with a value, found by running it: a pin that exists need not be supported yet.
+//! The response of a block to a value, found by running it: a pin that exists need not be supported yet.
 
 use standstill_axis::{ErrorClass, ErrorId};
 use standstill_fb::{BlockInfo, Direction, Pin, PinType};
@@ -11,8 +11,9 @@ const SCANS: u32 = 10;
 
 /// The values of an input that the runtime refuses as not supported, each with the error.
 ///
-/// BOOL pins are tried with TRUE and FALSE, enumerations with every element, each on a powered axis at rest
-/// while the other inputs have plain values. A block that cannot be called like this refuses nothing here.
+/// BOOL pins are tried with TRUE and FALSE, enumerations with every element, each on a powered axis at
+/// rest while the other inputs have plain values. A block that cannot be called in this way refuses
+/// nothing here.
 pub fn refused(info: &BlockInfo, pin: &Pin) -> Vec<(String, ErrorId)> {
     let values: Vec<(String, String)> = match pin.ty {
         _ if pin.direction != Direction::Input || is_trigger(pin.name) => Vec::new(),
@@ -39,7 +40,8 @@ pub fn refused(info: &BlockInfo, pin: &Pin) -> Vec<(String, ErrorId)> {
         .collect()
 }
 
-/// Whether an output rises when the block is called with these values; never of a block that cannot be called so.
+/// Whether an output rises when the block is called with these values; FALSE for a block that cannot be
+/// called in this way.
 pub fn rises(info: &BlockInfo, values: &[(&str, &str)], output: &str) -> bool {
     called(info, values).is_some_and(|trace| {
         let column = trace.column(&format!("b.{output}"));
@@ -64,7 +66,7 @@ fn unsupported(trace: &Trace) -> BTreeSet<ErrorId> {
         .collect()
 }
 
-/// The block called with plain values and, where given, others; every AXIS_REF is an axis of its own.
+/// The block called with plain values and the given ones; every AXIS_REF is an axis of its own.
 fn called(info: &BlockInfo, values: &[(&str, &str)]) -> Option<Trace> {
     let mut axes = Vec::new();
     let mut pins = Vec::new();

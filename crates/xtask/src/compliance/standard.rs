@@ -1,20 +1,20 @@
-//! What the standard's catalogue holds, as the text files in `crates/xtask/standard` say.
+//! The standard's catalogue, from the text files in `crates/xtask/standard`.
 
 use crate::root;
 use standstill_fb::Direction;
 use std::fs;
 
-/// A pin as the standard has it.
+/// A pin of the standard.
 #[derive(Clone, Debug)]
 pub struct StandardPin {
     pub kind: Direction,
-    /// Basic: a block that is offered must have it. Otherwise extended.
+    /// Basic: a block that is offered must have it; otherwise extended.
     pub basic: bool,
     pub name: String,
     pub ty: String,
 }
 
-/// A function block as the standard has it.
+/// A function block of the standard.
 #[derive(Clone, Debug)]
 pub struct StandardBlock {
     pub name: String,
@@ -22,7 +22,7 @@ pub struct StandardBlock {
     pub pins: Vec<StandardPin>,
 }
 
-/// A parameter number as the standard has it.
+/// A parameter number of the standard.
 #[derive(Clone, Debug)]
 pub struct Parameter {
     pub number: u16,
@@ -35,7 +35,7 @@ pub struct Parameter {
 /// A comment of ours.
 #[derive(Clone, Debug)]
 pub struct Remark {
-    /// It takes the subject out of what is supported.
+    /// Whether it removes the subject from the supported part.
     pub refuses: bool,
     pub subject: String,
     pub text: String,
@@ -53,7 +53,7 @@ pub struct Standard {
 }
 
 impl Standard {
-    /// Reads the files. Panics, naming the file and the line, where one is not in its form.
+    /// Reads the files. Panics on a line in a wrong form, naming the file and the line.
     pub fn read() -> Self {
         let types = lines("types");
         let types_of = |class: &str| {
@@ -99,7 +99,7 @@ impl Standard {
     }
 }
 
-/// The lines of a file that say something.
+/// The lines of a file, without comments and empty ones.
 fn lines(name: &str) -> Vec<String> {
     let path = root().join(format!("crates/xtask/standard/{name}.txt"));
     let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));

@@ -1,4 +1,4 @@
-//! Goldens, as far as the fault guide reads them.
+//! Goldens, as far as the fault guide needs them.
 
 use crate::root;
 use std::collections::BTreeMap;
