@@ -1,4 +1,4 @@
-//! Tells the linkers that want to know it that Python brings what is undefined.
+//! Tells linkers that require it that Python provides the undefined symbols.
 
 fn main() {
     pyo3_build_config::add_extension_module_link_args();

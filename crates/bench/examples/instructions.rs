@@ -23,13 +23,13 @@ const IDLE: u64 = 1000;
 /// Random plans counted.
 const PLANS: u64 = 1000;
 
-/// What is counted runs below this function.
+/// The counted work runs below this function.
 #[inline(never)]
 fn one_operation<T>(run: impl FnOnce() -> T) {
     black_box(&run());
 }
 
-/// A name, and what runs the operation and gives how often it did.
+/// A name, and a function that runs the operation and returns how often it did.
 type Workload = (&'static str, fn() -> u64);
 
 const WORKLOADS: [Workload; 19] = [

@@ -1,5 +1,5 @@
-//! Looks for the random rest-to-rest move whose search takes the most steps: `worst_plan [MOVES]`, a million
-//! if not said. Prints it with the seed that `instructions.rs` counts as `WORST`.
+//! Searches the random rest-to-rest move with the most search steps: `worst_plan [MOVES]`, by default a
+//! million. Prints it with the seed that `instructions.rs` counts as `WORST`.
 
 use standstill_bench::{Move, Random, servo};
 use standstill_planner::grid::Work;

@@ -1,5 +1,5 @@
-//! Looks for the random replans that take the most ramps and root steps: `worst_replan [MOVES]`, a million if not
-//! said. `instructions.rs` counts them as `WORST_REPLANS`.
+//! Searches the random replans with the most ramps and root steps: `worst_replan [MOVES]`, by default a
+//! million. `instructions.rs` counts them as `WORST_REPLANS`.
 
 use standstill_bench::{Random, any_unit};
 use standstill_planner::Order;

@@ -1,9 +1,9 @@
 //! The common part of the measurements: the yardstick, the random moves and the axis under test.
 //!
-//! The measures themselves are `benches/ratios.rs` (time, against the yardstick in the same run),
+//! The measurements themselves are `benches/ratios.rs` (time, relative to the yardstick in the same run),
 //! `examples/instructions.rs` (instructions, under valgrind), `examples/worst_plan.rs` (search steps),
-//! `panic-probe` (reachable panics), `same-bits` (other processors) and `tests/` (heap use, long runs). Commands and figures are in
-//! `docs/performance.md`.
+//! `panic-probe` (reachable panics), `same-bits` (other processors) and `tests/` (heap use, long runs).
+//! Commands and figures are in `docs/performance.md`.
 #![forbid(unsafe_code)]
 
 mod many_axes;

@@ -1,4 +1,4 @@
-//! Many axes in one runtime, each moving in a way of its own.
+//! Many axes in one runtime, each with its own kind of motion.
 
 use crate::{CYCLE, LIMITS};
 use standstill_axis::{
@@ -16,7 +16,7 @@ pub const AXES: u16 = 64;
 /// Scans after the start in which every axis of [`ManyAxes`] is in motion.
 pub const IN_MOTION: u64 = 800;
 
-/// Ways to move; in the mixture axis n moves in way n modulo their number.
+/// Kinds of motion; in the mixture axis n has kind n modulo their number.
 pub const WAYS: [&str; 8] = [
     "MC_MoveAbsolute",
     "MC_MoveRelative after MC_MoveVelocity",
@@ -34,7 +34,7 @@ const SLAVE: usize = WAYS.len();
 /// On a cam behind the axis before it.
 const ON_CAM: usize = SLAVE + 1;
 
-/// Up and back over 2 u of the master: within the limits of the slave whatever the master does.
+/// Up and back over 2 u of the master: within the limits of the slave for any motion of the master.
 const CAM: [(f64, f64); 3] = [(0.0, 0.0), (1.0, 0.1), (2.0, 0.0)];
 
 /// 64 axes with MC_Power and one to three motion blocks each, and drives that follow at once: moves on the grid and
@@ -61,8 +61,8 @@ impl ManyAxes {
         Self::with_ways(|number| only.unwrap_or(usize::from(number) % WAYS.len()))
     }
 
-    /// Powered, at rest: every axis to move in the way given for its number, as a slave of the one before it in the ways [`SLAVE`] and
-    /// [`ON_CAM`].
+    /// Powered, at rest: every axis will move in the kind given for its number. In the kinds [`SLAVE`]
+    /// and [`ON_CAM`] it is a slave of the one before it.
     fn with_ways(way_of: impl Fn(u16) -> usize) -> Result<Self, ConfigError> {
         let mut rig = Self {
             axes: Vec::new(),
@@ -154,7 +154,7 @@ impl ManyAxes {
         Ok(rig)
     }
 
-    /// The cam of all slaves: periodic, counted from where both are.
+    /// The cam of all slaves: periodic, relative to both places.
     fn select(&mut self) -> CamId {
         let (slots, pieces) = &mut self.cam;
         let mut cams = Cams::new(slots, pieces);
@@ -195,7 +195,7 @@ impl ManyAxes {
         self.blocks.push(block);
     }
 
-    /// The axes in motion: for [`IN_MOTION`] scans more all of them are.
+    /// The axes in motion; they stay in motion for [`IN_MOTION`] more scans.
     ///
     /// # Errors
     /// None with these constants.
@@ -233,7 +233,8 @@ impl ManyAxes {
     #[must_use]
     pub fn set_off(self) -> Self {
         let mut rig = self;
-        // Block after block, so that the second of an axis takes over from the first, or waits behind it.
+        // Block after block, so that the second block of an axis takes over from the first, or waits
+        // behind it.
         for round in 0..3 {
             let mut last = (AxisId::NONE, 0);
             for block in &mut rig.blocks {

@@ -1,4 +1,5 @@
-//! One axis with MC_Power and MC_MoveAbsolute: by hand without a drive model, and in an executor.
+//! One axis with MC_Power and MC_MoveAbsolute: in a host's own loop without a drive model, and in an
+//! executor.
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, Comms, ConfigError, DriveCommand, DriveFeedback, DrivePosition, DriveSignals,
@@ -12,7 +13,7 @@ use standstill_scan::{
 };
 use std::error::Error;
 
-/// Limits of the axis: all four hold somewhere in a move of 1.5 u.
+/// Limits of the axis: all four are reached in a move of 1.5 u.
 pub const LIMITS: Limits = Limits {
     velocity: 1.2,
     acceleration: 15.0,
@@ -21,7 +22,7 @@ pub const LIMITS: Limits = Limits {
     snap: 21000.0,
 };
 
-/// Where the move goes (u); it starts at 0.
+/// The target of the move (u); it starts at 0.
 pub const TARGET: f64 = 1.5;
 
 /// Sample time (s).
@@ -64,7 +65,7 @@ impl OneAxis {
         Ok(axis)
     }
 
-    /// The axis in the first scan of its move, and for how many more scans the move is in progress.
+    /// The axis in the first scan of its move, and the number of further scans that the move takes.
     ///
     /// # Errors
     /// None with these constants.
@@ -78,7 +79,7 @@ impl OneAxis {
     }
 
     /// One scan: feedback, both blocks, motion step, drive command.
-    // In line with the loop that times it, as the yardstick is.
+    // Inlined into the loop that times it, like the yardstick.
     #[inline(always)]
     pub fn scan(&mut self) -> DriveCommand {
         let Self { axes, log, .. } = self;

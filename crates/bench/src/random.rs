@@ -1,4 +1,4 @@
-//! Random moves: from rest of the kind servo axes make, and from any state.
+//! Random moves: typical moves of servo axes from rest, and moves from any state.
 
 use crate::CYCLE;
 use standstill_planner::kernel::{Sides, second};
@@ -47,7 +47,7 @@ impl Replan {
     }
 }
 
-/// Between `low` and `high`, both above 0: all binades alike, which bit patterns in order are.
+/// Between `low` and `high`, both above 0, with all binades equally likely, like bit patterns in order.
 fn binades(random: &mut Random, low: f64, high: f64) -> f64 {
     let range = high.to_bits().saturating_sub(low.to_bits()).max(1);
     f64::from_bits(low.to_bits() + random.bits() % range)
@@ -81,7 +81,7 @@ pub fn servo(random: &mut Random) -> Move {
     }
 }
 
-/// Positions and limits of ordinary size, as in the examples of planners for robots.
+/// Positions and limits of ordinary size, as in examples for robot planners.
 pub fn ordinary(random: &mut Random, is_moving: bool) -> Replan {
     let velocity = random.between(0.1, 12.0);
     let acceleration = random.between(0.1, 12.0);
@@ -143,8 +143,8 @@ fn replan(random: &mut Random, bounds: [f64; 4], position: f64, distance: f64, i
     }
 }
 
-/// Whether acceleration and jerk come to zero inside `limits` if they do as soon as can be, and acceleration
-/// too where nothing bounds the snap.
+/// Whether acceleration and jerk come to zero inside `limits` if they do so as soon as possible; also the
+/// acceleration if the snap is unbounded.
 fn is_viable(start: &Setpoint, limits: &Limits) -> bool {
     let snap = limits.snap;
     let change = start.acceleration * start.acceleration.abs() / (2.0 * limits.jerk);

@@ -1,5 +1,5 @@
-//! The yardsticks: what a plain trapezoid of velocity costs per sample on the same machine, planned once or
-//! from its parameters each time.
+//! The yardsticks: the cost per sample of a plain trapezoid of velocity on the same machine, planned once
+//! or from its parameters each time.
 
 /// A rest-to-rest move with a trapezoid of velocity, planned once.
 #[derive(Clone, Copy, Debug)]
@@ -14,7 +14,7 @@ pub struct Trapezoid {
     times: [f64; 3],
 }
 
-/// What it tells of one instant.
+/// Its state at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
     /// Position (u).
@@ -126,7 +126,7 @@ pub fn trapezoid(distance: f64, velocity: f64, acceleration: f64, t: f64) -> Sam
 mod tests {
     use super::{Trapezoid, trapezoid};
 
-    /// The two say the same of the same move, so neither leaves out work.
+    /// The two give the same results for a move, so neither leaves out work.
     #[test]
     fn both_forms_agree() {
         for distance in [1.5, -1.5] {

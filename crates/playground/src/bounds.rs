@@ -1,4 +1,4 @@
-//! How much the playground takes. The command line takes more.
+//! The limits of the playground. Those of the command line are higher.
 
 use standstill_script::model::Script;
 
@@ -23,15 +23,15 @@ pub const LINES_MAX: usize = 200;
 /// Most characters of a link's fragment that is read.
 pub const LINK_MAX: usize = 1 << 17;
 
-/// What goes with a script that is too large.
+/// The remedy for a script that is too large.
 const REMEDY: &str = "the command line takes more";
 
-/// Whether texts of so many bytes are read.
+/// Refuses texts with too many bytes.
 pub fn bytes(bytes: usize) -> Result<(), String> {
     within("bytes of text", bytes as u64, BYTES_MAX as u64)
 }
 
-/// Whether the script is run.
+/// Refuses a script that is too large to run.
 pub fn script(script: &Script) -> Result<(), String> {
     within("scans", script.scans, SCANS_MAX)?;
     within("blocks", script.blocks.len() as u64, BLOCKS_MAX as u64)?;
@@ -43,7 +43,7 @@ pub fn script(script: &Script) -> Result<(), String> {
     within("instructions of programs in a scan (`fuel`)", fuel, FUEL_MAX)
 }
 
-/// Whether a trace of so many columns is kept.
+/// Refuses a trace with too many cells.
 pub fn cells(scans: u64, columns: usize) -> Result<(), String> {
     within(
         "cells (scans times columns)",
@@ -52,7 +52,7 @@ pub fn cells(scans: u64, columns: usize) -> Result<(), String> {
     )
 }
 
-/// Whether so many lines are planned.
+/// Refuses too many lines to plan.
 pub fn lines(lines: usize) -> Result<(), String> {
     within("lines", lines as u64, LINES_MAX as u64)
 }

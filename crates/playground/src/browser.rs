@@ -1,6 +1,6 @@
-//! The functions as JavaScript calls them.
+//! The functions in the form that JavaScript calls.
 
-// What the macro writes is a border of C.
+// The macro writes a border of C.
 #![allow(unsafe_code, missing_docs)]
 
 use wasm_bindgen::prelude::*;
@@ -31,7 +31,7 @@ impl Ran {
         self.0.about.clone()
     }
 
-    /// The numbers of the columns; they are given out once.
+    /// The numbers of the columns; they can be taken once.
     pub fn reals(&mut self) -> Vec<f64> {
         std::mem::take(&mut self.0.reals)
     }

@@ -1,4 +1,4 @@
-//! An axis led by hand: from frame to frame to wherever the pointer is, planned anew in each.
+//! Axes that follow the pointer: from frame to frame to its present place, planned anew in each.
 
 use crate::project::refused;
 use serde::Deserialize;
@@ -21,10 +21,10 @@ struct Request {
     cycle: f64,
     /// Scans of this frame.
     scans: u32,
-    /// Where the axes are to go (u).
+    /// The target of the axes (u).
     target: f64,
     limits: Bounds,
-    /// The limits of the frame before: what is above the new ones comes down within these.
+    /// The limits of the last frame: a state above the new ones comes down within these.
     before: Bounds,
     load: Spring,
     axes: Vec<Axis>,
@@ -56,7 +56,7 @@ struct Spring {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Axis {
-    /// 2, 3 or 4: which limits hold.
+    /// 2, 3 or 4: the limits that apply.
     order: u8,
     /// Position, velocity, acceleration, jerk.
     state: [f64; 4],
@@ -122,7 +122,7 @@ fn led_axis(request: &Request, axis: &Axis) -> Result<Value, String> {
     }))
 }
 
-/// The limits that hold at this order; the others are none.
+/// The limits that apply at this order; the others are infinite.
 fn limits(bounds: Bounds, order: u8) -> Limits {
     Limits {
         velocity: bounds.velocity,

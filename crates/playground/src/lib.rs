@@ -27,7 +27,7 @@ pub use runs::{Ran, run};
 pub use save::save;
 pub use share::share;
 
-/// Files are written by the module with guests: a report holds a page of its own, which is large.
+/// Only the module with guests writes files, because a report contains a large page.
 #[cfg(not(feature = "guest"))]
 #[must_use]
 pub fn save(_: &str, _: &str) -> String {

@@ -1,4 +1,4 @@
-//! A script with the files it names, and what is wrong with it.
+//! A script with the files it names, and its faults.
 
 use crate::bounds;
 use base64::Engine;
@@ -9,21 +9,21 @@ use standstill_script::model::{Script, Span};
 use standstill_script::{Code, DIAGNOSTICS_SHOWN, ScriptError, read_with_programs};
 use std::collections::BTreeMap;
 
-/// What every function on a script takes.
+/// The input of every function on a script.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Project {
-    /// Name of the script, which messages and pages show.
+    /// Name of the script, for messages and pages.
     name: String,
     /// Its text.
     text: String,
     /// The files it names, by their paths relative to it.
     #[serde(default)]
     files: BTreeMap<String, File>,
-    /// Why others cannot be had.
+    /// The reasons why other files are missing.
     #[serde(default)]
     lacks: BTreeMap<String, String>,
-    /// Values in place of its own parameters.
+    /// Values that replace its own parameters.
     #[serde(default)]
     set: BTreeMap<String, f64>,
 }
@@ -40,7 +40,7 @@ enum File {
 }
 
 impl File {
-    /// How much of it came.
+    /// The length that arrived.
     fn len(&self) -> usize {
         match self {
             Self::Text(text) | Self::Bytes { base64: text } => text.len(),
@@ -110,10 +110,11 @@ impl Project {
     }
 }
 
-/// What is wrong with a script: `{"diagnostics": [..]}`, or `{"refused": ".."}`, or `{}`.
+/// The faults of a script: `{"diagnostics": [..]}`, or `{"refused": ".."}`, or `{}`.
 ///
-/// A diagnostic has `code`, `message`, `label`, `help`, `file`, and `from` and `to`, line and column from 1, where it is about a
-/// place; columns count characters. A build without guests answers `{"needs": "guests"}` to a script that has some. Work: proportional to the text.
+/// A diagnostic has `code`, `message`, `label`, `help`, `file`, and, if it refers to a place, `from` and
+/// `to`: line and column from 1. Columns count characters. A build without guests answers
+/// `{"needs": "guests"}` to a script that has some. Work: proportional to the text.
 #[must_use]
 pub fn check(request: &str) -> String {
     match Project::read(request).and_then(|project| project.script()) {
@@ -123,13 +124,13 @@ pub fn check(request: &str) -> String {
     .to_string()
 }
 
-/// Whether the module with guests may read what this one cannot.
+/// Whether the module with guests may read a script that this one cannot.
 fn needs_guests(error: &ScriptError) -> bool {
     let mut codes = error.diagnostics().iter().map(|found| found.code);
     !cfg!(feature = "guest") && codes.any(|code| code == Code::BadProgram)
 }
 
-/// The answer to what is not done.
+/// The answer to a refused request.
 pub fn refused(why: &str) -> Value {
     json!({"refused": why})
 }

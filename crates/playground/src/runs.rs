@@ -14,18 +14,21 @@ const PROGRESS_EVERY: u64 = 1_000;
 /// What a run left.
 #[derive(Clone, Debug, Default)]
 pub struct Ran {
-    /// JSON. Of a run: `verdict` (the last line of the command line's text), `passed`, `digest`, `scans`, `why`, `warnings`,
-    /// `rows`, `trace` (name, header, events as in reports) and `columns`. Else what [`check`](crate::check) answers.
+    /// JSON. For a run: `verdict` (the last line of the command line's text), `passed`, `digest`,
+    /// `scans`, `why`, `warnings`, `rows`, `trace` (name, header, events as in reports) and `columns`.
+    /// Otherwise the answer of [`check`](crate::check).
     pub about: String,
-    /// The numbers of all columns that have a `reals`, the index of their first one here; a number for each row.
+    /// The numbers of all columns that have a `reals`, which is the index of their first one here; a
+    /// number for each row.
     pub reals: Vec<f64>,
 }
 
-/// Runs a script to its end and judges its claims. `progress` is told from time to time how many of the scans are done, and says
-/// whether to go on.
+/// Runs a script to its end and judges its claims. `progress` is called from time to time with the number
+/// of scans done, and returns whether to continue.
 ///
-/// A column has `name`, `kind`, `role`, `is_time`, and either `reals` or `scans` and `values`: where it changes, and to what;
-/// integers are texts, since JSON's numbers lose some.
+/// A column has `name`, `kind`, `role`, `is_time`, and either `reals` or `scans` and `values`: the scans
+/// of its changes, and the new values. Integers are texts, because JSON's numbers are not exact for all
+/// of them.
 pub fn run(request: &str, mut progress: impl FnMut(u64, u64) -> bool) -> Ran {
     let ran = Project::read(request).and_then(|project| {
         let outcome = run_project(&project, &mut progress)?;

@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 use standstill_report::{Source, html};
 use standstill_trace::{Trace, csv, svg, vcd};
 
-/// Runs the script and gives the file that the command line would write of it: `form` is `csv`, `vcd`, `svg` or `report`. The
-/// answer is `{"text": ".."}`, or what [`check`](crate::check) answers.
+/// Runs the script and returns the file that the command line would write: `form` is `csv`, `vcd`, `svg`
+/// or `report`. The answer is `{"text": ".."}`, or that of [`check`](crate::check).
 #[must_use]
 pub fn save(request: &str, form: &str) -> String {
     let saved = Project::read(request).and_then(|project| {

@@ -1,4 +1,4 @@
-//! Links that hold a script: in the fragment of an address, which no browser sends anywhere.
+//! Links that contain a script, in the fragment of an address, which no browser sends to a server.
 
 use crate::bounds::{BYTES_MAX, LINK_MAX};
 use crate::project::refused;
@@ -8,14 +8,14 @@ use miniz_oxide::deflate::compress_to_vec;
 use miniz_oxide::inflate::decompress_to_vec_with_limit;
 use serde_json::{Value, json};
 
-/// What a fragment begins with: the version of its form, then a dot.
+/// The begin of a fragment: the version of its form, then a dot.
 const VERSION: u32 = 1;
 
-/// Of all levels the tightest.
+/// The level with the best compression.
 const LEVEL: u8 = 10;
 
-/// Packs an object into a link, or takes one apart: `{"pack": {..}}` is answered by `{"link": ".."}`, `{"unpack": ".."}` by
-/// `{"content": {..}}`; anything that cannot be done by `{"refused": ".."}`.
+/// Packs an object into a link, or unpacks one: `{"pack": {..}}` is answered by `{"link": ".."}`,
+/// `{"unpack": ".."}` by `{"content": {..}}`; a failure by `{"refused": ".."}`.
 #[must_use]
 pub fn share(request: &str) -> String {
     let answer = match serde_json::from_str::<Value>(request) {

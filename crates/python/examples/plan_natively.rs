@@ -1,5 +1,5 @@
-//! The planner's side of `plan` alone, for `bench/speed.py`: reads lines, and prints how many nanoseconds each takes, from keys and
-//! numbers to the plan, with its segments. The least of several tries.
+//! The planner's part of `plan`, for `bench/speed.py`: reads lines, and prints the nanoseconds for each,
+//! from keys and numbers to the plan with its segments. The least of several tries.
 
 use standstill_cli::plan::{Given, Member, planned};
 use std::hint::black_box;

@@ -1,4 +1,4 @@
-//! The answer to a line as a dict: the keys of the command line's answer, without a way through text.
+//! The answer to a line as a dict: the keys of the command line's answer, without a detour through text.
 
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -107,7 +107,7 @@ pub fn dict<'py>(
     Ok(answer)
 }
 
-/// A value that the planner tells as JSON: a number or a text; None without one, and for what is neither.
+/// A value that the planner gives as JSON: a number or a text; None for a missing or any other value.
 pub fn of_json<'py>(py: Python<'py>, json: Option<&str>) -> PyResult<Bound<'py, PyAny>> {
     let value = json.and_then(|json| serde_json::from_str(json).ok());
     Ok(match value {

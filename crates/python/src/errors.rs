@@ -71,7 +71,7 @@ fn diagnostic<'py>(py: Python<'py>, error: &ScriptError, found: &Diagnostic) -> 
 /// File, line and column.
 type Place = (String, usize, usize);
 
-/// One thing that is wrong; a line of 0 is that of what stands nowhere in the text.
+/// One fault; the line is 0 for a fault without a place in the text.
 fn told<'py>(
     py: Python<'py>,
     (code, message, help, place): (&str, &str, Option<&str>, Option<Place>),
@@ -87,7 +87,7 @@ fn told<'py>(
     Ok(told)
 }
 
-/// What keeps a script from being read or run.
+/// The reason why a script cannot be read or run.
 pub fn suite(py: Python<'_>, error: &SuiteError) -> PyErr {
     match error {
         SuiteError::Script(wrong) => script(py, wrong),
@@ -104,7 +104,7 @@ pub fn suite(py: Python<'_>, error: &SuiteError) -> PyErr {
     }
 }
 
-/// What the system said of a file: a `FileNotFoundError` and the like, which Python chooses by the number.
+/// The system's error for a file: a `FileNotFoundError` or similar, which Python chooses by the number.
 pub fn os(path: &Path, source: &io::Error) -> PyErr {
     match source.raw_os_error() {
         Some(number) => {

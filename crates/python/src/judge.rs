@@ -7,8 +7,9 @@ use standstill_script::suite::{self, Allowed};
 use standstill_trace::compare::Yardstick;
 use std::path::PathBuf;
 
-/// Holds a script against its claims and its golden, as `standstill test` does, and writes nothing: whether it passed, what it
-/// says of that as the command line does, and what it warns of. Files that it names lie in its folder and below, or in one of these.
+/// Judges a script by its claims and its golden, as `standstill test` does, and writes nothing. Returns
+/// whether it passed, the text of the command line, and its warnings. Files that it names must be in its
+/// folder or below, or in one of these.
 #[pyfunction]
 pub fn judge(py: Python<'_>, path: PathBuf, folders: Vec<PathBuf>) -> PyResult<(bool, String, String)> {
     let judged = py.detach(|| {

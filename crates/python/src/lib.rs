@@ -14,7 +14,7 @@ mod scripts;
 use pyo3::prelude::*;
 use std::ffi::OsString;
 
-/// The command line with these arguments, its name not among them; the status it is to end with.
+/// Runs the command line with these arguments, without its name, and returns its exit status.
 #[pyfunction]
 fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     let name = OsString::from("standstill");

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};
 use standstill_cli::plan::{Given, Member, Refusal, planned};
 
-/// What Python gave, where the planner's side can borrow it.
+/// Python's values in a form that the planner's side can borrow.
 enum Held<'py> {
     Number(f64),
     Json(String),
@@ -21,14 +21,14 @@ impl<'py> Held<'py> {
         if let Ok(object) = value.cast::<PyDict>() {
             return Self::of_object(object);
         }
-        // Most texts; one that is no Unicode goes the way of what is rare.
+        // Most texts; one that is not Unicode takes the rare path.
         if let Ok(text) = value.cast_exact::<PyString>()
             && let Ok(text) = text.to_str()
             && let Ok(json) = serde_json::to_string(text)
         {
             return Ok(Self::Json(json));
         }
-        // Numbers of NumPy that are no floats have a value as one, too.
+        // Numbers of NumPy that are not floats can be converted to one, too.
         let is_number = value.is_instance_of::<PyFloat>()
             || (value.is_instance_of::<PyInt>() && !value.is_instance_of::<PyBool>());
         if is_number && let Ok(number) = value.extract() {
@@ -40,7 +40,7 @@ impl<'py> Held<'py> {
 
     fn of_object(object: &Bound<'py, PyDict>) -> PyResult<Self> {
         let members = object.iter().map(|(key, value)| {
-            // A key that is no text is no field.
+            // A key that is not text is no field.
             let key = match key.cast_into::<PyString>() {
                 Ok(key) => key,
                 Err(error) => error.into_inner().str()?,
@@ -104,7 +104,7 @@ pub fn plan<'py>(py: Python<'py>, line: Option<&Bound<'py, PyDict>>) -> PyResult
     }
 }
 
-/// A refusal as an exception; what was refused is the object that was given, if one was.
+/// A refusal as an exception; the refused value is the given object, if there is one.
 fn refused(py: Python<'_>, line: &Bound<'_, PyDict>, refusal: &Refusal) -> PyErr {
     let told = || {
         let value = match refusal.field().and_then(|field| given(line, field)) {
@@ -118,7 +118,7 @@ fn refused(py: Python<'_>, line: &Bound<'_, PyDict>, refusal: &Refusal) -> PyErr
     told().unwrap_or_else(|error: PyErr| error)
 }
 
-/// What stands at a field; `limits.jerk` is one of `limits`.
+/// The value of a field; `limits.jerk` is a field of `limits`.
 fn given<'py>(line: &Bound<'py, PyDict>, field: &str) -> Option<Bound<'py, PyAny>> {
     match field.split_once('.') {
         None => line.get_item(field).ok().flatten(),

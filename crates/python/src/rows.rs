@@ -17,8 +17,8 @@ struct Held {
     lent: Option<Py<PyArray1<u64>>>,
 }
 
-/// A claim as Python takes it: path, text, whether it held, first and last scan, the scan in which it came true, and what spoke
-/// against it, each a scan and a text.
+/// A claim for Python: path, text, whether it held, first and last scan, the scan in which it came true,
+/// and the reasons against it, each a scan and a text.
 type Claim = (
     String,
     String,
@@ -28,7 +28,7 @@ type Claim = (
     Vec<(Option<u64>, String)>,
 );
 
-/// The rows of a run and what was found on them.
+/// The rows of a run and its results.
 #[pyclass(frozen, module = "standstill._native")]
 pub struct Rows {
     held: Mutex<Held>,
@@ -40,7 +40,7 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Of a run that did not come to its end: its claims speak of scans that never came.
+    /// Of a run that ended early: its claims refer to scans that never came.
     pub fn unjudged(trace: Trace) -> Self {
         let digest = digest::whole(&trace);
         Self::with_digest(trace, digest)
@@ -80,13 +80,13 @@ impl Rows {
         }
     }
 
-    /// The rows, once no other thread looks at them; it is let go on meanwhile.
+    /// The rows, once no other thread uses them; the GIL is released meanwhile.
     fn held(&self, py: Python<'_>) -> MutexGuard<'_, Held> {
         let held = self.held.lock_py_attached(py);
         held.unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    /// Calls `look` with the whole trace; where the rows are lent they are copied for it.
+    /// Calls `look` with the whole trace; lent rows are copied for it.
     fn with_trace<T: Send>(&self, py: Python<'_>, look: impl FnOnce(&Trace) -> T + Send) -> PyResult<T> {
         let mut held = self.held(py);
         let lent = held.lent.as_ref().map(|lent| lent.clone_ref(py));
@@ -135,7 +135,7 @@ impl Rows {
         &self.digest
     }
 
-    /// The last line of `standstill run`; none of a run that did not come to its end.
+    /// The last line of `standstill run`; none for a run that ended early.
     #[getter]
     fn verdict(&self) -> Option<&str> {
         self.verdict.as_deref()
@@ -147,13 +147,13 @@ impl Rows {
         self.claims.clone()
     }
 
-    /// Why claims fail, the likeliest first.
+    /// The reasons why claims fail, the likeliest first.
     #[getter]
     fn why(&self) -> Vec<String> {
         self.why.clone()
     }
 
-    /// What tests nothing, and what was changed on its way.
+    /// Items that test nothing, and values that were changed on the way.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.warnings.clone()
@@ -168,12 +168,12 @@ impl Rows {
             .collect()
     }
 
-    /// Names that occur in rows; the word of a name is its place in here.
+    /// Names that occur in rows; the word of a name is its index in this list.
     fn names(&self, py: Python<'_>) -> Vec<String> {
         self.held(py).trace.names().to_vec()
     }
 
-    /// All rows, one after the other, a word a cell: the memory they were recorded in.
+    /// All rows, one after the other, a word a cell, in the memory of the recording.
     fn words<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u64>>> {
         let mut held = self.held(py);
         if let Some(lent) = &held.lent {
@@ -187,7 +187,7 @@ impl Rows {
         Ok(words)
     }
 
-    /// What happened: scan, subject, text.
+    /// The events: scan, subject, text.
     fn events(&self, py: Python<'_>) -> PyResult<Vec<(usize, String, String)>> {
         self.with_trace(py, |trace| {
             let events = events(trace).into_iter();

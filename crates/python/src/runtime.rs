@@ -1,4 +1,4 @@
-//! A run that Python takes scan by scan.
+//! A run that Python advances scan by scan.
 
 use crate::errors;
 use crate::rows::Rows;
@@ -14,7 +14,7 @@ use standstill_trace::{Cell, shortest};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
-/// A session that was not finished yet.
+/// A session that is not finished.
 struct Open<'a>(Option<Session<'a>>);
 
 self_cell!(
@@ -29,13 +29,13 @@ self_cell!(
 /// A run between its scans.
 struct State {
     running: Running,
-    /// Names of the columns, as keys of what a scan tells.
+    /// Names of the columns, as keys of a scan's dict.
     keys: Vec<Py<PyString>>,
-    /// Points that were asked for, by the name that was used.
+    /// Points that were requested, by the name used.
     points: BTreeMap<String, Point>,
 }
 
-/// What an axis asked of its drive: what of the power stage, position, velocity.
+/// The order of an axis to its drive: request to the power stage, position, velocity.
 type Ordered = (&'static str, f64, f64);
 
 /// A run scan by scan. One call at a time: a second one at the same time is refused.
@@ -62,13 +62,13 @@ impl Scans {
 }
 
 impl State {
-    /// Calls `on` with the session; an exception once it is finished.
+    /// Calls `on` with the session; raises an exception once it is finished.
     fn with<T>(&mut self, on: impl FnOnce(&mut Session<'_>) -> T) -> PyResult<T> {
         let told = self.running.with_dependent_mut(|_, open| open.0.as_mut().map(on));
         told.ok_or_else(|| PyRuntimeError::new_err("this Runtime is finished: make a new one"))
     }
 
-    /// The point that scripts call so.
+    /// The point of this name in scripts.
     fn point(&mut self, name: &str) -> PyResult<Point> {
         if let Some(point) = self.points.get(name) {
             return Ok(*point);
@@ -96,7 +96,7 @@ impl State {
         })
     }
 
-    /// What every column holds in the last row.
+    /// The value of every column in the last row.
     fn signals<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.with(|_| ())?;
         let Self { running, keys, .. } = self;
@@ -131,7 +131,7 @@ fn value<'py>(py: Python<'py>, cell: Cell<'_>) -> Bound<'py, PyAny> {
     }
 }
 
-/// A value of Python as a person would write it for the script.
+/// A Python value in the form of a script.
 fn text(name: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
     if let Ok(value) = value.cast::<PyBool>() {
         return Ok(if value.is_true() { "TRUE" } else { "FALSE" }.to_owned());
@@ -186,7 +186,7 @@ impl Scans {
         })
     }
 
-    /// Has the next scan write these inputs: all of them, or none where one cannot be written.
+    /// The next scan writes these inputs: all of them, or none if one cannot be written.
     fn write(&self, inputs: &Bound<'_, PyDict>) -> PyResult<()> {
         let state = &mut *self.state()?;
         let mut changes = Vec::with_capacity(inputs.len());
@@ -202,7 +202,7 @@ impl Scans {
             .map_err(PyValueError::new_err)
     }
 
-    /// Does the next scan, and tells what every signal was in it. None if the run was over before.
+    /// Does the next scan, and returns the value of every signal in it. None if the run was over before.
     fn scan<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let state = &mut *self.state()?;
         let advanced = state.with(|session| session.advance())?;
@@ -212,7 +212,7 @@ impl Scans {
         state.signals(py).map(Some)
     }
 
-    /// What an axis asked of its drive last.
+    /// The last order of an axis to its drive.
     fn ordered(&self, axis: &str) -> PyResult<Ordered> {
         let state = &mut *self.state()?;
         let axis = state.axis(axis)?;
@@ -236,7 +236,7 @@ impl Scans {
             .map_err(|why| PyValueError::new_err(format!("{axis}: {why}")))
     }
 
-    /// Makes an axis or its drive fail in the next scan; without a kind the cause is gone.
+    /// Makes an axis or its drive fail in the next scan; without a kind the cause is removed.
     fn fault(&self, axis: &str, kind: Option<&str>, code: u16) -> PyResult<()> {
         let state = &mut *self.state()?;
         let axis = state.axis(axis)?;
@@ -268,7 +268,7 @@ impl Scans {
         self.state()?.signals(py)
     }
 
-    /// The inputs so far as steps of the script: a text whose run is this one.
+    /// The inputs so far as steps of the script: a text with the same run.
     fn as_script(&self, py: Python<'_>, text: &str) -> PyResult<String> {
         let changes = self.state()?.with(|session| session.changes().to_vec())?;
         let (path, ..) = &self.source;
@@ -282,7 +282,7 @@ impl Scans {
         Ok(Rows::unjudged(trace))
     }
 
-    /// Goes to the end of the run and judges its claims on all rows.
+    /// Runs to the end and judges the claims on all rows.
     fn finish(&self, py: Python<'_>) -> PyResult<Rows> {
         let state = &mut *self.state()?;
         let ended = py.detach(|| state.with(scripts::to_the_end))?;

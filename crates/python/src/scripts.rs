@@ -9,14 +9,14 @@ use standstill_script::{GUEST_MEMORY, Outcome, RunError, Session, warnings};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// Scans between two looks at the clock.
+/// Scans between two checks of the clock.
 const LOOK_EVERY: u64 = 64;
 
-/// Time between two looks whether somebody wants the run to end.
+/// Time between two checks for a request to end the run.
 const SIGNALS_EVERY: Duration = Duration::from_millis(50);
 
-/// Where a script comes from, and what it may do. Python gives these as one tuple: path, text, parameters, folders beside
-/// the script's own, memory of its guests.
+/// The source of a script, and its permissions. Python gives these as one tuple: path, text, parameters,
+/// folders beside the script's own, memory of its guests.
 pub type Source = (
     PathBuf,
     Option<String>,
@@ -25,7 +25,7 @@ pub type Source = (
     Option<u64>,
 );
 
-/// Reads a script: the text as one that would stand at the path, or the file.
+/// Reads a script: the text as if it were at the path, or the file.
 pub fn read(py: Python<'_>, (path, text, set, folders, memory): &Source) -> PyResult<Script> {
     let allowed = Allowed {
         folders: folders.clone(),
@@ -63,20 +63,20 @@ pub fn run(py: Python<'_>, source: Source) -> PyResult<(Rows, Option<PyErr>)> {
 /// A run with its verdict.
 pub fn told(py: Python<'_>, script: &Script, outcome: Outcome) -> Rows {
     py.detach(|| {
-        // The golden is not looked at, but the script has one.
+        // The golden is not used, but the script has one.
         let warnings = warnings(script, &outcome, script.golden);
         Rows::judged(outcome, &warnings)
     })
 }
 
-/// A run that cannot go on, by the name of its script.
+/// A run that cannot continue, with the name of its script.
 pub fn failed(py: Python<'_>, (path, ..): &Source, error: &RunError) -> PyErr {
     errors::run(py, &format!("{}: {error}", suite::shown(path)))
 }
 
-/// Why a run did not come to its end.
+/// The reason why a run ended early.
 pub enum Ended {
-    /// It could not go on.
+    /// It could not continue.
     Run(RunError),
     /// What a handler of Python raised, as Ctrl-C does.
     Signal(PyErr),
@@ -92,7 +92,7 @@ impl Ended {
     }
 }
 
-/// Goes on to the end of a run, without Python but for a look at signals.
+/// Runs to the end, without Python except for checks for signals.
 pub fn to_the_end(session: &mut Session<'_>) -> Result<(), Ended> {
     let mut looked = Instant::now();
     while session.advance().map_err(Ended::Run)? {

@@ -1,5 +1,6 @@
-//! The C library without `std` as a bare-metal image: every function of it, called with what the compiler knows nothing
-//! of. Its panic handler calls what no one defines, so the image links if, and only if, no panic is reachable.
+//! The C library without `std` as a bare-metal image. All its functions are called with values that the
+//! compiler does not know. Its panic handler calls a function that does not exist, so the image links if,
+//! and only if, no panic is reachable.
 #![cfg_attr(target_os = "none", no_std)]
 #![cfg_attr(target_os = "none", no_main)]
 
@@ -10,7 +11,7 @@ mod bare_metal {
     use core::hint::black_box;
     use standstill_capi as c;
 
-    /// Keeps a function of any kind, as a host that may call it would.
+    /// Keeps a function of any type, as if a host might call it.
     fn keep<F>(function: F) {
         black_box(function);
     }
@@ -21,7 +22,8 @@ mod bare_metal {
         };
     }
 
-    // SAFETY: nothing else in the image has this name, and nothing calls it: the image is linked and looked at, never run.
+    // SAFETY: nothing else in the image has this name, and nothing calls it: the image is linked and
+    // examined, never run.
     #[unsafe(no_mangle)]
     extern "C" fn _start() -> ! {
         keep::<extern "C" fn() -> u32>(c::standstill_abi_version);

@@ -9,8 +9,8 @@ mod bare_metal {
 
     use standstill_panic_probe::{Image, plan};
 
-    // SAFETY: nothing else in the image has this name, and no linker script or start-up code calls it with
-    // another signature: the image is linked and looked at, never run.
+    // SAFETY: nothing else in the image has this name, and no linker script or start-up code calls it
+    // with another signature: the image is linked and examined, never run.
     #[unsafe(no_mangle)]
     extern "C" fn _start() -> ! {
         let mut image = Image::new();
@@ -25,13 +25,13 @@ mod bare_metal {
     }
 
     unsafe extern "C" {
-        /// Defined nowhere: the link fails if anything calls it.
+        /// It does not exist: the link fails if anything calls it.
         fn a_panic_is_reachable() -> !;
     }
 
     #[panic_handler]
     fn panic(_: &core::panic::PanicInfo) -> ! {
-        // SAFETY: never called; an image in which it could be is not linked.
+        // SAFETY: never called; an image in which it could be called is not linked.
         unsafe { a_panic_is_reachable() }
     }
 }

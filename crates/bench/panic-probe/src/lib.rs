@@ -1,4 +1,4 @@
-//! Everything a scan can call in the four bottom crates, with values the compiler knows nothing of.
+//! All calls of a scan in the four bottom crates, with values that the compiler does not know.
 //!
 //! `examples/image.rs` links it to a bare-metal image whose panic handler does not exist: the linker keeps
 //! the handler only if a panic can be reached. `.ci/no-panic` does that and measures the image.
@@ -57,7 +57,7 @@ impl Image {
         })
     }
 
-    /// One scan as a host makes it, and whatever else a host may ask for in it.
+    /// One scan in a host, with all other calls that a host may make in it.
     pub fn scan(&mut self) {
         let Self {
             axes,
@@ -131,7 +131,7 @@ fn input(ty: PinType) -> Value {
     })
 }
 
-/// What a host, or a block of its own, may ask of an axis.
+/// The commands that a host, or a block of its own, may give an axis.
 fn command(axis: &mut Axis, log: &mut Log) {
     let scope = &mut Scope {
         scan: any(0),
@@ -158,7 +158,7 @@ fn command(axis: &mut Axis, log: &mut Log) {
     any(axis.plan().map(|(plan, elapsed)| plan.at(elapsed)));
 }
 
-/// What a simulation does to its drives.
+/// The disturbances of a simulation to its drives.
 fn disturb(drive: &mut IdealDrive) {
     drive.fail(any(1));
     drive.cut_power();

@@ -1,8 +1,9 @@
 //! Random machines with random programs, and a digest of every bit they publish.
 //!
-//! The number is the same on every processor: `.ci/deep` compares it. It changes with the behaviour of a block, the axis
-//! or the planner, so no file has it. What is drawn needs no heap and no operating system, so that a bare processor can
-//! do the same; rules are held by `standstill soak blocks`, not here.
+//! The number is the same on every processor: `.ci/deep` compares it. It changes with the behaviour of a
+//! block, the axis or the planner, so no file has it. The random draws need no heap and no operating
+//! system, so that a bare processor can do the same. `standstill soak blocks` checks the rules; this does
+//! not.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -22,7 +23,7 @@ const MACHINES: u64 = 100;
 /// Scans of each.
 const SCANS: u64 = 1000;
 
-/// What came of the programs.
+/// The results of the programs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Played {
     /// Scans of all machines.
@@ -93,7 +94,7 @@ fn play_with(mut random: Random, machines: u64) -> Played {
 mod tests {
     use super::*;
 
-    /// Couplings among them; other processors are held against the same line by `.ci/deep`.
+    /// There are couplings among them; `.ci/deep` compares other processors with the same line.
     ///
     /// Covers: G85
     #[test]
@@ -101,7 +102,7 @@ mod tests {
         let played = play();
         assert_eq!(played.scans, 100_000);
         assert!(played.plans > 100 && played.refused > 100, "{played}");
-        // Homing shows where MC_Home waited for its turn: else only setting a position takes no scan.
+        // Homing shows where MC_Home waited; otherwise only setting a position takes no scan.
         assert_eq!(played.states, 0b1111_1111, "{:#b}", played.states);
     }
 

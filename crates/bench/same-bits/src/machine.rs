@@ -1,4 +1,5 @@
-//! A machine: axes, ideal drives and instances of blocks, all drawn at random, and a hand that does things at random.
+//! A machine: axes, ideal drives and instances of blocks, all drawn at random, and random actions on
+//! them.
 
 use core::array::from_fn;
 use standstill_axis::{
@@ -105,7 +106,7 @@ impl Machine {
         self.publish(fold);
     }
 
-    /// Presses, turns values, breaks and repairs drives.
+    /// Presses, changes values, breaks and repairs drives.
     fn disturb(&mut self, random: &mut Random) {
         let at = random.below(AXES as u64) as usize;
         let place = random.below(BLOCKS as u64) as usize;
@@ -163,7 +164,7 @@ impl Machine {
         from_fn(|at| self.axes[at].state())
     }
 
-    /// What was recorded in this scan.
+    /// The records of this scan.
     pub fn events(&self) -> impl Iterator<Item = Event> {
         self.log.since(self.told).map(|record| record.event)
     }
@@ -236,7 +237,7 @@ fn block(random: &mut Random, name: &str, axis: usize, config: &AxisConfig, cycl
     block
 }
 
-/// A few records somewhere among the numbers of all tables.
+/// A few records at a random place among the numbers of all tables.
 fn table(random: &mut Random, of: TableInfo) -> TableRef {
     let most = (CELLS / of.fields.len()).min(of.most);
     let records = 1 + random.below(most as u64);
@@ -268,14 +269,14 @@ fn draw(random: &mut Random, block: &mut BlockInstance, config: &AxisConfig, cyc
     let _refused = block.set(index, value);
 }
 
-/// A number that suits the unit of the pin, now and then none that does.
+/// A number that suits the unit of the pin, and sometimes one that does not.
 fn number(random: &mut Random, pin: &Pin, config: &AxisConfig, cycle: f64) -> Value {
     let limits = &config.limits;
     let part = random.between(0.05, 1.0);
     let magnitude = match pin.unit {
         "u" => random.one_of(&[1.0, 30.0, 500.0]) * limits.velocity * cycle,
         "u/s" => limits.velocity,
-        // A zero takes what the axis has.
+        // A zero takes the default of the axis.
         "u/s^2" | "u/s^3" | "u/s^4" if random.one_in(2) => 0.0,
         "u/s^2" => limits.acceleration,
         "u/s^3" if limits.jerk.is_finite() => limits.jerk,
@@ -290,7 +291,7 @@ fn number(random: &mut Random, pin: &Pin, config: &AxisConfig, cycle: f64) -> Va
 /// Writes an input by its name, if the block has it.
 fn set(block: &mut BlockInstance, name: &str, value: Value) {
     if let Some((index, _)) = block.info().pin(name) {
-        // What is called so and has another type stays as it is.
+        // A pin of this name with another type is not changed.
         let _refused = block.set(index, value);
     }
 }
