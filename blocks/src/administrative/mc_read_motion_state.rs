@@ -1,4 +1,4 @@
-//! `MC_ReadMotionState`: what the motion of an axis is doing.
+//! `MC_ReadMotionState`: the state of the motion of an axis.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name; rules R52 to R59, V12b.
 

@@ -108,7 +108,7 @@ impl Block for McGearIn {
                 couple(context.axes, inputs.slave, &request, &mut context.scope)
             });
         if phase.is_reached() {
-            // Nothing else is to be told.
+            // There is nothing else to report.
             return Outputs {
                 in_gear: true,
                 busy: true,

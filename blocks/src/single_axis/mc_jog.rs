@@ -120,7 +120,7 @@ impl McJog {
         let (axis, scope) = context.axis(given.axis)?;
         if Phase::from(axis.fate(given.id)).is_busy() {
             let gentle = halt(axis, given.dynamics, scope);
-            // If the gentle ramp would take too long, the axis must stop all the same.
+            // If the gentle ramp would take too long, the axis must still stop.
             given.id = gentle.or_else(|_| halt(axis, Dynamics::default(), scope))?;
         }
         Ok(())

@@ -1,4 +1,4 @@
-//! `MC_MoveContinuousRelative`: one axis by a distance, at whose end it goes on at a given velocity.
+//! `MC_MoveContinuousRelative`: one axis by a distance; it then continues at a given velocity.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 

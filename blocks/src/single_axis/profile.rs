@@ -145,7 +145,7 @@ impl<R: Point> ProfileCore<R> {
                 axis.start_profile(id, &none, scope);
             }
         } else if changed {
-            // The block shows no Error: its command goes on as it was (R21).
+            // The block shows no Error: its command continues unchanged (R21).
             let _recorded = given.read(tables, |profile| axis.update_profile(id, profile, scope));
         }
     }

@@ -92,7 +92,7 @@ mod tests {
         Outputs { qu, qd, cv }
     }
 
-    /// CT-1: R, then LD, then the edges; whatever loses is spent.
+    /// CT-1: R, then LD, then the edges; an edge that loses is consumed.
     #[test]
     fn reset_wins_over_load_and_load_over_edges() {
         let mut block = at(7);

@@ -1,7 +1,7 @@
 //! The standard function blocks of IEC 61131-3, exact to the call.
 //!
-//! Where the standard leaves a choice: counters go on past PV to the limits of INT; F_TRIG sees no edge
-//! in its first call; timers use the time of the call and not the number of calls.
+//! Choices that the standard leaves open: counters count past PV to the limits of INT; F_TRIG sees no
+//! edge in its first call; timers use the time of the call and not the number of calls.
 
 pub mod ctd;
 pub mod ctu;

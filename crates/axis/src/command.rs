@@ -376,7 +376,7 @@ pub enum Command {
     GearOut,
     /// MC_CamIn: follows a master on a cam. Give it through [`couple`](crate::couple).
     CamIn(CamIn),
-    /// MC_CamOut: leaves its cam; keeps the velocity.
+    /// MC_CamOut: leaves its cam and keeps the velocity.
     CamOut,
 }
 

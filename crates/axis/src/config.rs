@@ -55,7 +55,7 @@ pub enum OnMasterLost {
 /// The behaviour of a held jog at a software limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum JogAtLimit {
-    /// It goes on towards the limit, and the axis stops before it with an error.
+    /// It continues towards the limit, and the axis stops before it with an error.
     #[default]
     Error,
     /// It comes to rest on the limit and stays there while the button is held.
@@ -432,7 +432,7 @@ impl AxisConfig {
         wrong
     }
 
-    /// Refuses a profile that can serve no move of the axis, because it cannot keep one of its limits.
+    /// Refuses a profile that is useless for the axis, because it cannot keep one of its limits.
     fn check_profile(&self) -> Result<(), ConfigError> {
         let snap = ("limits.snap", self.limits.snap);
         let jerk = ("limits.jerk", self.limits.jerk);

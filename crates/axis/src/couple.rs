@@ -1,7 +1,7 @@
 //! Couplings, seen from above all axes: which axis may follow which, and in which order they move.
 //!
-//! Masters move before their slaves, whatever their numbers and the order of block calls. A command that
-//! would close a ring is refused.
+//! Masters move before their slaves, independent of their numbers and of the order of block calls. A
+//! command that would close a ring is refused.
 
 use crate::axis::{Future, Part, Seen, Turn, Values, View};
 use crate::{

@@ -85,7 +85,7 @@ pub enum SwitchEdge {
 pub struct BlockDetection {
     /// The actual velocity is below this (u/s) ..
     pub velocity: f64,
-    /// .. for so many scans, while the set velocity is above it.
+    /// .. for this number of scans, while the set velocity is above it.
     pub scans: u32,
 }
 
@@ -131,7 +131,7 @@ impl Homing {
         !matches!(self.procedure, Procedure::Direct | Procedure::Drive)
     }
 
-    /// Whether the reference lies at the lower end of the home switch.
+    /// Whether the reference is at the lower end of the home switch.
     pub(crate) const fn is_lower_end(&self) -> bool {
         match self.edge {
             SwitchEdge::SwitchPositive => true,
@@ -358,7 +358,7 @@ mod tests {
         for value in bad {
             let refused = |key, homing: Homing| match homing.check(&Limits::NONE) {
                 Err(ConfigError::NotPositive { key: named, .. }) => assert_eq!(named, key, "{value}"),
-                // 0 stands for a velocity that was not given.
+                // 0 means that the velocity was not given.
                 Err(ConfigError::HomingMissing { key: named, .. }) if value == 0.0 => assert_eq!(named, key),
                 other => panic!("{key} {value}: {other:?}"),
             };

@@ -135,7 +135,7 @@ pub enum Event {
         error: ErrorId,
     },
     /// The instance was triggered anew, and its new command was refused or given to another axis: its
-    /// earlier motion goes on to its end, and no block follows it.
+    /// earlier motion continues to its end, and no block follows it.
     Orphaned,
     /// The axis follows a master.
     Coupled {
@@ -157,7 +157,7 @@ pub enum Event {
     },
     /// From this scan on the slave is on the law of its gear.
     InGear,
-    /// The shift between a master and what the slave sees of it begins to move.
+    /// The phase shift between a master and its slave begins to move.
     Phasing {
         /// To this (u of the master).
         to: f64,

@@ -30,7 +30,7 @@ pub struct Replan {
 }
 
 impl Replan {
-    /// The plan of order 4, or of 3: without the snap bound, and whatever the start's jerk.
+    /// The plan of order 4, or of 3: without the snap bound, for any jerk at the start.
     ///
     /// # Errors
     /// None for what [`Random`] draws.

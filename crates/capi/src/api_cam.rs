@@ -30,7 +30,7 @@ pub unsafe extern "C" fn standstill_cams_size(slots: u32, pieces: u32, bytes: *m
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STORAGE, NO_ROOM (there is one already), BAD_VALUE.
 ///
 /// # Safety
-/// Pointers are null or lead to what their types say, `storage` to so many bytes.
+/// Pointers are null or valid for their types, `storage` for the given number of bytes.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_cams_init"))]
 pub unsafe extern "C" fn standstill_cams_init(
     runtime: *mut Runtime,

@@ -454,7 +454,7 @@ impl DriveSetup {
         }
     }
 
-    /// What stands along the travel.
+    /// The switches and pulses along the travel.
     fn switches(&self) -> Result<Switches, SetupFault> {
         let pair = |there: u32, keys: [&'static str; 2], from: f64, to: f64| {
             if there == 0 {
@@ -562,7 +562,7 @@ mod tests {
     use standstill_axis::keys::AXIS;
     use std::vec::Vec;
 
-    /// What a host does to set a key, in addition to what the key requires.
+    /// The action of a host to set a key, in addition to the key's own rules.
     type Set = fn(&mut AxisSetup);
 
     /// Every key of an axis, and how a C host sets it.

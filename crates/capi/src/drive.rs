@@ -16,7 +16,7 @@ pub(crate) enum AnyDrive {
     Simulated(SimulatedDrive),
 }
 
-/// What a host has reported since the last tick began.
+/// The reports of a host since the begin of the last tick.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum News {
     /// Nothing.
@@ -31,7 +31,7 @@ enum News {
 pub(crate) struct HostDrive {
     feedback: DriveFeedback,
     report: DriveReport,
-    /// What the host has reported since the last tick began.
+    /// The reports of the host since the begin of the last tick.
     news: News,
     command: DriveCommand,
     order: DriveOrder,

@@ -15,7 +15,7 @@ use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_drives::simulated::{DriveChange, SimulatedDrive};
 use standstill_fb::{Context, PinType, axis_number, numbered_axis};
 
-/// The instance number in records that no block caused; `standstill-scan` has the same.
+/// The instance number in records without a block; `standstill-scan` has the same.
 pub(crate) const NOBODY: InstanceId = InstanceId(u16::MAX);
 
 /// The largest number of axes of a runtime.

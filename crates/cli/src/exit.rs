@@ -173,7 +173,7 @@ pub fn go_on(result: Result<Exit, Failure>, out: &mut dyn Write) -> Result<Exit,
 }
 
 /// Writes lines to standard error with all characters visible. Unlike `eprintln!` it does not panic if
-/// nobody can read it.
+/// the reader has gone.
 pub fn complain(text: &str) {
     let mut text = printable_lines(text).into_owned();
     if paint::wanted(&io::stderr()) {

@@ -256,7 +256,7 @@ impl Stretch {
             ),
             Err(why) => writeln!(text, "  no swing: {why}"),
         };
-        // A string takes whatever is written to it.
+        // Writing to a string cannot fail.
         let _ = added;
         text
     }

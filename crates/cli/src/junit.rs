@@ -111,7 +111,7 @@ fn write_case(out: &mut String, case: &Case) {
         Ending::Broken => ("error", "broken"),
     };
     let mut first = case.text.lines().next().unwrap_or_default().to_owned();
-    // What a reader shows in its list.
+    // The text that a reader shows in its list.
     if let Some(why) = case.text.lines().skip_while(|line| *line != "why").nth(1) {
         first = format!("{first}; why: {}", why.trim());
     }

@@ -100,7 +100,7 @@ fn program(arguments: &[OsString]) -> Exit {
     }
 }
 
-/// Whether what a command prints is for programs.
+/// Whether the output of a command is for programs.
 fn is_data(command: &Command) -> bool {
     match command {
         Command::Plan { .. }
@@ -137,7 +137,7 @@ fn is_data(command: &Command) -> bool {
 /// Prints clap's text: help and version on standard output, mistakes on standard error.
 fn explained(error: &clap::Error) -> Exit {
     match error.print() {
-        // A mistake remains one even if nobody reads of it.
+        // An error remains an error even if its message has no reader.
         _ if error.use_stderr() => Exit::Usage,
         Ok(()) => Exit::Passed,
         Err(error) => Failure::from(error).report(),
@@ -338,7 +338,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
     }
 }
 
-/// Whether a path stands for standard input.
+/// Whether a path means standard input.
 fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
 }
@@ -357,7 +357,7 @@ fn with_lines(
     command(&mut BufReader::new(file), &name)
 }
 
-/// Standard input; tells a person at a terminal that the program waits for it.
+/// Standard input. On a terminal a message says that the program waits for it.
 fn standard_input() -> impl BufRead {
     if io::stdin().is_terminal() {
         exit::complain("reading from the terminal, one JSON object a line");

@@ -1,4 +1,4 @@
-//! `--time-limit`: ends a command that takes too long, whatever it does.
+//! `--time-limit`: ends any command that takes too long.
 
 use crate::exit::{Exit, Failure, complain};
 use crate::out;

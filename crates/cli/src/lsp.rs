@@ -4,7 +4,8 @@ use crate::exit::{Exit, Failure};
 use crate::st::dialect;
 use standstill_lsp::Ended;
 
-/// Serves an editor until it ends the session. An end without `shutdown` is a failure, as the protocol says.
+/// Runs the language server until the editor ends the session. An end without `shutdown` is a failure, as
+/// the protocol says.
 pub fn lsp(named: Option<&str>) -> Result<Exit, Failure> {
     match standstill_lsp::stdio(&dialect(named)?) {
         Ok(Ended::Exit) => Ok(Exit::Passed),

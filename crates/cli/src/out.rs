@@ -1,4 +1,4 @@
-//! Standard output, and its end when nobody reads it any more.
+//! Standard output, and its end when its reader has gone.
 
 use crate::paint;
 use standstill_trace::printable_lines;
@@ -67,7 +67,7 @@ fn standard() -> MutexGuard<'static, Standard> {
     STANDARD.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// Whether nobody reads standard output any more, for commands that would continue as long as they get
+/// Whether the reader of standard output has gone, for commands that would continue as long as they get
 /// input.
 pub fn is_closed() -> bool {
     standard().closed

@@ -1,5 +1,5 @@
-//! Colours on a terminal. They are added to whole lines of text when these are written, so no command
-//! knows of them, and pipes and files get none.
+//! Colours on a terminal. They are added to whole lines of text when these are written, so commands need
+//! no code for them, and pipes and files get none.
 
 use anstream::stream::RawStream;
 use anstream::{AutoStream, ColorChoice};
@@ -31,7 +31,7 @@ const HEADS: [(&str, Style); 10] = [
     ("help", HELP),
 ];
 
-/// What a line may have behind `: `, as the last line of a run.
+/// The words that a line may have after `: `, such as the last line of a run.
 const VERDICTS: [(&str, Style); 2] = [("passed, ", GOOD), ("FAILED, ", BAD)];
 
 /// Whole lines with colours.

@@ -15,7 +15,7 @@ const ERASE: &str = "\r\x1b[K";
 /// The line. It is erased when this is dropped.
 #[derive(Debug)]
 pub struct Progress {
-    /// The next time to write the line; never if nobody watches.
+    /// The next time to write the line; never without a terminal.
     next: Option<Instant>,
     shown: bool,
 }

@@ -204,7 +204,7 @@ fn run_one(
     tell(&name, (&script, &outcome), arguments, dialect, told, out)
 }
 
-/// Says how a run went, and writes its files.
+/// Prints the result of a run, and writes its files.
 fn tell(
     name: &str,
     (script, outcome): (&Script, &Outcome),
@@ -297,7 +297,8 @@ pub fn failing_claims(outcome: &Outcome) -> String {
     text.lines().map(|line| format!("  {line}\n")).collect()
 }
 
-/// The last line: how many claims held, how long it was, and one number for every bit, which takes a look at each.
+/// The last line: the number of claims that hold, the length of the run, and one digest over every bit,
+/// which reads each of them.
 pub fn verdict(outcome: &Outcome, digest: u64) -> String {
     let (trace, verdicts) = (&outcome.trace, &outcome.verdicts);
     let held = verdicts.iter().filter(|verdict| verdict.passed()).count();

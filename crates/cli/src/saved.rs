@@ -8,7 +8,7 @@ use std::time::SystemTime;
 /// Endings of files that tests write themselves.
 const WRITTEN: [&str; 2] = [".new", ".partial"];
 
-/// Folders that nobody edits: they may have very many files.
+/// Folders without edited files: they may have very many files.
 const LEFT_OUT: [&str; 2] = ["target", "node_modules"];
 
 /// When each file below some paths was saved, and how long it is.

@@ -157,8 +157,8 @@ fn answer(answers: &mut dyn BufRead) -> Option<bool> {
     }
 }
 
-/// Judges the scripts, and again whenever a file was saved: failed ones first. It ends when nobody can
-/// read its output.
+/// Judges the scripts, and again whenever a file was saved: failed ones first. It ends when its output
+/// has no reader.
 pub fn watch(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
     let mut failed = BTreeSet::new();
     loop {

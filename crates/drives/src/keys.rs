@@ -118,7 +118,7 @@ macro_rules! limit_switches {
     };
 }
 
-/// What stands along the travel of any drive.
+/// The switches and pulses along the travel of any drive.
 macro_rules! home_switch {
     () => {
         object!(

@@ -445,7 +445,7 @@ impl Drive for SimulatedDrive {
         if let Kind::Cia402(drive) = &self.kind {
             self.travel.drop_increments(drive.node().origin());
         }
-        // Switches have fixed places, whatever the encoder reports.
+        // Switches have fixed positions, independent of the reports of the encoder.
         self.travel.read(&mut feedback);
         feedback.position = self.told_position.unwrap_or(feedback.position);
         self.position = feedback.position;

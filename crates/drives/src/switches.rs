@@ -157,7 +157,7 @@ impl Travel {
         report.equipment.limit_switches |= has.limit_switches;
     }
 
-    /// Takes what the drive is asked.
+    /// Takes the command for the drive.
     pub fn order(&mut self, order: &DriveOrder) {
         // The latch starts afresh when it is armed.
         if !self.ordered {

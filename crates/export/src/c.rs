@@ -147,8 +147,8 @@ pub(crate) const fn c_type(scalar: Scalar) -> &'static str {
     }
 }
 
-/// The members of a structure. Gaps are members, too, so that no compiler adds its own, whatever its
-/// alignment of `double` is.
+/// The members of a structure. Gaps are members, too, so that no compiler adds its own, for any alignment
+/// of `double`.
 fn fields(out: &mut String, pins: &[Pin], start: usize, layout: &Layout, pointer: Pointer) {
     let mut at = start;
     let gap = |out: &mut String, at: &mut usize, to: usize| {

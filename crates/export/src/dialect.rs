@@ -110,7 +110,7 @@ impl Dialect {
         &self.pins
     }
 
-    /// What a pin is called.
+    /// The name of a pin.
     pub(crate) fn pin<'a>(&'a self, block: &BlockInfo, pin: &'a Pin) -> &'a str {
         let other = self
             .pins

@@ -1,4 +1,4 @@
-//! A block as a type, an instance of it, and what a call may touch.
+//! A block as a type, an instance of it, and the data that a call may use.
 
 use crate::flat::Pointer;
 use crate::{Direction, Pin, PinError, Pins, Value};
@@ -32,7 +32,7 @@ impl Group {
     }
 }
 
-/// What a block may use during one call.
+/// The data that a block may use during one call.
 #[derive(Debug)]
 pub struct Context<'a, P: Planner = Standard> {
     /// Time of this task execution (ns). It does not change during the call.
@@ -99,14 +99,14 @@ pub struct Instance<B: Block> {
     pub inputs: B::Inputs,
     /// Outputs of the last call.
     pub outputs: B::Outputs,
-    /// What the block itself remembers.
+    /// The state of the block itself.
     pub block: B,
 }
 
 impl<B: Block> Instance<B> {
     /// Calls the block with the inputs as they stand.
-    // Inlined, so that the outputs are written in place: after a copy the processor waits for what it has
-    // just written.
+    // Inlined, so that the outputs are written in place: after a copy the processor would wait for its
+    // own writes.
     #[inline(always)]
     pub fn call<P: Planner>(&mut self, context: &mut Context<'_, P>) {
         self.outputs = self.block.call(&self.inputs, context);

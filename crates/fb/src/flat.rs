@@ -187,9 +187,9 @@ impl BlockInfo {
 
 /// One pin value in bytes.
 pub trait Flat: Copy {
-    /// The number at `offset`; zero bytes if it lies outside.
+    /// The number at `offset`; zero bytes if it is outside.
     fn read(flat: &[u8], offset: usize) -> Self;
-    /// Writes the number to `offset`, unless it lies outside.
+    /// Writes the number to `offset`, unless it is outside.
     fn write(self, flat: &mut [u8], offset: usize);
 }
 

@@ -7,7 +7,7 @@ use standstill_axis::{
     Axis, AxisId, Command, CommandId, ErrorId, Planner, Scope, Superimpose, update_coupled,
 };
 
-/// What a block commands, as it stands at its pins.
+/// The values of a command, from the pins of its block.
 pub trait Values: Copy {
     /// Whether `other` has the same values, bit for bit.
     fn is_same(&self, other: &Self) -> bool;

@@ -96,7 +96,7 @@ impl<F: Fn(Message) -> bool> Sink for F {
     }
 }
 
-/// Reads messages until the input ends or nobody receives them. A frame without a message is answered
+/// Reads messages until the input ends or the receiver has gone. A frame without a message is answered
 /// with the JSON-RPC error for it, and the next one is read.
 pub(crate) fn read_all(input: &mut impl BufRead, to: &impl Sink) -> Result<(), FrameError> {
     while let Some(bytes) = frame(input)? {

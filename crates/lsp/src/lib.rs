@@ -22,8 +22,8 @@ use standstill_st::Dialect;
 use std::io::{self, BufReader};
 use std::thread;
 
-/// Serves an editor on standard input and output until it says `exit` or closes its end. Memory and work are bounded by the
-/// documents that it has open.
+/// Runs the language server on standard input and output until the editor sends `exit` or closes its end.
+/// Memory and work are bounded by the documents that it has open.
 ///
 /// # Errors
 /// [`FrameError`], if the input is no frame of the protocol; the next one cannot be found then.

@@ -28,7 +28,7 @@ pub enum Ended {
     Closed,
 }
 
-/// Serves an editor over a connection until the session ends.
+/// Runs the language server over a connection until the session ends.
 pub fn serve(connection: &Connection, dialect: &Dialect) -> Ended {
     let mut server = Server {
         connection,

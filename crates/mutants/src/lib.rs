@@ -1,6 +1,6 @@
-//! Finds what the tests do not see. It changes the sources of the axis, the blocks and their core a
-//! little, one change at a time, and runs the scan scripts and then the Rust tests to see whether one
-//! fails.
+//! Finds changes that the tests do not detect. It changes the sources of the axis, the blocks and their
+//! core a little, one change at a time, and runs the scan scripts and then the Rust tests to see whether
+//! one fails.
 //!
 //! All sampled changes are in one build, in a copy below `target/mutants`; an environment variable
 //! chooses one.
@@ -42,7 +42,7 @@ struct Args {
     scripts: bool,
 }
 
-/// Does what the command line asks for.
+/// Runs the command line.
 ///
 /// # Errors
 /// The reason for a failure.

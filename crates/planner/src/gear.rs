@@ -390,7 +390,7 @@ fn common_measures(master: f64, slave: f64) -> Option<[u128; 2]> {
     let (master, master_power) = odd(master)?;
     let (slave, slave_power) = odd(slave)?;
     let shift = master_power - slave_power;
-    // With 16 bits of a ratio 127; more than 58 bits of shift do not fit, whatever divides both.
+    // With 16 bits of a ratio 127; more than 58 bits of shift do not fit, for any common divisor.
     let shifted = |value: u64, by: i32| (by <= 58).then(|| u128::from(value) << by.max(0));
     Some([shifted(master, shift)?, shifted(slave, -shift)?])
 }

@@ -191,8 +191,8 @@ pub trait Planner {
 /// How the moves of an axis to a position are planned (docs/planner.md, section 13).
 ///
 /// Every profile ends at rest exactly on the target within the limits. If the requested method cannot
-/// serve a move, the move is planned as [`MoveProfile::Online`]. For all methods but `ShortPath` that is
-/// every move that starts in motion.
+/// plan a move, the move is planned as [`MoveProfile::Online`]. For all methods except `ShortPath` this
+/// is every move that starts in motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MoveProfile {
     /// Every switch on the sample grid, the fewest scans if two snap pulses may overlap: [`GridPlan`]
@@ -359,7 +359,7 @@ impl Standard {
         }
     }
 
-    /// The plan of `profile`; none if it cannot serve the move.
+    /// The plan of `profile`; none if it cannot plan the move.
     fn by_profile(
         &self,
         profile: MoveProfile,
@@ -369,7 +369,7 @@ impl Standard {
     ) -> Option<Result<StandardPlan, PlanError>> {
         let rest = start.is_at_rest();
         let grid = |method| rest.then(|| self.on_grid(method, start.position, target, limits));
-        // A method of a paper that cannot serve the move returns an error.
+        // A method of a paper that cannot plan the move returns an error.
         let sampled =
             |plan: Result<SampledPlan, PlanError>| plan.ok().map(|plan| Ok(StandardPlan::Sampled(plan)));
         match profile {

@@ -411,8 +411,8 @@ fn piece_fits(state: &Setpoint, length: f64, limits: &Limits, room: Option<&mut 
 /// The part of `limits` that the rest of a plan leaves: the limits less its largest magnitudes, 0 if it
 /// leaves nothing. Acceleration and deceleration are reduced by the larger of the two.
 ///
-/// A motion within it keeps `limits` together with the plan, whatever their times. Bounded by
-/// [`MAX_SWITCHES`] pieces.
+/// A motion within it keeps `limits` together with the plan, at any times. Bounded by [`MAX_SWITCHES`]
+/// pieces.
 pub(crate) fn room(part: Part<'_>, limits: &Limits, cycle: f64) -> Limits {
     let Some(peak) = peaks(part, f64::INFINITY, cycle) else {
         return Limits {

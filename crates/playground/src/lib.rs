@@ -4,8 +4,8 @@
 //! belong to the libraries; the page is in `page/`. There are no files, no clock and no network: a script
 //! comes with the texts of the files it names.
 //!
-//! Everything is bounded, and a message names the bound, so that nobody who opens a link waits for
-//! somebody else's large script. A run reports its progress, and its caller may end it.
+//! Everything is bounded, and a message names the bound, so that a link to a large script does not block
+//! its reader. A run reports its progress, and its caller may end it.
 
 mod bounds;
 #[cfg(target_arch = "wasm32")]

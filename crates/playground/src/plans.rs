@@ -13,7 +13,7 @@ pub fn plan(lines: &str) -> String {
         return refused(&why).to_string();
     }
     let mut answers = Vec::new();
-    // What is refused stands in the answers; writing to memory cannot fail.
+    // Refusals are part of the answers; writing to memory cannot fail.
     let _ = standstill_cli::plan::plan(&mut lines.as_bytes(), "lines", &mut answers);
     String::from_utf8_lossy(&answers).into_owned()
 }

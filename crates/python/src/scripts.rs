@@ -78,7 +78,7 @@ pub fn failed(py: Python<'_>, (path, ..): &Source, error: &RunError) -> PyErr {
 pub enum Ended {
     /// It could not continue.
     Run(RunError),
-    /// What a handler of Python raised, as Ctrl-C does.
+    /// The exception that a signal handler of Python raised, such as for Ctrl-C.
     Signal(PyErr),
 }
 

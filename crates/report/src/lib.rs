@@ -28,7 +28,7 @@ pub struct Source<'a> {
     pub name: &'a str,
     /// The trace.
     pub trace: &'a Trace,
-    /// What is missing, one phrase each ([`standstill_trace::Loaded::lacks`]).
+    /// The missing parts, one phrase each ([`standstill_trace::Loaded::lacks`]).
     pub lacks: &'a [String],
 }
 

@@ -110,7 +110,7 @@ pub struct Executor {
     mode: Mode,
 }
 
-/// What the programs of a scan did.
+/// The results of the programs of a scan.
 #[derive(Clone, Copy, Default)]
 struct Work {
     used_ns: u64,
@@ -164,7 +164,7 @@ impl Executor {
     ///
     /// A resource whose programs already have their initial values needs no start before its first scan;
     /// axes then have their configured state. Before any later start the axes must be off, so that no
-    /// motion continues after it. Scan numbers go on, so that records stay unambiguous.
+    /// motion continues after it. Scan numbers continue, so that records stay unambiguous.
     ///
     /// # Errors
     /// [`NotOff`] if an axis is not off; nothing has changed then.
@@ -258,7 +258,7 @@ impl Executor {
         }
     }
 
-    /// What a task did since the start.
+    /// The counts of a task since the start.
     pub fn counts(&self, task: TaskId) -> Option<TaskCounts> {
         self.tasks.get(task.0).map(Task::counts)
     }
@@ -288,7 +288,8 @@ impl Executor {
         Ok((tick, (tick - last).saturating_sub(1)))
     }
 
-    /// Samples SINGLE, then runs what is due: tasks by priority, then programs without a task.
+    /// Samples SINGLE, then runs the programs of this scan: tasks by priority, then programs without a
+    /// task.
     fn run_due_tasks<P: Planner, D: Drive>(
         &mut self,
         time: ScanTime,

@@ -24,9 +24,9 @@ pub enum Fault {
         scan: u64,
         /// The task.
         task: TaskId,
-        /// What the last execution took (ns).
+        /// The time of the last execution (ns).
         took_ns: u64,
-        /// What it may take (ns).
+        /// The allowed time (ns).
         limit_ns: u64,
     },
 }

@@ -1,4 +1,4 @@
-//! The axes with their drives, and the steps of a scan that serve them.
+//! The axes with their drives, and their steps of a scan.
 
 use crate::{NotOff, ScanTime};
 use alloc::vec::Vec;

@@ -1,4 +1,4 @@
-//! Runs a program in Structured Text without a script, for a first look at it.
+//! Runs a program in Structured Text without a script, for a first test.
 
 use crate::model::Script;
 use crate::read::names::identifier_error;

@@ -12,7 +12,7 @@ use std::fmt;
 /// The type of the tables of cams; scripts call it by that of a row.
 pub const CAM_TABLE: &str = "MC_CAM_REF";
 
-/// What a cam must have.
+/// The required columns of a cam.
 const CAM_NEEDS: [&str; 2] = ["Master", "Slave"];
 
 /// Headers of other systems, by column, and the law that rows with these have: of CODESYS (XYVA), and of the motion points of TwinCAT.

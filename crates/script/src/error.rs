@@ -201,7 +201,7 @@ impl File {
 /// The faults of a refused script: at least one [`Diagnostic`], in text order.
 #[derive(Clone, Debug)]
 pub struct ScriptError {
-    /// The script, then what it includes; never empty.
+    /// The script, then its included files; never empty.
     files: Vec<File>,
     diagnostics: Vec<Diagnostic>,
     /// The faults of sources in Structured Text; a diagnostic says to which program they belong.
@@ -230,12 +230,12 @@ impl ScriptError {
         }
     }
 
-    /// The same with what is wrong in sources of programs.
+    /// The same with the errors in the sources of programs.
     pub(crate) fn with_reports(self, reports: Vec<standstill_st::Report>) -> Self {
         Self { reports, ..self }
     }
 
-    /// What is wrong with sources in Structured Text.
+    /// The errors in sources in Structured Text.
     #[must_use]
     pub fn reports(&self) -> &[standstill_st::Report] {
         &self.reports
@@ -256,7 +256,7 @@ impl ScriptError {
         self.file_of(Span::default())
     }
 
-    /// What is wrong, in the order of the text.
+    /// The errors, in the order of the text.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.diagnostics
     }

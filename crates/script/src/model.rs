@@ -212,7 +212,7 @@ pub struct Symbol {
     pub address: Option<u32>,
     /// The name of the guest's export; its own name if absent.
     pub export: Option<String>,
-    /// What it is in Structured Text.
+    /// Its variable in Structured Text.
     pub variable: Option<Variable>,
 }
 
@@ -399,7 +399,7 @@ pub enum FaultKind {
     Axis,
 }
 
-/// A value of the trace a condition looks at.
+/// A value of the trace that a condition reads.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Signal {
     /// A variable or a pin.
@@ -446,7 +446,7 @@ pub enum AxisNumber {
     Phase,
     /// By how much a slave of two masters sees the second one further on.
     Phase2,
-    /// What is superimposed on the law of a slave.
+    /// The motion that is superimposed on the law of a slave.
     Superimposed,
     /// The place of the master where a slave on a cam is.
     Shadow,
@@ -512,7 +512,7 @@ pub enum Comparison {
         name: String,
         /// The other signal.
         of: Signal,
-        /// What is added to it.
+        /// The value that is added to it.
         plus: f64,
         /// The tolerance.
         within: f64,
@@ -586,7 +586,7 @@ pub struct Window {
     pub to: Option<Conditions>,
 }
 
-/// What a count or a duration must be.
+/// The bounds of a count or a duration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Bounds {
     /// At least.
@@ -602,7 +602,7 @@ impl Bounds {
     }
 }
 
-/// First and last scan a claim looks at; `None` is the run's end.
+/// First and last scan of a claim; `None` is the end of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Range {
     /// First scan.
@@ -777,14 +777,14 @@ impl ClaimKind {
         }
     }
 
-    /// Looks at the row of a scan that judging it takes at most.
+    /// The largest number of reads of a row that its judgement takes in a scan.
     pub(crate) fn looks(&self) -> u64 {
         let looks = match self {
             Self::At(_, that) | Self::By(_, that) | Self::Once(_, that) => that.len(),
             Self::Always { during, that, .. } => that.len().saturating_mul(1 + during.len()),
             Self::Never { during, that, .. } => during.len() + that.len(),
             Self::Exclusive(_, points) => points.len(),
-            // The rows before tell whether something rises.
+            // The rows before decide whether a condition rises.
             Self::Answered {
                 during, when, that, ..
             } => during.len() + 2 * when.len() + that.len(),

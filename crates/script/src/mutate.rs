@@ -1,8 +1,8 @@
 //! Mutants of a script's program: small changes, each of which a claim should detect.
 //!
-//! The changes are made to what a machine builder writes: constants at pins and in tables, wires, blocks
-//! and limits. Steps and claims are not changed, because they are the test. `docs/mutants.md` lists the
-//! changes.
+//! The changes are made to the parts that a machine builder writes: constants at pins and in tables,
+//! wires, blocks and limits. Steps and claims are not changed, because they are the test.
+//! `docs/mutants.md` lists the changes.
 
 use crate::claims::Verdict;
 use crate::model::{Script, Wire};
@@ -350,7 +350,7 @@ impl Mutant {
     }
 }
 
-/// Whether two runs have the same rows, but for one column.
+/// Whether two runs have the same rows, except one column.
 fn same(one: &Trace, other: &Trace, without: Option<&str>) -> bool {
     let equal = |a: Cell<'_>, b: Cell<'_>| match (a, b) {
         (Cell::Real(a), Cell::Real(b)) => a.to_bits() == b.to_bits(),

@@ -18,10 +18,10 @@ use std::fs;
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
-/// What the name of a scan script ends in.
+/// The end of the name of a scan script.
 pub const EXTENSION: &str = ".scan.json";
 
-/// What the name of a machine file ends in, which scripts include.
+/// The end of the name of a machine file, which scripts include.
 pub const MACHINE_EXTENSION: &str = ".machine.json";
 
 /// Endings of the files that belong to a script.
@@ -237,7 +237,7 @@ pub fn read_file(
     read_as(path, parameters, allowed, false)
 }
 
-/// Reads a machine file for its axes, like a script that does nothing else; a file that ends in
+/// Reads a machine file for its axes, like a script without steps and blocks; a file that ends in
 /// `.scan.json` is a script itself.
 ///
 /// # Errors
@@ -456,7 +456,7 @@ fn module(outer: &Path, inner: &str, allowed: &Allowed) -> Result<Vec<u8>, Strin
     program_file(&beside(outer, inner, &allowed.folders, "script")?)
 }
 
-/// The bytes of a program; of a file that is too large only as many as show that it is.
+/// The bytes of a program; of a file that is too large only enough to detect this.
 pub(crate) fn program_file(path: &Path) -> Result<Vec<u8>, String> {
     // Reading a pipe would block.
     if !fs::metadata(path).map_err(why)?.is_file() {

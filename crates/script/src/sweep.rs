@@ -22,8 +22,7 @@ pub struct Sweep {
     pub(crate) varied: Vec<Varied>,
     pub(crate) draw: Draw,
     pub(crate) measures: Vec<Measure>,
-    /// Whether the table has the digest of every case. Without it a case need not write columns that
-    /// nobody reads.
+    /// Whether the table has the digest of every case. Without it a case need not write unused columns.
     pub has_digest: bool,
 }
 
@@ -86,7 +85,7 @@ pub struct Measure {
     /// Its column.
     pub name: String,
     pub(crate) place: Span,
-    /// What is taken of it.
+    /// The figure that is taken.
     pub take: Take,
     /// The signal: a column of the trace.
     pub signal: String,
@@ -364,7 +363,7 @@ mod tests {
             let share = all.iter().filter(|case| case[1] == value).count();
             assert!((1200..1470).contains(&share), "{value} {share} times");
         }
-        // Another seed is another sample; these bits are part of what a sweep file means.
+        // Another seed is another sample; these bits are part of the meaning of a sweep file.
         assert_eq!(
             values(&long, 0)[0].to_bits(),
             FIRST.to_bits(),

@@ -118,7 +118,7 @@ impl Variable {
             }
             SymbolType::Udint | SymbolType::Dword => Value::Dword(number as u32),
             SymbolType::Dint | SymbolType::Real | SymbolType::Lreal => Value::Lreal(number as f64),
-            // The low bits, whatever their sign.
+            // The low bits, for any sign.
             SymbolType::Time => Value::Time(number as i64),
         }
     }

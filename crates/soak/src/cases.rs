@@ -227,7 +227,7 @@ impl Plan {
         }
     }
 
-    /// Whether every switch lies on a scan.
+    /// Whether every switch is at a scan.
     pub const fn is_on_grid(&self) -> bool {
         matches!(self, Self::Grid(_) | Self::Unequal(_))
     }

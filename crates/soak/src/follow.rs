@@ -224,7 +224,7 @@ impl Knots {
         }
     }
 
-    /// Adds an instant if it lies inside the segment; a missing one is NaN or infinite.
+    /// Adds an instant if it is inside the segment; a missing one is NaN or infinite.
     fn add(&mut self, time: f64) {
         if time > 0.0 && time < self.duration && self.len < self.times.len() {
             self.times[self.len] = time;

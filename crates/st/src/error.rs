@@ -21,7 +21,7 @@ macro_rules! codes {
                 match self { $(Self::$variant => $name,)* }
             }
 
-            /// What it means, one sentence.
+            /// Its meaning, one sentence.
             #[must_use]
             pub const fn doc(self) -> &'static str {
                 match self { $(Self::$variant => concat!($($doc),+).trim_ascii(),)* }
@@ -228,7 +228,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// What is wrong or doubtful.
+    /// The errors and warnings.
     #[must_use]
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.diagnostics

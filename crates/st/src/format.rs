@@ -43,7 +43,7 @@ pub fn format(name: &str, bytes: &[u8]) -> Result<String, Box<Report>> {
 enum Open {
     /// A unit, whose statements are not indented.
     Unit,
-    /// What stands within is indented by one step.
+    /// Its contents are indented by one step.
     Block,
     /// CASE: labels by one step, statements by two.
     Case,
@@ -62,7 +62,8 @@ struct Layout {
     signed: bool,
     /// Whether a statement or declaration has begun and is not over.
     inside: bool,
-    /// Whether the line began with a word that opens a unit or a section: it ends what the word began.
+    /// Whether the line began with a word that opens a unit or a section: it ends the part that the word
+    /// began.
     header: bool,
     /// Whether a label of CASE is being written.
     label: bool,
@@ -287,7 +288,7 @@ const fn opens(word: Word) -> Option<Open> {
     })
 }
 
-/// Whether the line that this word begins ends what it says.
+/// Whether the line that begins with this word is complete in itself.
 const fn opens_header(word: Word) -> bool {
     !matches!(word, Word::Case | Word::If | Word::For | Word::While)
 }
@@ -297,7 +298,8 @@ fn closes(word: Word) -> bool {
     word.text().starts_with("END_")
 }
 
-/// Whether a statement or declaration begins or ends with this word, so that its line does not go on from the one before.
+/// Whether a statement or declaration begins or ends with this word, so that its line does not continue
+/// the one before.
 fn begins(word: Word) -> bool {
     closes(word)
         || opens(word).is_some_and(|open| open != Open::Block || word != Word::Struct)

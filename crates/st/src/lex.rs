@@ -62,7 +62,7 @@ pub(crate) enum Token {
     Based,
     /// `1.5`, `1.0E-3`
     Real,
-    /// What stands behind `T#`, with it.
+    /// The text after `T#`, with `T#`.
     Duration,
     /// `INT#`, `E#`: the literal or element follows.
     Typed,

@@ -43,7 +43,7 @@ pub use types::Elementary;
 
 use crate::error::Found;
 
-/// What is asked of the compiler beside the sources.
+/// The options of the compiler beside the sources.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// The PROGRAM to run in every scan. Without it a CONFIGURATION decides, or it is the only one.

@@ -10,7 +10,7 @@ pub const SOURCES_MOST: usize = 16 << 20;
 pub struct Source<'a> {
     /// Its name in messages, with `/`.
     pub name: &'a str,
-    /// What stands in it; must be UTF-8.
+    /// Its contents; must be UTF-8.
     pub bytes: &'a [u8],
 }
 
@@ -167,7 +167,7 @@ impl Sources {
         &self.files[self.index(place)]
     }
 
-    /// What stands at a place.
+    /// The text at a place.
     pub(crate) fn text(&self, span: Span) -> &str {
         let file = self.file(span.start);
         let range = (span.start - file.start) as usize..span.end.saturating_sub(file.start) as usize;

@@ -134,7 +134,7 @@ fn put(bytes: &[u8], memory: &mut [u8], at: u32) {
     }
 }
 
-/// Writes what the variables of a program begin as.
+/// Writes the first values of the variables of a program.
 pub(crate) fn members_of(program: &Program<'_>, unit: crate::types::UnitId, memory: &mut [u8], at: u32) {
     let unit = &program.units[unit.0 as usize];
     members(program, &unit.members.list, &Start::Default, memory, at);

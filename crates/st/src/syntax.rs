@@ -10,13 +10,13 @@ pub(crate) struct Ident {
 }
 
 impl Ident {
-    /// What it is compared by.
+    /// The key for comparisons.
     pub(crate) fn key(&self) -> String {
         self.text.to_ascii_uppercase()
     }
 }
 
-/// What stands at the top of a file.
+/// An item at the top level of a file.
 #[derive(Debug)]
 pub(crate) enum Item {
     Type(TypeDeclaration),
@@ -106,7 +106,7 @@ pub(crate) enum SpecKind {
         elements: Vec<(Ident, Option<Expression>)>,
     },
     Structure(Vec<Variables>),
-    /// STRING of a length that is said.
+    /// STRING with a given length.
     Text(Box<Expression>),
     /// Its fault has been reported.
     Wrong,
@@ -146,7 +146,7 @@ pub(crate) enum ExpressionKind {
     Not(Box<Expression>),
     /// Operators of one level, from left to right: a chain, so that a long sum is not deep.
     Chain(Box<Expression>, Vec<(Operator, Span, Expression)>),
-    /// It has been told what is wrong with it.
+    /// Its error has been reported.
     Wrong,
 }
 

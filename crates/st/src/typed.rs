@@ -110,11 +110,11 @@ pub(crate) enum Operation {
 #[derive(Clone, Debug)]
 pub(crate) struct FunctionCall {
     pub unit: UnitId,
-    /// Of a method: what it is called for.
+    /// Of a method: its instance.
     pub instance: Option<Place>,
     /// In the order of its parameters.
     pub arguments: Vec<Argument>,
-    /// Where outputs go, and what they are then.
+    /// The targets of outputs, and their values there.
     pub outputs: Vec<(Place, Expr)>,
     /// The buffer for a value with members, elements or bytes, and its size: the next call of the
     /// function overwrites its own.
@@ -135,7 +135,7 @@ pub(crate) struct BlockCall {
     pub unit: UnitId,
     /// Inputs, of the instance called, and their values.
     pub inputs: Vec<(Place, Expr)>,
-    /// In_outs, by member, and what they are bound to.
+    /// In_outs, by member, and their variables.
     pub references: Vec<(usize, Place)>,
     /// In_outs that this call does not give: the address must have been given before.
     pub kept: Vec<usize>,
@@ -152,7 +152,7 @@ pub(crate) struct Stmt {
 pub(crate) enum StmtKind {
     /// A variable of an elementary type, or one of its bits.
     Assign(Place, Expr),
-    /// A variable with members or elements: so many bytes.
+    /// A variable with members or elements: its number of bytes.
     Copy(Place, Expr, u32),
     /// A function whose value goes nowhere.
     Evaluate(Expr),
@@ -177,7 +177,7 @@ pub(crate) struct Branch {
 pub(crate) struct For {
     pub variable: Place,
     pub ty: Elementary,
-    /// What the variable can hold.
+    /// The range of the variable.
     pub range: (i128, i128),
     pub from: Expr,
     pub to: Expr,

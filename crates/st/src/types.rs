@@ -167,7 +167,7 @@ pub(crate) enum Type {
     },
     Structure(Structure),
     Array(Array),
-    /// STRING of so many bytes.
+    /// STRING of this number of bytes.
     Text(u8),
     /// An instance of a function block or program.
     Block(UnitId),
@@ -212,7 +212,7 @@ pub(crate) struct Array {
     pub count: u32,
 }
 
-/// What a member of a structure or a variable of a unit is for.
+/// The use of a member of a structure or of a variable of a unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum MemberKind {
     /// Of a structure.

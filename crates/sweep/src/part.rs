@@ -89,7 +89,7 @@ impl Part {
     /// Removes the file, because its table is complete.
     ///
     /// # Errors
-    /// [`SweepError::Suite`] with what the system says.
+    /// [`SweepError::Suite`] with the message of the system.
     pub fn remove(self) -> Result<(), SweepError> {
         drop(self.file);
         fs::remove_file(&self.path).map_err(|source| io_error(&self.path, source))

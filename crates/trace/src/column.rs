@@ -12,7 +12,7 @@ pub enum Kind {
     Real,
     /// A whole number: counters, `ErrorID`, TIME in nanoseconds. ULINT values above `i64::MAX` do not fit.
     Integer,
-    /// A word: axis states, axes, enum elements, and whatever else has only a text.
+    /// A word: axis states, axes, enum elements, and all other values that are text.
     Name,
 }
 

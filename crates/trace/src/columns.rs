@@ -8,7 +8,7 @@ use crate::trace::Trace;
 
 impl Trace {
     /// The same run with only the columns at these places, in this order; places outside are skipped. All
-    /// of them count from then on, whatever their values are.
+    /// of them count from then on, with any values.
     pub(crate) fn only(&self, places: &[usize]) -> Self {
         let kept = places.iter().filter_map(|&at| self.columns().get(at).cloned());
         let kept = kept.map(|column| Column {

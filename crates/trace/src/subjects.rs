@@ -159,7 +159,7 @@ pub(crate) fn counted(trace: &Trace) -> Vec<usize> {
         .collect()
 }
 
-/// One digest for all subjects, whatever their order.
+/// One digest for all subjects, independent of their order.
 #[must_use]
 pub fn together(subjects: &[Subject]) -> u64 {
     let mut all: Vec<(&str, u64)> = subjects

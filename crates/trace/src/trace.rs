@@ -49,7 +49,7 @@ pub enum RowError {
 }
 
 /// A run: its header, one row for each scan from scan 0, and its notes. All its texts are
-/// [`printable`](crate::printable) and one line each, whatever their source.
+/// [`printable`](crate::printable) and one line each, from any source.
 ///
 /// A long run need not be held as a whole: [`Trace::forget`] drops rows that were read.
 #[derive(Clone, Debug)]
@@ -409,7 +409,7 @@ impl Trace {
         self.words_from(self.first)
     }
 
-    /// The name that a word stands for.
+    /// The name of a word.
     pub(crate) fn text(&self, word: u64) -> &str {
         self.names.text(word)
     }

@@ -121,7 +121,7 @@ impl<'a> App<'a> {
         self.quit
     }
 
-    /// What the run is doing.
+    /// The state of the run.
     #[must_use]
     pub const fn mode(&self) -> Mode {
         self.mode

@@ -15,7 +15,7 @@ use standstill_trace::{Cell, shortest};
 /// Characters of a bar.
 const BAR: usize = 8;
 
-/// The first characters of a text that fit into the room; two points stand for the rest.
+/// The first characters of a text that fit into the room; two points replace the rest.
 pub(crate) fn cut(text: &str, room: usize) -> String {
     // A control character would move the cursor.
     let clean = text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c });

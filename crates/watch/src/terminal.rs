@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Time between two screens while the run goes on.
+/// Time between two screens while the run continues.
 const FRAME: Duration = Duration::from_millis(40);
 
 /// Time between two checks for a signal while nothing happens.

@@ -39,12 +39,12 @@ impl Look {
         self.tinted(Color::Red).add_modifier(Modifier::BOLD)
     }
 
-    /// What is there to be pointed at.
+    /// The style of highlighted parts.
     pub(crate) fn lit(self) -> Style {
         Style::new().add_modifier(Modifier::REVERSED)
     }
 
-    /// What is beside the point.
+    /// The style of minor parts.
     pub(crate) fn dim(self) -> Style {
         Style::new().add_modifier(Modifier::DIM)
     }
@@ -97,7 +97,7 @@ fn program_view(frame: &mut Frame<'_>, area: Rect, app: &App<'_>, view: &View, l
     footer(frame, foot, app, look);
 }
 
-/// What lies over the screen.
+/// A window over the screen.
 fn over(frame: &mut Frame<'_>, area: Rect, app: &App<'_>) {
     match &app.over {
         Over::Nothing => {}

@@ -218,7 +218,7 @@ pub(super) enum Ending {
     AtRest,
     /// It holds the value it has reached, and a waiting command may take over.
     Holds,
-    /// It is done, and the motion goes on.
+    /// It is done, and the motion continues.
     RunsOn,
     /// It continues behind its master. A waiting command may take over once it is in gear.
     Follows,
@@ -226,7 +226,7 @@ pub(super) enum Ending {
     Due,
     /// It locks the axis while its Execute is TRUE.
     Locks,
-    /// The search goes on, or the place gets this name (u).
+    /// The search continues, or the place gets this position (u).
     Names(f64),
     /// It never owns the axis.
     Never,
@@ -304,7 +304,7 @@ impl Manner {
         moves: true,
     };
 
-    /// One that goes on until another takes over.
+    /// A motion that continues until another takes over.
     const ENDLESS: Self = Self {
         start: AxisEvent::StartContinuous,
         ending: Ending::Holds,
@@ -585,7 +585,7 @@ impl Entry {
         }
     }
 
-    /// Whether it goes on until another command takes over.
+    /// Whether it continues until another command takes over.
     pub fn is_endless(&self) -> bool {
         self.work.manner().endless
     }

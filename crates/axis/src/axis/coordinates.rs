@@ -115,8 +115,8 @@ impl<P: Planner> Axis<P> {
         let is_finite = at.is_finite()
             && (self.feedback.position() + by).is_finite()
             && (self.frame.shift() + by).is_finite();
-        // A motion whose set-points could not be told apart at the old numbers cannot be recovered at the
-        // new ones.
+        // If set-points were equal at the old numbers, their difference cannot be recovered at the new
+        // ones.
         let is_resolved =
             self.setpoint.is_at_rest() || (self.is_resolved(at) && self.is_resolved(self.setpoint.position));
         if !(is_finite && is_resolved) {
@@ -199,7 +199,7 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
-    /// Tells the parts of the axis that coordinates moved by `by` (u).
+    /// Informs the parts of the axis that coordinates moved by `by` (u).
     pub(super) fn tell_moved(&mut self, by: f64, scope: &mut Scope<'_>) {
         self.frame.note_moved(scope.scan, by);
         self.record(Event::Shifted { by }, scope);

@@ -1,7 +1,7 @@
 //! The last line of defence: no set-point of a plan is further from the last one than the limits allow in one scan.
 //!
-//! Plans are verified when they are made, and judged by tests from outside. A set-point that is wrong all
-//! the same is not published: the axis stops from the last good state (ErrorID 904).
+//! Plans are verified when they are made, and judged by tests from outside. A set-point that is still
+//! wrong is not published: the axis stops from the last good state (ErrorID 904).
 
 use super::commands::ROUNDING;
 use super::{Axis, Motion};
@@ -10,7 +10,7 @@ use standstill_planner::{Excess, Limits, Planner, Setpoint};
 /// The same at the end of a plan, whose last scan may be longer by this part.
 pub(super) const LAST_SCAN: f64 = 1.0 / 2048.0;
 
-/// What a position is off by at most, relative to the largest one that enters it.
+/// The largest error of a position, relative to the largest position in its computation.
 const RESOLVED: f64 = 8.0 * f64::EPSILON;
 
 impl<P: Planner> Axis<P> {

@@ -1,11 +1,11 @@
 //! Homing: the search for the reference, by the controller or by the drive.
 //!
 //! A search is a series of endless motions. Each is planned anew at the latch of the scan that shows what
-//! it searched for. The reference of a switch is one of its two ends, whichever way the axis passes it.
-//! With a creep velocity it is passed a second time, slowly and always in the same direction. Then the
-//! axis comes to rest, at some distance behind the reference, and the place of the reference gets its
-//! name. Software limits and the override do not apply. Axis errors are: a barred direction, a time or
-//! way that is too long, and a limit switch in the way.
+//! it searched for. The reference of a switch is one of its two ends, in both directions of passing. With
+//! a creep velocity it is passed a second time, slowly and always in the same direction. Then the axis
+//! comes to rest, at some distance behind the reference, and the place of the reference gets its name.
+//! Software limits and the override do not apply. Axis errors are: a barred direction, a time or way that
+//! is too long, and a limit switch in the way.
 //!
 //! A drive that homes by itself leads, and the set-point follows it until the drive obeys the command
 //! again.

@@ -101,7 +101,7 @@ struct Told {
 }
 
 impl Band {
-    /// The part of `told` that is motion: `told` itself, or the place where it stands once it has stood
+    /// The part of `told` that is motion: `told` itself, or a constant place once `told` has been at rest
     /// for `rest` scans.
     fn pass(&mut self, told: i64, rest: u32) -> i64 {
         if let Some(held) = self.held
@@ -165,7 +165,7 @@ impl Counted {
         length * length * length * length
     }
 
-    /// Starts at `told`, as if it had always been there.
+    /// Starts at `told`, as if it had always had this value.
     #[cold]
     fn start(&mut self, told: i64) {
         *self = Self {
@@ -533,7 +533,7 @@ impl<P: Planner> Axis<P> {
         self.config.following.actual_filter
     }
 
-    /// Turns and position (u) at so many increments.
+    /// Turns and position (u) at this number of increments.
     fn place_at_increment(&self, increments: i64) -> (i64, f64) {
         let told = DrivePosition::Increments(increments);
         match &self.modulo {

@@ -145,7 +145,7 @@ impl<P: Plan> Motion<P> {
             Self::Follow => None,
             Self::Hold | Self::Torque { .. } | Self::Geared => Some(0),
             Self::Run { elapsed, scans, .. } | Self::Closing { elapsed, scans, .. } => {
-                // At least 1, to tell a plan at its goal from holding.
+                // At least 1, to distinguish a plan at its goal from holding.
                 let left = scans.saturating_sub(*elapsed);
                 Some(u32::try_from(left).unwrap_or(u32::MAX).saturating_add(1))
             }
@@ -494,7 +494,8 @@ impl<P: Planner> Axis<P> {
         self.owner.as_ref().map(|owner| owner.id)
     }
 
-    /// The command that waits for a place of its master, beside whatever owns the axis (MC_GearInPos before its start point).
+    /// The command that waits for a place of its master while another one owns the axis (MC_GearInPos
+    /// before its start point).
     pub fn awaited_command(&self) -> Option<CommandId> {
         self.awaited.as_ref().map(|awaited| awaited.entry.id)
     }
@@ -701,9 +702,10 @@ impl<P: Planner> Axis<P> {
     fn end_owner(&mut self, fate: Fate) {
         let is_over = self.profile_is_over();
         if let Some(owner) = self.owner.take() {
-            // A stop at rest has completed, whatever ends its hold, and so has a profile at its end.
+            // A stop at rest has completed, for every reason that ends its hold; so has a profile at its
+            // end.
             let over = match owner.work {
-                // Whatever comes next, the coupling has ended.
+                // In every case the coupling has ended.
                 Work::Release(_) => self.is_released(&owner) || fate == Fate::Aborted,
                 _ => self.stop_held || is_over,
             };

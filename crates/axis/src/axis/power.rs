@@ -248,7 +248,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Switches the axis off whatever MC_Power says: the runtime stops.
+    /// Switches the axis off, regardless of MC_Power: the runtime stops.
     pub fn switch_off(&mut self, scope: &mut Scope<'_>) {
         self.power.forget_overruled();
         self.switch(false, self.power.permitted(), scope);

@@ -1,9 +1,9 @@
 //! An instance that is triggered anew while it has a command.
 //!
 //! A waiting command gives up its place before the new command is checked, even if that is then refused.
-//! A moving command goes on to its end. If the new command is refused, no block follows the moving one
-//! any more. This is recorded, and from then on anything that would hold the motion up ends it as MC_Halt
-//! does: it never starts again by itself.
+//! A moving command continues to its end. If the new command is refused, no block follows the moving one
+//! any more. This is recorded, and from then on every event that would pause the motion ends it, like
+//! MC_Halt: it never starts again by itself.
 //!
 //! Source: PLCopen Motion Control Part 1, section on Execute/Done; R32, R38, R97, B19.
 
@@ -51,7 +51,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Command `id`, which waited, has failed: the motion of its instance goes on (B19, R79).
+    /// Command `id`, which waited, has failed: the motion of its instance continues (B19, R79).
     pub(super) fn lose_heir(&mut self, id: CommandId, scope: &mut Scope<'_>) {
         if let Some(owner) = self.owner.filter(|owner| owner.heir == Some(id)) {
             self.orphan(owner.id, scope);

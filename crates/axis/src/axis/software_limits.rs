@@ -1,7 +1,7 @@
 //! Software limits: a motion that would end outside is refused, a running motion stops inside.
 //!
-//! A command to a place outside is refused. So is an endless motion that goes further out from an axis at
-//! or beyond a limit. A motion that may come out all the same is watched: endless ones, ramps to rest
+//! A command to a position outside is refused. So is an endless motion that goes further out from an axis
+//! at or beyond a limit. A motion that may come out all the same is watched: endless ones, ramps to rest
 //! that end outside, moves that brake too late and turn back outside. It ends in ErrorStop in the last
 //! scan in which the stop dynamics can keep it inside. An axis outside the limits, after a push or a move
 //! of coordinates, may move to any place inside.
@@ -91,7 +91,7 @@ impl<P: Planner> Axis<P> {
         // Only further out than now counts: from outside it may come in, and in the middle of a reversal
         // a stop turns back.
         let leaves = |rest: f64| (rest > max && rest > next.position) || (rest < min && rest < next.position);
-        // Between two scans it may come out and turn; a stop from there leads in again.
+        // Between two scans it may leave the limits and turn; a stop from there leads inside again.
         let outside = |position: f64| position < min || position > max;
         let comes_out = outside(next.position) && !outside(self.setpoint.position);
         let work = match (&self.motion, &self.owner) {

@@ -8,7 +8,7 @@ use crate::{Comms, DriveFeedback, Fault, InstanceId};
 pub(super) struct Power {
     /// MC_Power.Enable.
     wanted: bool,
-    /// Operation is enabled, as the drive told last.
+    /// Operation is enabled, as the drive reported last.
     on: bool,
     stage: Stage,
     /// Latches in a row in which power was requested and not confirmed; counted only if there is a
@@ -161,7 +161,7 @@ impl Power {
         Some(self.decider.unwrap_or_default())
     }
 
-    /// Power may be requested again, whatever has removed it.
+    /// Power may be requested again, for any cause of its loss.
     pub fn let_return(&mut self) {
         if self.is_tripped() {
             self.stage = Stage::Ready;

@@ -134,7 +134,7 @@ impl<P: Plan> Layer<P> {
         self.moves() || matches!(&self.command, Some(command) if command.adds != Adds::Halt)
     }
 
-    /// What is yet to be added (u).
+    /// The distance that is still to be added (u).
     fn left(&self) -> f64 {
         let end = match (&self.command, &self.motion) {
             (
@@ -344,7 +344,7 @@ impl<P: Planner> Axis<P> {
         self.layer.as_ref().is_some_and(Layer::is_busy)
     }
 
-    /// What is yet to be superimposed (u).
+    /// The distance that is still to be superimposed (u).
     pub(super) fn superimposed_left(&self) -> f64 {
         self.layer.as_ref().map_or(0.0, Layer::left)
     }

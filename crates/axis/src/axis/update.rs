@@ -20,7 +20,7 @@ impl<P: Planner> Axis<P> {
     /// Cost: that of a new command.
     ///
     /// # Errors
-    /// What a new command with these values would show. It is recorded, and the command goes on as it was.
+    /// The error of a new command with these values. It is recorded, and the command continues unchanged.
     pub fn update(&mut self, id: CommandId, command: &Command, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         match self.owner {
             Some(owner) if owner.id == id => self.update_owner(owner, command, scope),

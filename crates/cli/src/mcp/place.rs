@@ -10,7 +10,7 @@ use std::time::Duration;
 /// The folder of a client, and the bounds of a call.
 #[derive(Debug)]
 pub struct Place {
-    /// What it may read, links followed.
+    /// The folder that it may read, after following links.
     root: PathBuf,
     /// The folder it may write into.
     write: Option<PathBuf>,

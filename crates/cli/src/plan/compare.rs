@@ -15,7 +15,7 @@ const HEADER: &str = "case,method,scans,duration,peak_velocity,peak_acceleration
 over_n_star,refused";
 
 /// Prints one row for each case and method as CSV. A case is a line of `standstill plan`, whose method is
-/// ignored. It may have `n_star`, the least known number of scans. `name` stands for the input in
+/// ignored. It may have `n_star`, the least known number of scans. `name` is the name of the input in
 /// messages.
 ///
 /// Fails if a line cannot be read, or no method takes it.

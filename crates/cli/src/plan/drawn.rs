@@ -19,7 +19,7 @@ const ROWS_MAX: u32 = 1_000_000;
 /// The name of the axis that a plan moves on its page.
 const AXIS: &str = "plan";
 
-/// Plans to draw: at most as many as there are colours.
+/// Plans to draw: at most one for each colour.
 #[derive(Debug, Default)]
 pub struct Drawn {
     plans: Vec<svg::Plan>,

@@ -107,7 +107,7 @@ pub struct Planned {
     pub rung: Option<&'static str>,
     /// What is published last.
     pub end: Setpoint,
-    /// What is published in between.
+    /// The set-points in between.
     pub setpoints: Setpoints,
 }
 

@@ -38,7 +38,8 @@ pub struct Files<'a> {
     pub report: Option<&'a Path>,
 }
 
-/// Answers every line of `input` that is not blank, in order. `name` stands for the input in messages.
+/// Answers every line of `input` that is not blank, in order. `name` is the name of the input in
+/// messages.
 ///
 /// Flushes `out` before it waits for more input, so that a program can exchange lines with it.
 pub fn plan(input: &mut dyn BufRead, name: &str, out: &mut dyn Write) -> Result<Exit, Failure> {
@@ -144,7 +145,7 @@ fn each_line(
             limit::doing(format!("line {number} of {name}"));
             each(number, text)?;
         }
-        // The input may be endless, and nobody reads the answers.
+        // The input may be endless, and the answers have no reader.
         if out::is_closed() {
             break;
         }

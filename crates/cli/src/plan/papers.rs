@@ -10,7 +10,7 @@ use crate::suggest::nearest;
 use standstill_planner::papers::{Profile, SCurve, ShortPath, ShortPathPolicy, Timed, Trapezoid};
 use standstill_planner::{Field, PlanError, SampledPlan};
 
-/// What a method of order 3 needs.
+/// The fields that a method of order 3 needs.
 const ORDER_THREE: [Field; 3] = [Field::LimitVelocity, Field::LimitAcceleration, Field::LimitJerk];
 
 /// `s-curve`: rest to rest in least time at order 3.

@@ -59,7 +59,7 @@ impl Setpoints {
 /// A CSV file of set-points.
 #[derive(Debug)]
 pub struct Samples {
-    /// Stands for the file in messages.
+    /// The name of the file in messages.
     name: String,
     file: BufWriter<Draft>,
 }

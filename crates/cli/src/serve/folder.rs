@@ -27,7 +27,7 @@ const NAMES_MAX: usize = 100_000;
 /// Most scripts whose last answer is remembered.
 const KNOWN_MAX: usize = 32;
 
-/// Folders in which nobody edits: they may hold very many files.
+/// Folders without edited files: they may have very many files.
 const LEFT_OUT: [&str; 2] = ["target", "node_modules"];
 
 /// The time of saving and the length of a file; none for a missing one.
@@ -228,7 +228,7 @@ impl Files<'_> {
     }
 }
 
-/// All of a file that is not too large; `length` is what it is known to have at least.
+/// The whole of a file that is not too large; `length` is its known minimum length.
 fn bounded(file: fs::File, length: usize) -> Result<Vec<u8>, String> {
     let too_large = || {
         format!(

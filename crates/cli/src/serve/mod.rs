@@ -65,7 +65,7 @@ mod desk {
         port: u16,
     }
 
-    /// Answers until it is interrupted.
+    /// Answers requests until it is interrupted.
     pub fn serve(arguments: &ServeArguments) -> Result<Exit, Failure> {
         let folders: Vec<_> = arguments.folder.iter().cloned().collect();
         let mut folders = where_scripts_are(&folders);

@@ -81,7 +81,7 @@ impl Site {
         Ok(Answer::bytes(kind, bytes))
     }
 
-    /// What the page lists of the repository's scripts.
+    /// The list of the repository's scripts for the page.
     pub fn scripts(&self) -> Result<Value, Answer> {
         let path = self.root.join("playground/scripts.json");
         let text = fs::read_to_string(path).map_err(|error| failed("playground/scripts.json", &error))?;
@@ -131,7 +131,7 @@ pub fn open(root: &Path, inner: &Path) -> Result<(File, usize), Answer> {
     Ok((file, length))
 }
 
-/// What is said of a file that cannot be read.
+/// The message for a file that cannot be read.
 pub fn failed(name: &str, error: &io::Error) -> Answer {
     let (status, why) = match error.kind() {
         io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => (404, "there is no such file".to_owned()),

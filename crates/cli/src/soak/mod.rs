@@ -118,7 +118,7 @@ fn run<T: Trial>(state: &mut State<T>, chains: u64, file: Option<&Path>) -> Resu
             scope.spawn(move || {
                 loop {
                     let begin = next.fetch_add(T::BATCH, Ordering::Relaxed);
-                    // After an error nobody receives any more.
+                    // After an error there is no receiver any more.
                     if begin >= chains || send.send((begin, batch(seed, begin, chains))).is_err() {
                         return;
                     }

@@ -129,7 +129,7 @@ fn kind(case: &Case) -> usize {
     }
 }
 
-/// Replaces each value by what `of` makes of it and the other one.
+/// Replaces each value by `of` of it and the other one.
 fn raise<T: Copy, const N: usize>(values: &mut [T; N], others: [T; N], of: impl Fn(T, T) -> T) {
     for (value, other) in values.iter_mut().zip(others) {
         *value = of(*value, other);

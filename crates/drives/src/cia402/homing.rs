@@ -8,7 +8,7 @@ use standstill_axis::{DriveHoming, DrivePosition};
 /// the status from then on. Once the drive stands it returns to mode 8.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Link {
-    /// The axis wants the drive to home.
+    /// The axis requests homing by the drive.
     wanted: bool,
     /// Mode 6 has been asked for, and mode 8 is not in force again yet.
     leads: bool,
@@ -97,8 +97,8 @@ fn is_in_mode(inputs: &Inputs) -> bool {
 /// 603Fh of a simulated node whose homing met a limit switch: the profile's "reference limit".
 pub(super) const REFERENCE_LIMIT: u16 = 0x8612;
 
-/// Homing of a simulated node in mode 6: it goes to the home switch, calls the place where it goes on 0,
-/// and comes to rest. A limit switch on the way is an error.
+/// Homing of a simulated node in mode 6: it moves to the home switch, sets the position to 0 where the
+/// switch goes on, and comes to rest. A limit switch on the way is an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NodeHoming {
     /// Towards larger positions.

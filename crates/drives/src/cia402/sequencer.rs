@@ -1,4 +1,4 @@
-//! The control word that brings a drive to the state the axis asks for.
+//! The control word that brings a drive to the state that the axis requests.
 
 use super::words::{Command, State, Statusword};
 use standstill_axis::DriveRequest;

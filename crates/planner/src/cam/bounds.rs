@@ -278,7 +278,7 @@ impl CamBounds {
 
     /// Limits of a master of the slave's own, behind which the slave keeps `limits` anywhere on the cam.
     /// The velocity is `wanted` (u/s), or 0.98 of the highest velocity if that is less. The other three
-    /// are what is left while the velocity is at most that at `present` (u/s).
+    /// are the rest of the limits while the velocity is at most that at `present` (u/s).
     ///
     /// `None` if nothing is left: at rest with nothing wanted, or already at the highest velocity. Cost:
     /// at most 40 halvings.

@@ -34,7 +34,7 @@ pub struct CamAt {
     pub periods: i64,
     /// Place on the master's side of the cam (u), in its period.
     pub x: f64,
-    /// The piece it lies in.
+    /// Its piece.
     pub piece: u16,
 }
 

@@ -115,8 +115,8 @@ impl Problem {
     }
 }
 
-/// What the products n4, n3 n4, n2 n3 n4, n1 n2 n3 n4 must reach, not yet rounded up, where `acceleration` is
-/// the bound on acceleration (docs/planner.md, eq. 7).
+/// The lower bounds of the products n4, n3 n4, n2 n3 n4, n1 n2 n3 n4, not yet rounded up; `acceleration`
+/// is the bound on acceleration (docs/planner.md, eq. 7).
 pub(super) fn ratios(distance: f64, acceleration: f64, limits: &Limits, cycle: f64) -> [f64; 4] {
     let t = cycle;
     [

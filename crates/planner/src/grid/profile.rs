@@ -413,7 +413,7 @@ mod tests {
     use super::Cruise;
     use crate::{GridPlan, Limits, Method};
 
-    /// The same bits come out of sums in 64 and in 128 bits, and of the closed form at constant velocity.
+    /// Sums in 64 and in 128 bits, and the closed form at constant velocity, give the same bits.
     #[test]
     fn wide_and_narrow_sums_agree() {
         let bounds = Limits {

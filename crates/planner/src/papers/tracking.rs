@@ -61,7 +61,7 @@ impl Tracking {
         self.plan.at(self.scans)
     }
 
-    /// Whether the axis rests on the target.
+    /// Whether the axis is at rest on the target.
     pub fn is_there(&self) -> bool {
         self.scans >= u64::from(self.plan.scans())
     }

@@ -217,8 +217,8 @@ fn broken_rate(speeds: (f64, f64), rates: (f64, f64), limits: &Limits) -> Option
 
 /// Whether a stretch keeps `limits` and stays inside `range` (u, counted as its positions are).
 ///
-/// A curve is nearer to its control points the shorter it is, four times with each half. What is
-/// undecided after [`DEPTH`] halvings counts as broken. Bounded by [`PIECES`].
+/// Each halving brings a curve four times nearer to its control points. A piece that is undecided after
+/// [`DEPTH`] halvings counts as outside the limits. Bounded by [`PIECES`].
 ///
 /// # Errors
 /// The limit it breaks, the value and the limit.

@@ -126,8 +126,8 @@ impl Digits {
         all
     }
 
-    /// If the number lies exactly between two texts of this length, `ryu` takes the even one and `{:?}`
-    /// the larger one. This takes the larger one, too.
+    /// If the number is exactly between two texts of this length, `ryu` takes the even one and `{:?}` the
+    /// larger one. This takes the larger one, too.
     fn round_up(&mut self, value: f64) {
         let Some(last) = self
             .count

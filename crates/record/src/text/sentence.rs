@@ -14,8 +14,8 @@ pub trait Called {
     fn instance(&self, number: u16) -> Option<&str>;
 }
 
-/// The subject of a record's line: the instance for what a program asked for, the axis for what the axis
-/// did.
+/// The subject of a record's line: the instance for an action of a program, the axis for an action of the
+/// axis.
 pub fn subject<'n>(names: &'n impl Called, record: &Record) -> &'n str {
     let axis = names.axis(record.axis.index());
     match record.event {

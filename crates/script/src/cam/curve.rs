@@ -1,4 +1,5 @@
-//! The cam that the runtime makes of a table: made by its own store, 32 rows a call, as MC_CamTableSelect does.
+//! The cam that the runtime makes of a table, built by the runtime's own store, 32 rows per call, as by
+//! MC_CamTableSelect.
 
 use super::table::{CamError, CamTable};
 use standstill_axis::{

@@ -104,7 +104,7 @@ pub struct Stretch {
 /// A fault that keeps a slave from following the cam.
 #[derive(Clone, Debug)]
 pub struct Finding {
-    /// The error of MC_CamTableSelect; none if it accepts the cam all the same.
+    /// The error of MC_CamTableSelect; none if it accepts the cam.
     pub error: Option<ErrorId>,
     /// The row, from 1, if there is one to name.
     pub row: Option<usize>,

@@ -167,7 +167,7 @@ pub(super) fn conditions(rows: &Rows<'_>, conditions: &[Condition]) -> String {
     conditions.iter().map(each).collect::<Vec<_>>().join(", ")
 }
 
-/// What a test asks for: `TRUE`, `DiscreteMotion`, `<= 50.0`.
+/// The condition of a test: `TRUE`, `DiscreteMotion`, `<= 50.0`.
 pub(super) fn test(rows: &Rows<'_>, signal: &Signal, test: &Test) -> String {
     match test {
         Test::Bool(value) => value.to_string().to_uppercase(),

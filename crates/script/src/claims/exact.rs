@@ -70,7 +70,7 @@ impl Exact {
             *word = (of / u128::from(by)) as u64;
             rest = (of % u128::from(by)) as u64;
         }
-        // The leading 64 bits; the last of them also stands for all lower bits.
+        // The leading 64 bits; the last of them also represents all lower bits.
         let bits = words.iter().rposition(|word| *word != 0).map_or(0, |top| {
             let leading = words.get(top).map_or(0, |word| word.leading_zeros() as usize);
             64 * (top + 1) - leading

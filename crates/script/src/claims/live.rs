@@ -10,7 +10,7 @@ use crate::run::Rows;
 /// Rows still to come decide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
-    /// What is to come decides.
+    /// Later rows decide.
     Open,
     /// It holds, since this scan.
     Held(u64),

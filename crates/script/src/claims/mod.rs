@@ -138,7 +138,7 @@ impl<'a> Judges<'a> {
         }
     }
 
-    /// Looks at the rows that have come since the last call.
+    /// Reads the new rows since the last call.
     pub(crate) fn look(&mut self, rows: &Rows<'_>) {
         let next = self.scans..rows.count();
         self.scans = next.end;

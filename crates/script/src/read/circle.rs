@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// An input pin: instance and pin index.
 type Place = (usize, usize);
 
-/// The wired inputs, what they read, and the place of their name.
+/// The wired inputs, their sources, and the place of their name.
 pub(super) type Wires = BTreeMap<Place, (Vec<Point>, Span)>;
 
 /// What a wire reads.

@@ -140,7 +140,7 @@ impl Reader {
         )
     }
 
-    /// The variable that a kind stands for.
+    /// The variable of a kind.
     pub(super) fn variable_of(&self, kind: Kind) -> Option<Variable> {
         self.variable_at(kind.point()?).cloned()
     }

@@ -205,7 +205,7 @@ impl Reader {
         Some((signal, kind))
     }
 
-    /// The variable that stands for a signal.
+    /// The variable for a signal.
     fn declare_signal(
         &mut self,
         declared: &mut Declared,
@@ -310,7 +310,7 @@ fn is_library(name: &str) -> bool {
     .any(|known| known.eq_ignore_ascii_case(name))
 }
 
-/// What the program of an expression declares.
+/// The declarations in the program of an expression.
 #[derive(Default)]
 struct Declared {
     /// Enumerations of programs, and that of axis states.
@@ -319,7 +319,7 @@ struct Declared {
     declarations: Vec<String>,
     /// Names and numbers of their elements, where they have some.
     inputs: Vec<(Signal, Vec<(String, i128)>)>,
-    /// What the script calls them.
+    /// Their names in the script.
     paths: Vec<String>,
     /// Names of enumerations that are taken.
     taken: Vec<(String, Vec<(String, i128)>)>,

@@ -30,7 +30,7 @@ pub(super) struct Files<'a> {
     load: Load<'a>,
     /// The script first.
     pub(super) read: Vec<File>,
-    /// Paths of `read` but for the first, relative to the script's folder.
+    /// Paths of `read` except the first, relative to the script's folder.
     paths: Vec<String>,
     /// The files that lead to the one being read.
     open: Vec<String>,
@@ -48,7 +48,7 @@ impl<'a> Files<'a> {
 }
 
 impl Reader {
-    /// The script with what it includes.
+    /// The script with its included files.
     pub(super) fn with_includes(&mut self, root: Node, files: &mut Files<'_>) -> Node {
         let Node { span, json } = root;
         let json = match json {
@@ -100,7 +100,7 @@ impl Reader {
         rest
     }
 
-    /// The strings of a list, or the one that stands for it.
+    /// The strings of a list, or a single string in place of one.
     fn texts(&mut self, node: &Node) -> Vec<(String, Span)> {
         let items = match &node.json {
             Json::List(items) => items.as_slice(),

@@ -2,7 +2,7 @@
 //!
 //! There are two passes over the parsed text. The first declares the names of axes, inputs and instances;
 //! the second reads the rest, so that a wire may refer to a block further down. Every function reports
-//! the faults it finds and goes on, so that one run shows all mistakes. A script is returned only if
+//! the errors it finds and continues, so that one run shows all errors. A script is returned only if
 //! there were none.
 
 pub(crate) mod axis;
@@ -51,7 +51,7 @@ pub const SCANS_MAX: u64 = 1_000_000_000;
 pub const CELLS_MAX: u64 = 100_000_000;
 
 /// Most reads of rows by the conditions of a script's claims and steps, each in every scan: some minutes
-/// of work.
+/// of computing.
 pub const LOOKS_MAX: u64 = 10_000_000_000;
 
 /// Most slots of the store of cams, and most pieces; a million of those take 120 MB.

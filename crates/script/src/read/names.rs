@@ -204,8 +204,8 @@ pub(crate) fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>)
     if length > NAME_WITH_SLIPS {
         return None;
     }
-    // With one wrong letter in three the meaning can still be guessed, and with one in a word shorter
-    // than three. A single letter that differs says nothing.
+    // One wrong letter in three still allows a guess, also one in a word of less than three letters. A
+    // single letter that differs allows none.
     let slips = if length < 2 { 0 } else { (length / 3).max(1) };
     candidates
         .filter(|candidate| candidate.len() <= 8 * NAME_WITH_SLIPS)

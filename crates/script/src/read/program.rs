@@ -349,7 +349,7 @@ impl Reader {
         )
     }
 
-    /// The variable of a program that `name` stands for.
+    /// The variable of a program with this `name`.
     pub(super) fn symbol_point(
         &mut self,
         program: usize,

@@ -127,7 +127,7 @@ pub(crate) const WIRE: Shape = shape(
         ("note", text),
     ],
 );
-/// The keys of a wire that say what it does; it has exactly one of them.
+/// The keys for the kind of a wire; it has exactly one of them.
 pub(crate) const WIRE_KINDS: [&str; 4] = ["from", "not", "any", "all"];
 pub(crate) const TASK: Shape = shape(
     "a task",

@@ -1,4 +1,4 @@
-//! Steps: when they apply, and what they do.
+//! Steps: their time and their effect.
 
 use super::json::{Key, Node};
 use super::value::Fields;

@@ -26,7 +26,7 @@ const COLUMNS_MAX: usize = 4096;
 /// Most instances of blocks whose names are known; a guest has fewer.
 const BLOCKS_MAX: usize = 4096;
 
-/// Most variables among which the one that was meant is searched.
+/// Most variables that are searched for a suggestion.
 const GUESSES_MAX: usize = 2000;
 
 /// Without a byte order mark.

@@ -1,4 +1,4 @@
-//! Wires and what they read.
+//! Wires and their sources.
 
 use super::formula::{Reads, expression};
 use super::json::{Json, Node};

@@ -21,7 +21,7 @@ use standstill_trace::{Note, Trace};
 /// The machine of a script: Standard planners over simulated drives.
 pub(crate) type ScriptMachine = Machine<Standard, ScriptDrive>;
 
-/// The number of an instance in records; 0 belongs to no instance and stands for the host.
+/// The number of an instance in records; 0 belongs to no instance and means the host.
 pub(crate) fn instance_id(index: usize) -> InstanceId {
     u16::try_from(index + 1).map_or(RUNTIME, InstanceId)
 }

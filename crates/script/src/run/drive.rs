@@ -51,7 +51,7 @@ impl ScriptDrive {
         })
     }
 
-    /// From the next scan on the drive is here (u), whatever the simulated one does.
+    /// From the next scan on the drive has this position (u), independent of the simulation.
     pub(crate) fn lead(&mut self, position: f64) {
         self.told = Some(position);
     }

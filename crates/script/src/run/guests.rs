@@ -197,7 +197,7 @@ fn place(program: &Program, guest: &Guest, fault: &Fault) -> Option<String> {
     };
     let number = u32::try_from(guest.bits(site, 4)?).ok()?;
     let place = text.symbols.place(number)?;
-    // Notes are the same from whatever folder the script is called.
+    // Notes do not depend on the folder from which the script is run.
     let file = place.file.strip_prefix(&text.folder).unwrap_or(&place.file);
     let (line, column) = (place.position.line, place.position.column);
     let mut says = format!("{file}:{line}:{column}: {}", place.kind.text());

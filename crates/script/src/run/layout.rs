@@ -272,7 +272,7 @@ fn written(program: &Program, symbol: &Symbol) -> Vec<trace::Written> {
     };
     let each = text.symbols.writers(&found).into_iter();
     each.map(|it| {
-        // The same from whatever folder the script is called.
+        // It does not depend on the folder from which the script is run.
         let file = it.file.strip_prefix(&text.folder).unwrap_or(&it.file);
         trace::Written {
             at: format!("{file}:{}:{}", it.position.line, it.position.column),

@@ -87,7 +87,7 @@ pub enum RunError {
     Program {
         /// Its name.
         program: String,
-        /// What is wrong with it.
+        /// The error.
         reason: String,
     },
     /// The configuration of the tasks is not valid.

@@ -250,7 +250,7 @@ impl Part {
         }
     }
 
-    /// With a column for each of its words.
+    /// It has a column for each of its words.
     fn of_each(of: Of, told: impl Iterator<Item = Told>) -> Self {
         let mut part = Self::new(of, 0, (0..).zip(told));
         part.count = part.columns.len();

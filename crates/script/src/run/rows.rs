@@ -230,7 +230,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// The variable of Structured Text that a signal stands for, if it is one.
+    /// The variable of Structured Text behind a signal, if it is one.
     fn variable(&self, signal: &Signal) -> Option<&'a Variable> {
         let Signal::Point(Point::Symbol(program, symbol)) = *signal else {
             return None;
@@ -239,7 +239,7 @@ impl<'a> Rows<'a> {
         program.symbols.get(symbol)?.variable.as_ref()
     }
 
-    /// Type of the pin a signal stands for, if it is one.
+    /// Type of the pin behind a signal, if it is one.
     pub(crate) fn pin_type(&self, signal: &Signal) -> Option<PinType> {
         match *signal {
             Signal::Point(Point::Pin(instance, pin)) => {

@@ -134,7 +134,7 @@ impl<'a> Session<'a> {
             .scan(now_ns, &mut self.bench, &mut self.machine)
             .map_err(|error| RunError::Internal(error.to_string()))?;
         self.bench.check()?;
-        // A guest that faults has stopped the resource: the run goes on while its axes ramp down.
+        // A guest that faults has stopped the resource: the run continues while its axes ramp down.
         if let Some(&fault) = report.mode.fault()
             && !self.bench.has_fault()
         {
@@ -478,8 +478,8 @@ impl<'a> Session<'a> {
     }
 
     /// Overrides the position of an axis's drive, given by its index in the script: from the next scan on
-    /// it is this one (u), in the drive's own coordinates (see [`Ordered`]), whatever its simulation
-    /// does. Power and faults are still those of the simulation.
+    /// it is this one (u), in the drive's own coordinates (see [`Ordered`]), independent of its
+    /// simulation. Power and faults are still those of the simulation.
     ///
     /// # Errors
     /// The reason for people: it is not a number, or there is no such axis.

@@ -354,7 +354,7 @@ pub(crate) fn range_end() -> Value {
     any_of_these(&[scans(), required(&["when"], object(&shape::WINDOW_EDGE))])
 }
 
-/// What a value is compared with.
+/// The value to compare with.
 pub(crate) fn bound() -> Value {
     any_of_these(&[number(), definition("time_literal")])
 }

@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// Warnings of one script that are rendered in full; the rest is counted.
 const SHOWN_MOST: usize = 20;
 
-/// What a warning is about.
+/// The subject of a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum WarningKind {
     /// It tests nothing.

@@ -65,7 +65,7 @@ pub(super) fn look(rows: &Rows<'_>, all: &mut Vec<Warning>) {
     }
 }
 
-/// The input variables that wires, steps or claims look at.
+/// The input variables that wires, steps or claims read.
 fn read_inputs(script: &Script) -> BTreeSet<usize> {
     let wires = script.blocks.iter().flat_map(|block| &block.wires);
     let wires = wires.map(|(_, wire)| wire);
@@ -92,7 +92,7 @@ fn read_inputs(script: &Script) -> BTreeSet<usize> {
         .collect()
 }
 
-/// The points a condition looks at.
+/// The points that a condition reads.
 fn points(condition: &Condition) -> Vec<Point> {
     let mut signals = vec![&condition.signal];
     if let Test::Compare(comparisons) = &condition.test {

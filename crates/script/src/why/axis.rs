@@ -43,7 +43,7 @@ impl Walk<'_> {
                 } else if self.is_busy(instance, scan) {
                     found.push(self.follows(instance, rose, scan));
                 } else {
-                    // The next motion may be what is missing.
+                    // Perhaps the next motion is missing.
                     let next = self.untriggered(&commanders, scan).into_iter();
                     found.extend(next.filter(|next| next.way.len() > 1 || next.rank != Rank::Stopped));
                     found.push(self.follows(instance, rose, scan));

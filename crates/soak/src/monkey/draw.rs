@@ -296,7 +296,7 @@ fn drive(random: &mut Random, config: &AxisConfig, cycle: f64) -> DriveSetup {
     }
 }
 
-/// A motor that can usually turn what the axis asks for.
+/// A motor that is usually strong enough for the limits of the axis.
 fn motor(random: &mut Random, limits: &Limits) -> MotorSetup {
     let inertia = random.log_between(0.01, 10.0);
     let rated_torque = inertia * limits.acceleration * random.log_between(0.3, 3.0);

@@ -1,8 +1,8 @@
 //! Set-points stay inside the software limits.
 //!
-//! A motion that was inside does not come out, whatever is commanded: a motion that would is refused or
-//! stops before. Exceptions are ramps to rest that cannot be refused, those after an error or without
-//! power, and moves of the coordinates.
+//! A motion that was inside does not leave the limits, for any command: a motion that would leave is
+//! refused or stops before. Exceptions are ramps to rest that cannot be refused, those after an error or
+//! without power, and moves of the coordinates.
 
 use super::{Broken, rule};
 use standstill_axis::{Axis, AxisState, Planner};
@@ -30,7 +30,7 @@ fn limits_of<P: Planner>(axis: &Axis<P>) -> (f64, f64) {
 #[derive(Clone, Copy, Debug)]
 pub struct Fence {
     limits: (f64, f64),
-    /// It was inside with the last set-point, and must not come out.
+    /// It was inside with the last set-point, and must not leave.
     inside: bool,
 }
 

@@ -19,7 +19,7 @@ const STILL: f64 = 1e-9;
 /// The resolution of a plan's 64-bit instant, relative to the time since its start.
 const TICK: f64 = 2.0 * f64::EPSILON;
 
-/// Differences of positions, newest first; what the next scan's are made of.
+/// Differences of positions, newest first; the next scan computes its own from them.
 const KEPT: usize = 4;
 
 /// Positions that makes.

@@ -320,7 +320,7 @@ pub(super) fn function_text(key: &str) -> String {
     }
 }
 
-/// What the table of blocks says of a pin.
+/// The text of the table of blocks for a pin.
 pub(super) fn pin_doc(pin: &Pin) -> String {
     let unit = match pin.unit {
         "" => String::new(),

@@ -25,7 +25,7 @@ impl<'a> Checker<'a> {
         self.named_part(path, &path.selectors, expected)
     }
 
-    /// What a path leads to with these of its selectors.
+    /// The target of a path with these of its selectors.
     pub(super) fn named_part(
         &mut self,
         path: &'a Path,
@@ -170,7 +170,7 @@ impl<'a> Checker<'a> {
         Some(self.global_place(place))
     }
 
-    /// The PROGRAM of this name, if the name can stand for its instance in statements.
+    /// The PROGRAM of this name, if statements can use the name for its instance.
     pub(super) fn program_named(&self, key: &str) -> Option<UnitId> {
         let unit = self.unit_names.get(key).copied()?;
         (self.scope.is_some() && self.unit(unit).kind == UnitKind::Program).then_some(unit)
@@ -510,7 +510,7 @@ impl<'a> Checker<'a> {
         )
     }
 
-    /// The element of this name; one that is not there is told.
+    /// The element of this name; reports an unknown name.
     pub(super) fn element_of(&mut self, ty: TypeId, name: &Ident) -> Option<Expr> {
         let Type::Enumeration(of) = self.types.get(ty) else {
             let message = format!("{} is no enumeration", self.type_name(ty));

@@ -107,7 +107,7 @@ impl<'a> Checker<'a> {
             Some(place) if place.bit.is_some() => BOOL,
             Some(place) => place.ty,
             None => {
-                // Its other mistakes are reported all the same.
+                // Its other errors are still reported.
                 self.expression(value, None);
                 return None;
             }

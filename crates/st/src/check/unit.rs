@@ -226,7 +226,7 @@ impl<'a> Checker<'a> {
                 let message = format!("there is no global variable {}", quoted(&name.text));
                 let wrong = Diagnostic::error(Code::UnknownName, name.span, message);
                 self.tell(wrong.maybe_help(guess.or_else(|| Some("declare it in VAR_GLOBAL".to_owned()))));
-                // It is known from here on, so that its uses are not told, too.
+                // It is known from here on, so that its uses are not reported, too.
                 self.add_member(
                     id,
                     name,

@@ -230,7 +230,7 @@ fn module(
     exports.export("memory", ExportKind::Memory, 0);
     for (index, (name, function)) in (imported + functions.len() as u32..).zip(exported) {
         exports.export(&name, ExportKind::Func, index);
-        // Whose target it is counts for nobody.
+        // The owner of the target does not matter.
         functions.push((Target::Fault, function));
     }
 

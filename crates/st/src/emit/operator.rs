@@ -85,7 +85,7 @@ impl Emitter<'_, '_, '_> {
             (O::Greater, false) => sink.f64_gt(),
             (O::GreaterEqual, true) => sink.f32_ge(),
             (O::GreaterEqual, false) => sink.f64_ge(),
-            // The checker lets nothing else through.
+            // The checker refuses everything else.
             _ => sink.unreachable(),
         };
     }

@@ -180,7 +180,7 @@ impl Emitter<'_, '_, '_> {
         };
     }
 
-    /// Pushes what stands at a place; of one with members or elements: its address.
+    /// Pushes the value at a place, or the address of a value with members or elements.
     pub(super) fn read(&mut self, place: &Place) {
         let Some(of) = self.context.program.types.elementary(place.ty) else {
             return self.whole_address(place);

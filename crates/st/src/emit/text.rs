@@ -293,7 +293,7 @@ impl Emitter<'_, '_, '_> {
         local
     }
 
-    /// A fault if what is on the stack is true.
+    /// A fault if the top of the stack is true.
     fn text_fault(&mut self, number: u32, span: Span) {
         let site = self.site(span, FaultKind::Position);
         self.function.if_(BlockType::Empty);

@@ -119,7 +119,7 @@ pub(crate) const OPERATORS: &[(&str, crate::syntax::Operator)] = {
     ]
 };
 
-/// `X_TO_Y`, `TO_Y`: from what, if it is said, and to what.
+/// `X_TO_Y`, `TO_Y`: the source type, if given, and the target type.
 pub(crate) fn conversion(name: &str) -> Option<(Option<&str>, Elementary)> {
     if let Some(to) = name.strip_prefix("TO_") {
         return Some((None, Elementary::find(to)?));

@@ -11,7 +11,8 @@ use crate::check::Program;
 use crate::error::{Diagnostic, Found};
 use crate::source::Sources;
 
-/// Looks for all of them. Cost: linear in the program, but for the calls of one instance in one unit.
+/// Searches for all of them. Cost: linear in the program, except for the calls of one instance in one
+/// unit.
 pub(crate) fn lint(program: &Program<'_>, sources: &Sources, found: &mut Found) {
     let off = Off::new(sources);
     for diagnostic in rules::all(program, &facts::gather(program)) {

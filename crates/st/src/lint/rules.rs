@@ -145,7 +145,7 @@ fn two_writers(program: &Program<'_>, facts: &Facts, told: &mut Vec<Diagnostic>)
     }
 }
 
-/// ST53: nobody looks whether a block of motion refused.
+/// ST53: Error and ErrorID of a motion block are never read.
 fn refusals(
     program: &Program<'_>,
     facts: &Facts,

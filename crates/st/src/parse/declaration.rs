@@ -1,4 +1,4 @@
-//! What stands at the top of a file, and sections of variables.
+//! The top level of a file, and sections of variables.
 
 use super::{Parser, skip};
 use crate::error::{Code, Diagnostic};
@@ -134,7 +134,7 @@ impl Parser<'_> {
         Some(Item::Type(TypeDeclaration { name, spec, initial }))
     }
 
-    /// Tells that something is open at a place where it cannot go on.
+    /// Reports an open part at a place where it cannot continue.
     pub(super) fn not_closed(&mut self, end: Word, open: Span, what: &str) {
         let message = format!(
             "{what} is not closed: `{}` is missing before {}",

@@ -40,7 +40,7 @@ impl Parser<'_> {
         })
     }
 
-    /// Operators of C: told, and read as what they mean.
+    /// Operators of C: reported, and read with their meaning.
     fn foreign_operator(&mut self) -> Option<Operator> {
         let (operator, right) = match self.text_of(self.span()) {
             "==" => (Operator::Equal, "="),
@@ -136,7 +136,7 @@ impl Parser<'_> {
             self.next();
         }
         if told {
-            // What is missing behind it has the same cause.
+            // A missing part after it has the same cause.
             self.told_at = Some(self.at);
         }
         Expression {
@@ -252,7 +252,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A variable, or the name of what is called.
+    /// A variable, or the name of a called unit.
     pub(super) fn path(&mut self) -> Option<Path> {
         let from = self.span();
         let this = self.take_word(Word::This);
@@ -305,7 +305,7 @@ impl Parser<'_> {
         }
     }
 
-    /// What stands behind a `.`: a member, `3` or `%X3`.
+    /// The text after a `.`: a member, `3` or `%X3`.
     fn member(&mut self) -> Option<Selector> {
         let span = self.span();
         let digits = match self.token() {
@@ -331,7 +331,7 @@ impl Parser<'_> {
                     }
                 }
             }
-            // Members may have names that are keywords elsewhere; the declaration tells.
+            // Members may have names that are keywords elsewhere; the declaration decides.
             Token::Word(_) => {
                 self.next();
                 let text = self.text_of(span).to_owned();
@@ -409,7 +409,7 @@ impl Parser<'_> {
         list.unwrap_or_default()
     }
 
-    /// Behind the `)` that closes what is open here, if it comes before the statement ends.
+    /// After the matching `)`, if it comes before the end of the statement.
     fn skip_to_close(&mut self) {
         let mut depth = 0_usize;
         loop {

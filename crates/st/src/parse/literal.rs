@@ -91,7 +91,7 @@ impl Parser<'_> {
         kind
     }
 
-    /// What stands behind `INT#` or `E#`.
+    /// The text after `INT#` or `E#`.
     pub(super) fn typed(&mut self) -> Kind {
         let prefix = self.next();
         let text = self.text_of(prefix).trim_end_matches('#').to_owned();
@@ -172,7 +172,7 @@ impl Parser<'_> {
         Kind::Bool(value)
     }
 
-    /// Past what stands without a space behind the last token.
+    /// Skips text without a space after the last token.
     fn skip_glued(&mut self) {
         while self.token() != Token::End
             && self.token() != Token::Semicolon

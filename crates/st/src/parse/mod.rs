@@ -49,7 +49,7 @@ struct Parser<'a> {
     depth: usize,
     /// Whether an address may take the place of a member: `cell.%IX0.0`, a signal of a script.
     addresses: bool,
-    /// The words that close what is open, from the outside in.
+    /// The words that close the open parts, from the outside in.
     open: Vec<Word>,
     /// END_IF and similar words without a `;`.
     unended: Vec<Span>,

@@ -119,7 +119,7 @@ impl Parser<'_> {
         match self.deeper(compound) {
             Some(kind) => kind,
             None => {
-                // Reading goes on behind the whole of it, which ends nobody knows where.
+                // Reading continues after the whole of it, whose end is unknown.
                 self.skip_to_item();
                 self.told_at = Some(self.at);
                 let _ = from;
@@ -210,7 +210,8 @@ impl Parser<'_> {
         }
     }
 
-    /// Tells where the `;` behind END_IF and its kin is missing: once for a file, because who leaves one out leaves all out.
+    /// Reports a missing `;` after END_IF and similar words, once per file, because authors usually omit
+    /// all of them.
     pub(super) fn tell_unended(&mut self) {
         let Some(first) = self.unended.first() else { return };
         let word = self.text_of(*first).to_ascii_uppercase();
@@ -522,7 +523,7 @@ impl Parser<'_> {
             self.skip_to_semicolon();
             return None;
         }
-        // A statement that was never ended goes on with the next one's name, which stands on another line.
+        // A statement without an end continues with the name of the next one, on another line.
         if matches!(value.kind, ExpressionKind::Wrong) && self.told_at == Some(self.at) {
             self.skip_to_semicolon();
         } else {

@@ -10,7 +10,7 @@ use crate::syntax::{Expression, Ident, Initial, SpecKind, TypeSpec};
 const POINTERS: &str = "hand variables over as VAR_IN_OUT";
 
 impl Parser<'_> {
-    /// A type; `initial` becomes what stands in parentheses behind a function block, as CODESYS has it.
+    /// A type; `initial` becomes the text in parentheses after a function block, as in CODESYS.
     pub(super) fn type_spec(&mut self, initial: &mut Option<Initial>) -> TypeSpec {
         let from = self.span();
         let kind = self
@@ -36,7 +36,7 @@ impl Parser<'_> {
                 self.next();
                 self.take_word(Word::To);
                 self.unsupported(from, &what, POINTERS);
-                // What it leads to is read, so that reading goes on behind it.
+                // Its target type is read, so that reading continues after it.
                 let _there = self.type_spec(&mut None);
                 SpecKind::Wrong
             }
@@ -208,7 +208,7 @@ impl Parser<'_> {
         }
     }
 
-    /// What stands behind `:=` of a declaration.
+    /// The text after `:=` of a declaration.
     pub(super) fn initial(&mut self) -> Initial {
         let from = self.span();
         let initial = self.deeper(|parser| match parser.token() {

@@ -147,7 +147,7 @@ impl Symbols {
         self.each_element(part, &mut |element| {
             let before = found.len();
             self.search_blocks(element, most, found);
-            // What the first element does not have no other one has.
+            // If the first element lacks it, all others do.
             found.len() > before && found.len() < most
         });
     }
@@ -164,7 +164,7 @@ impl Symbols {
         self.types.elementary(ty).is_some()
     }
 
-    /// The elements of an array in order, while `go` wants more.
+    /// The elements of an array in order, while `go` returns TRUE.
     fn each_element(&self, part: &Part, go: &mut dyn FnMut(&Part) -> bool) {
         let Type::Array(array) = self.types.get(part.ty) else {
             return;

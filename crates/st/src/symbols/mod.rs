@@ -16,7 +16,7 @@ use crate::start;
 use crate::types::{Elementary, Member, MemberKind, Members, Start, Type, TypeId, Types};
 use standstill_fb::BlockInfo;
 
-/// What a variable is for.
+/// The use of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Section {
     /// VAR_GLOBAL.
@@ -220,7 +220,7 @@ impl Symbols {
         self.symbol(&self.part(path)?)
     }
 
-    /// What stands at a path.
+    /// The part at a path.
     fn part(&self, path: &str) -> Option<Part> {
         let mut rest = path;
         let name = next_name(&mut rest)?;
@@ -358,7 +358,7 @@ pub(crate) fn entry(task: &str) -> String {
     format!("plc_task_{}", task.to_ascii_uppercase())
 }
 
-/// Takes the name a path goes on with.
+/// Takes the next name of a path.
 fn next_name<'p>(rest: &mut &'p str) -> Option<&'p str> {
     let end = rest.find(['.', '[']).unwrap_or(rest.len());
     let (name, behind) = rest.split_at(end);
@@ -380,7 +380,7 @@ fn instance_member(instance: &Instance<'_>, ty: TypeId) -> Member {
     }
 }
 
-/// Writes what stands in memory before the first scan.
+/// Writes the contents of the memory before the first scan.
 pub(crate) fn image(program: &Program<'_>, memory: &mut [u8]) {
     for global in &program.globals {
         start::write(

@@ -34,7 +34,7 @@ pub(super) struct Write {
     is_call: bool,
 }
 
-/// What the statements of a program write, in the order of the text.
+/// The variables that the statements of a program write, in the order of the text.
 pub(super) fn writes(program: &Program<'_>, sources: &Sources) -> Vec<Write> {
     let mut finder = Finder {
         program,

@@ -25,7 +25,7 @@ pub trait Program<D: Drive = IdealDrive> {
     /// Sets all variables.
     fn start(&mut self, _start: Start) {}
 
-    /// Latches the inputs: what the programs of the scan see.
+    /// Latches the inputs that the programs of the scan read.
     fn latch(&mut self, _time: ScanTime, _machine: &mut Machine<Standard, D>) {}
 
     /// The BOOL bound to SINGLE of `task`.

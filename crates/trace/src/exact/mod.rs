@@ -42,7 +42,7 @@ const CELL_BYTES: usize = 10;
 /// Most bytes of a companion beside its cells: the names of its columns, and those in them.
 const NAMES_BYTES: usize = 1 << 22;
 
-/// Number of cells that may always be unpacked, if nothing else is known of a companion ..
+/// Number of cells that may always be unpacked, if a companion gives no other bound ..
 const CELLS_FREE: usize = 1 << 22;
 
 /// .. and how many more for each byte of the file.

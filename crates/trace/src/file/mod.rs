@@ -163,8 +163,8 @@ pub fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>
     Draft::begin(path)?.finish(write)
 }
 
-/// As [`replace`], for a file that nobody named, such as the golden beside a script. Whatever is in its
-/// place, nothing but this name in its folder changes. A folder or a device there is an error.
+/// As [`replace`], for a file that nobody named, such as the golden beside a script. Only this name in
+/// its folder changes, whatever was there before. A folder or a device there is an error.
 ///
 /// # Errors
 /// As [`replace`].
@@ -233,7 +233,7 @@ impl Draft {
     /// Puts the written file into its place.
     ///
     /// # Errors
-    /// What the system says; a file that was there is then as it was.
+    /// The message of the system; an existing file is then unchanged.
     pub fn keep(self) -> Result<(), FileError> {
         let Self { path, target } = self;
         match target {

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// `X.partial`, which takes the place of `X` at the end. A pipe or a device is written to directly. If
 /// the run ends early, the partial file has whole rows, except for the last one after a kill.
 ///
-/// JSON Lines end with an object for what is not known before the first scan, when the header is written:
+/// JSON Lines end with an object for data that the header, written before the first scan, cannot have:
 /// verdicts, cams, notes.
 #[derive(Debug)]
 pub struct Streaming {
@@ -31,7 +31,7 @@ impl Streaming {
     /// Begins the files of a trace that has no rows yet; a table in this dialect.
     ///
     /// # Errors
-    /// A name that ends in neither `.csv` nor `.jsonl`, or what the system says.
+    /// A name that ends in neither `.csv` nor `.jsonl`, or the message of the system.
     pub fn begin(trace: &Trace, path: &Path, dialect: Dialect) -> Result<Self, FileError> {
         let form = form(path)?;
         if form == Form::Exact {

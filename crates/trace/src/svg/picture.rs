@@ -70,7 +70,7 @@ pub fn wrapped(text: &str, letters: usize) -> Vec<String> {
 /// The theme in which a picture is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Theme {
-    /// Light, whatever the reader's system uses.
+    /// Light, independent of the reader's system.
     Light,
     /// Dark, likewise.
     Dark,

@@ -14,7 +14,7 @@ pub struct TypeRow {
 }
 
 impl Compliance {
-    /// Elementary types: whether a pin of the registry has it, and what stands in for it.
+    /// Elementary types: whether a pin of the registry has it, and its replacement.
     pub fn elementary(&self) -> Vec<TypeRow> {
         self.standard
             .elementary
@@ -44,7 +44,7 @@ impl Compliance {
             .collect()
     }
 
-    /// Derived types: whether a pin of the registry has it, and what it is made of.
+    /// Derived types: whether a pin of the registry has it, and its definition.
     pub fn derived(&self) -> Vec<TypeRow> {
         self.standard
             .derived

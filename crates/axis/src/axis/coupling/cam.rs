@@ -1,10 +1,10 @@
 //! On a cam: MC_CamIn and MC_CamOut on the slave's side.
 //!
 //! In sync the set-point *is* the cam at the master's place of the same scan ([`CamLaw`]). A slave that
-//! can't be there stays on the curve all the same. It then follows a lagging master of its own, its
-//! shadow. A lag in position would take a tool off the curve, and into an obstacle. Only before it has
-//! reached the curve does the slave move in its own coordinates, by a move to a place of the curve where
-//! the curve is at rest.
+//! cannot be there stays on the curve. It then follows a lagging master of its own, its shadow. A lag in
+//! position would take a tool off the curve, and into an obstacle. Only before it has reached the curve
+//! does the slave move in its own coordinates, by a move to a place of the curve where the curve is at
+//! rest.
 //!
 //! | file | subject |
 //! | --- | --- |
@@ -14,11 +14,11 @@
 //! | [`shadow`] | its shadow in step with the master |
 //! | [`near`] | the same on a long way |
 //! | [`corners`] | its rests where a derivative of the cam jumps |
-//! | [`ahead`] | whether it keeps its limits along what the master does next, and where that ends |
-//! | [`beside`] | what it leaves to a shift, and to its master |
+//! | [`ahead`] | whether it keeps its limits along the next motion of the master, and where that motion ends |
+//! | [`beside`] | the reserve that it leaves to a shift, and to its master |
 //! | [`steady`] | the motion step in a scan in which nothing is new |
 //! | [`ends`], [`after`] | ends of periods, and what follows then |
-//! | [`laid`] | how the cam lies, for who draws it |
+//! | [`laid`] | the place of the cam, for drawing |
 //!
 //! Source: PLCopen Motion Control Part 1, MC_CamTableSelect, MC_CamIn, MC_CamOut; V20 to V20b, S8. What the standard leaves open is
 //! told in docs/cams.md.
@@ -116,9 +116,10 @@ struct Shadow {
 #[derive(Clone, Copy, Debug)]
 pub(in crate::axis) struct OnCam {
     camming: Camming,
-    /// Where the cam lies, once it does.
+    /// The place of the cam, once it is known.
     anchor: Option<Anchor>,
-    /// Where it lies at its master, and which place of the cam that is, if that was settled before it was engaged.
+    /// Its place at the master, and the corresponding place of the cam, if both were decided before it
+    /// was engaged.
     begins: Option<(Place, f64)>,
     /// It is to be in sync at its sync position, and its way there is not chosen yet.
     is_timed: bool,
@@ -152,13 +153,13 @@ pub(in crate::axis) struct OnCam {
     lead: f64,
     /// Where the cam lay first, without what was superimposed on it since (u).
     laid: f64,
-    /// What it leaves to its master, once that keeps the limits of the slave.
+    /// The limits that it leaves to its master, once they keep the limits of the slave.
     bound: Option<Limits>,
     /// The place to which its master leads it (u), if that is outside its software limits.
     leads_outside: Option<f64>,
 }
 
-/// A cam as it lies.
+/// A cam at its place.
 #[derive(Clone, Copy)]
 struct Curve<'a> {
     cam: Cam<'a>,
@@ -238,7 +239,7 @@ impl OnCam {
         &mut self.leads_outside
     }
 
-    /// The cam as it lies, once it does.
+    /// The cam at its place, once that is known.
     fn curve<'a>(&self, cam: Cam<'a>) -> Option<Curve<'a>> {
         Some(Curve {
             cam,
@@ -298,7 +299,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// How many derivatives of a cam must go on without a jump for this axis to take it.
+    /// The number of derivatives of a cam that must not jump for this axis to accept it.
     fn needed_of_cam(&self) -> usize {
         let configured = self.config.following.cam_continuity;
         configured.map_or_else(|| self.corner_order(), usize::from)
@@ -410,7 +411,7 @@ impl<P: Planner> Axis<P> {
         self.on_cam.as_ref().map_or(0.0, |on_cam| on_cam.deviation)
     }
 
-    /// In sync, and where the cam has not begun yet that is not told.
+    /// In sync. Before the cam has begun this is not reported.
     pub(super) fn is_in_sync_on_cam(&self) -> bool {
         let is_in_sync = |on_cam: &OnCam| on_cam.rung.is_locked() && on_cam.ends.has_begun();
         self.on_cam.as_ref().is_some_and(is_in_sync)

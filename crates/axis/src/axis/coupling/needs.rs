@@ -77,8 +77,8 @@ const COARSE: f64 = 1e-3;
 
 impl Step<'_> {
     /// The first derivative whose limit no motion between the two set-points keeps: its name, the least
-    /// value that some motion needs, and the limit. Each derivative is checked by itself, whatever the
-    /// lower ones do between the two.
+    /// value that some motion needs, and the limit. Each derivative is checked by itself, independent of
+    /// the lower ones between the two.
     ///
     /// The derivative is a function of time between -L and L, and the set-points give its first moments.
     /// The possible moments of such a function are known: see [`are_possible`].

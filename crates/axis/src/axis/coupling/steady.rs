@@ -163,7 +163,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Whether nothing is new: it follows none, or it is a slave whose next step may be one in which
-    /// nothing is new. Whatever ends that calls [`Axis::unsettle`].
+    /// nothing is new. Every event that ends this calls [`Axis::unsettle`].
     #[inline]
     pub(crate) fn is_settled(&self) -> bool {
         self.steady.is_settled

@@ -115,10 +115,10 @@ pub(in crate::axis) enum Kind {
     Measured,
 }
 
-/// What a slave keeps of its masters' next motions, in order to detect a change.
+/// What a slave remembers of the next motions of its masters, in order to detect a change.
 pub(super) type Known = [KnownPart; 2];
 
-/// What it keeps of one master.
+/// What it remembers of one master.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct KnownPart {
     pub root: usize,
@@ -179,7 +179,8 @@ pub(in crate::axis) fn way_to_rest<Q: Plan>(leads: &Leads<'_, Q>, scans: u64) ->
 }
 
 impl<'a, P: Plan> Future<'a, P> {
-    /// What is known of it now, and whether it goes on from what was `known` in the scan before.
+    /// The present data of the master, and whether its motion continues the one `known` from the scan
+    /// before.
     fn compare(&self, known: &Known) -> (Known, bool) {
         let [first, second] = &self.parts;
         let (first, goes_on) = first.compare(&known[0]);

@@ -17,7 +17,7 @@ impl<P: Planner> Axis<P> {
         self.beside.report.homing != DriveHoming::Off
     }
 
-    /// Whether the drive is the one that homes.
+    /// Whether the drive homes by itself.
     pub(in crate::axis) fn is_homed_by_drive(&self) -> bool {
         matches!(self.homing.phase, Phase::Drive | Phase::Named | Phase::Return)
     }

@@ -174,7 +174,8 @@ impl<P: Planner> Axis<P> {
         };
         let room = || self.room_of_law(view, &scope.cams);
         let fits = |plan: &P::Plan| self.fits_law(view, (plan, 0), &scope.cams);
-        // The planner takes again what it took once. While the direction is barred nothing changes.
+        // The planner accepts again what it accepted before. While the direction is barred nothing
+        // changes.
         let Ok(proposed) = self.propose_within(layer, command, room, fits) else {
             return false;
         };
@@ -347,7 +348,7 @@ impl<P: Planner> Axis<P> {
         self.end_superimposed(Fate::Failed(error));
     }
 
-    /// The set-point of what is superimposed for the end of this scan, if it moves.
+    /// The set-point of the superimposed motion for the end of this scan, if it moves.
     pub(in crate::axis) fn next_added(&mut self) -> Option<Setpoint> {
         match &mut self.layer.as_mut()?.motion {
             Motion::Run { plan, elapsed, .. } => Some(plan.next(elapsed.saturating_add(1))),

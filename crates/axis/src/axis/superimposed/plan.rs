@@ -314,8 +314,8 @@ impl<P: Planner> Axis<P> {
         if !command.lacks_room() || !due {
             return;
         }
-        // The planner takes again what it took once. If not, or while the direction is barred, nothing
-        // changes.
+        // The planner accepts again what it accepted before. If not, or while the direction is barred,
+        // nothing changes.
         if let Ok(proposed) = self.propose(layer, command) {
             self.add(proposed, scope);
         }
@@ -350,7 +350,8 @@ impl<P: Planner> Axis<P> {
         &mut self,
         entry: &mut Entry,
     ) -> Result<Option<Motion<P::Plan>>, ErrorId> {
-        // MC_Home names a position at rest. The command that was to bring the axis there may have failed.
+        // MC_Home sets the position at rest. The command before it, which should bring the axis to rest,
+        // may have failed.
         if matches!(entry.work, Work::Home(_)) {
             if self.is_superimposing() {
                 return Ok(None);
@@ -412,7 +413,7 @@ impl<P: Planner> Axis<P> {
         Ok(Some(motion))
     }
 
-    /// Whether a new motion of the owner leaves room for what is being added.
+    /// Whether a new motion of the owner leaves enough reserve for the added motion.
     pub(in crate::axis) fn fits_under(&self, motion: &Motion<P::Plan>, layer: &Layer<P::Plan>) -> bool {
         let (
             Motion::Run { plan, .. },

@@ -99,8 +99,8 @@ impl Thresholds {
 
     /// Whether the four products reach their thresholds.
     ///
-    /// Below 2^53 this is exact (docs/planner.md, eq. 9). Beyond, the products are rounded, by far less than
-    /// the slack of eq. 7, and grow with every factor all the same.
+    /// Below 2^53 this is exact (docs/planner.md, eq. 9). Beyond, the products are rounded, by far less
+    /// than the slack of eq. 7, and still grow with every factor.
     pub fn reached_by(&self, [n1, n2, n3]: Ramp, k3: f64, m: f64) -> bool {
         let p3 = n3 * m;
         let p2 = max(n2, 1.0) * p3;
@@ -152,7 +152,7 @@ impl Slice<'_> {
     fn row(&self, n1: f64) -> Row {
         let least = max(n1, 1.0);
         let product = max(self.thresholds.k2, self.thresholds.k1 / least) / self.m;
-        // Whole, but never above what the products ask for.
+        // Whole, but never above the bounds of the products.
         let n3 = math::ceil(self.k3 / self.m * LESS_MARGIN);
         let mut n2 = product / n3;
         if n2 > least && n2 * (n1 + n2) > product {
