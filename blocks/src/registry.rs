@@ -97,7 +97,7 @@ macro_rules! registry {
                 None
             }
 
-            /// Calls the block with its inputs as they stand.
+            /// Calls the block with its present inputs.
             pub fn call<P: Planner>(&mut self, context: &mut Context<'_, P>) {
                 match self { $(Self::$block(instance) => instance.call(context),)* }
             }

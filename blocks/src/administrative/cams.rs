@@ -262,7 +262,7 @@ impl Motion<'_> {
         } else {
             self.now.ahead(edge, from)
         };
-        // An edge at the starting point was already met.
+        // An edge at the starting point was already passed.
         ahead > 0.0 && ahead <= way.abs()
     }
 

@@ -155,7 +155,7 @@ impl Block for McDigitalCamSwitch {
 
 impl McDigitalCamSwitch {
     /// Takes over the outputs of `tracks`. Outputs it wrote before and no longer owns are switched off;
-    /// new ones start afresh.
+    /// new ones start from their initial state.
     fn take<P: Planner>(&mut self, outputs: AxisId, tracks: u32, context: &mut Context<'_, P>) {
         let (by, held) = core::mem::replace(&mut self.owned, (outputs, tracks));
         let kept = if by == outputs { held & tracks } else { 0 };

@@ -112,8 +112,8 @@ impl<R: Point> ProfileCore<R> {
         })
     }
 
-    /// Serves a command in progress before its status is asked for: gives new values, and the points when
-    /// it becomes active.
+    /// Handles a command in progress before its status is read: passes new values, and the points when it
+    /// becomes active.
     fn follow<P: Planner>(
         &mut self,
         axis: AxisId,

@@ -137,7 +137,7 @@ impl CamSlot {
     }
 }
 
-/// Why a store has no room.
+/// The reason why a store has no room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoRoom {
     /// No slot for another cam; the store has this many.

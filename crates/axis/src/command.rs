@@ -410,7 +410,7 @@ pub struct CamIn {
 }
 
 impl CamIn {
-    /// All values but the master, as bits.
+    /// All values except the master, as bits.
     fn bits(&self) -> ([u64; 7], [i64; 3]) {
         let values = [
             self.master_offset,

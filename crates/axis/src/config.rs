@@ -28,7 +28,7 @@ pub enum PowerOff {
     Drive,
 }
 
-/// What a slave in gear does when its master asks for more than its limits.
+/// The reaction of a slave in gear when its master's motion exceeds its limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OnLimit {
     /// It lags, and catches up onto the same law as soon as it can.
@@ -36,7 +36,7 @@ pub enum OnLimit {
     Lag,
     /// It is an axis error (420), raised while a stop still keeps the limits.
     Error,
-    /// Once in gear, its master asks for no more than the slave can do: every plan of the master keeps
+    /// Once in gear, its master stays within what the slave can follow: every plan of the master keeps
     /// the limits that its slaves leave. For motions of the master without such a plan (docs/coupling.md)
     /// the slave lags.
     SlowMaster,
@@ -199,11 +199,11 @@ pub struct AxisConfig {
     pub profile: MoveProfile,
     /// Commands that can wait, the active one not counted; at most [`QUEUE_MAX`].
     pub queue: usize,
-    /// Deceleration of ramps that no command asks for (u/s^2); `None` takes the limit.
+    /// Deceleration of ramps without a command (u/s^2); `None` takes the limit.
     pub stop_deceleration: Option<f64>,
-    /// Jerk of ramps that no command asks for (u/s^3); `None` takes the limit.
+    /// Jerk of ramps without a command (u/s^3); `None` takes the limit.
     pub stop_jerk: Option<f64>,
-    /// Dynamics of MC_Stop and of ramps that no command asks for. They may exceed the limits;
+    /// Dynamics of MC_Stop and of ramps without a command. They may exceed the limits;
     /// `stop_deceleration` and `stop_jerk` are then `None`.
     pub stop: Option<StopLimits>,
     /// How the axis stops when switched off while moving.

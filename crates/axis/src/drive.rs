@@ -127,7 +127,7 @@ pub struct TorqueReport {
     pub actual: f64,
     /// The largest torque it can hold; 0 if it only measures.
     pub most: f64,
-    /// It does not hold the torque it was asked for: it is at a limit of the velocity, or at its own.
+    /// It does not reach the commanded torque: it is at a limit of the velocity, or at its own limit.
     pub limited: bool,
 }
 
@@ -149,7 +149,7 @@ pub struct Equipment {
     pub limit_switches: bool,
     /// It latches the position of the reference pulse of its encoder.
     pub marker: bool,
-    /// It homes by itself when asked to.
+    /// It homes by itself on request.
     pub homing: bool,
 }
 
@@ -163,10 +163,11 @@ pub enum DriveHoming {
     Busy,
     /// The same, and its positions have been named anew: from this scan on the reference is here.
     Attained(DrivePosition),
-    /// It stands, and the reference is here. It stays in this state until it is no longer asked to home.
+    /// It is at rest, and the reference is here. It stays in this state until homing is no longer
+    /// requested.
     Done(DrivePosition),
-    /// It gave up, with its own error code, 0 if it has none. It stays in this state until it is no
-    /// longer asked to home.
+    /// It failed, with its own error code, 0 if it has none. It stays in this state until homing is no
+    /// longer requested.
     Failed(u16),
 }
 

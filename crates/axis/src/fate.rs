@@ -9,10 +9,10 @@ pub const FATES_KEPT: usize = 64;
 /// The state or result of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fate {
-    /// In the buffer; for a superimposed command: waits for room.
+    /// In the buffer; for a superimposed command: waits until the limits leave room.
     Waiting,
     /// Owns the axis, or is being superimposed. `reached` is TRUE once an endless motion runs at its
-    /// goal, or a held stop stands.
+    /// goal, or a held stop is at rest.
     Active {
         /// The goal is reached.
         reached: bool,

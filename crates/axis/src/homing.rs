@@ -113,7 +113,7 @@ pub struct Homing {
 }
 
 impl Homing {
-    /// Takes over the position where the axis stands.
+    /// Takes over the position of the axis, without motion.
     pub const DIRECT: Self = Self {
         procedure: Procedure::Direct,
         direction: HomeDirection::Positive,

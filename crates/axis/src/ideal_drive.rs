@@ -101,7 +101,7 @@ impl IdealDrive {
             .unwrap_or(self.stale)
     }
 
-    /// Stands at `position`; delayed positions are dropped.
+    /// Comes to rest at `position`; delayed positions are discarded.
     fn hold(&mut self, position: DrivePosition) {
         self.line = [position; DELAY_MAX + 1];
     }

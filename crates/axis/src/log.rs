@@ -90,7 +90,7 @@ pub enum Event {
     Raised {
         /// IEC name of the pin.
         pin: &'static str,
-        /// The value that was asked for.
+        /// The requested value.
         value: f64,
         /// The value used instead.
         limit: f64,
@@ -180,7 +180,7 @@ pub enum Event {
     },
     /// The masters of a slave in gear are commanded to a place where it must not go.
     LeadsOutside {
-        /// The place where the slave would come to rest (u).
+        /// The rest position that the slave would have (u).
         position: f64,
         /// Its software limit on that side (u).
         limit: f64,

@@ -73,11 +73,11 @@ all_of! {
     }
 }
 
-/// The standard draws no arrow for this event from this state.
+/// The standard has no arrow for this event from this state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Refused;
 
-/// The state after `event`, or [`Refused`] where the standard draws no arrow.
+/// The state after `event`, or [`Refused`] where the standard has no arrow.
 pub const fn next(state: AxisState, event: AxisEvent) -> Result<AxisState, Refused> {
     use {AxisEvent as E, AxisState as S};
     match state {

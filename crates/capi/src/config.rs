@@ -37,7 +37,7 @@ pub(crate) struct SetupFault {
 }
 
 impl AxisSetup {
-    /// Everything but the limits at its default, as `AxisConfig::new` has it.
+    /// Everything except the limits at its default, as in `AxisConfig::new`.
     pub(crate) const fn defaults(size: u32) -> Self {
         Self {
             size,

@@ -141,7 +141,7 @@ impl CamStore {
     }
 }
 
-/// Where everything stands in the storage.
+/// The offsets of all parts in the storage.
 struct Plan {
     whole: Layout,
     axes: usize,
@@ -222,7 +222,7 @@ pub(crate) unsafe fn init(
         });
     }
     let runtime: *mut Runtime = storage.cast();
-    // SAFETY: the head stands at the start of the storage, long and aligned enough for it by the plan.
+    // SAFETY: the head is at the start of the storage, long and aligned enough for it by the plan.
     unsafe {
         ptr::write(
             runtime,

@@ -204,7 +204,7 @@ fn line((index, stretch): (usize, &Stretch)) -> [String; 10] {
     ]
 }
 
-/// Lines whose cells stand below each other.
+/// Lines with aligned columns.
 fn columns(lines: &[[String; 10]]) -> String {
     let mut widths = [0; 10];
     for line in lines {

@@ -18,7 +18,7 @@ use std::process::ExitCode;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Exit {
-    /// Everything asked for was done and holds.
+    /// Everything was done, and all checks passed.
     Passed = 0,
     /// A claim, a golden or a plan failed, or two traces differ.
     Failed = 1,

@@ -77,7 +77,7 @@ pub fn write_all(sources: &[Source<'_>], marks: &[Mark], targets: Targets<'_>) -
     Ok(())
 }
 
-/// What goes with traces that make no page.
+/// The message for traces without a page.
 pub fn page_failure(error: ReportError) -> Failure {
     let exit = match error {
         ReportError::Count(_) => Exit::Usage,

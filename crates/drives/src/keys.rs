@@ -150,7 +150,7 @@ macro_rules! home_switch {
 
 const NO_MARKER: Marker = Marker { at: 0.0, every: None };
 
-/// What stands along the travel of any drive.
+/// The switches and pulses along the travel of any drive.
 macro_rules! marker {
     () => {
         object!(

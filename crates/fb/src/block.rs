@@ -104,7 +104,7 @@ pub struct Instance<B: Block> {
 }
 
 impl<B: Block> Instance<B> {
-    /// Calls the block with the inputs as they stand.
+    /// Calls the block with the present inputs.
     // Inlined, so that the outputs are written in place: after a copy the processor would wait for its
     // own writes.
     #[inline(always)]

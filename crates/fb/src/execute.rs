@@ -104,7 +104,7 @@ impl ExecuteCore {
 
     /// One call. At a rising edge (R8) `issue` gives the command. Its argument is the command the
     /// instance held before, which a retrigger replaces silently (R32). It returns the place where the
-    /// status of the new command is asked for.
+    /// status of the new command is read.
     #[inline]
     pub fn scan<P: Planner>(
         &mut self,

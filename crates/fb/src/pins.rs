@@ -5,7 +5,7 @@ use crate::{TableInfo, TableRef};
 use core::fmt;
 use standstill_axis::{AxisId, ErrorId, IecEnum, Raw};
 
-/// The three kinds of pins, in the order in which they stand in every table and trace.
+/// The three kinds of pins, in their order in every table and trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// VAR_IN_OUT.
@@ -151,7 +151,7 @@ pub type Int = i16;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Time(pub i64);
 
-/// A Rust type that can stand at a pin.
+/// A Rust type that a pin can have.
 pub trait PinValue: Copy {
     /// Its IEC type.
     const TYPE: PinType;

@@ -22,7 +22,7 @@ impl Values for Command {
     }
 
     fn apply<P: Planner>(&self, axis: AxisId, id: CommandId, context: &mut Context<'_, P>) {
-        // The block shows no Error: its command goes on as it was (R21).
+        // The block shows no Error: its command continues unchanged (R21).
         let _recorded = update_coupled(context.axes, axis, id, self, &mut context.scope);
     }
 }
@@ -115,7 +115,7 @@ impl<V: Values> UpdateCore<V> {
         })
     }
 
-    /// Changes are given before the status is asked for, so that their effect shows in the same call.
+    /// Changes are passed before the status is read, so that their effect shows in the same call.
     fn update<P: Planner>(
         &mut self,
         pins: Move,

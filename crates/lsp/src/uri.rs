@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// The path of a `file:` URI; `None` for any other.
 pub(crate) fn path(uri: &Uri) -> Option<PathBuf> {
     let rest = uri.as_str().strip_prefix("file://")?;
-    // A host stands before the first slash; ours is empty or `localhost`.
+    // A host is before the first slash; ours is empty or `localhost`.
     let rest = rest.strip_prefix("localhost").unwrap_or(rest);
     if !rest.starts_with('/') {
         return None;

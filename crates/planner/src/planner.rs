@@ -20,9 +20,9 @@ pub trait Planner {
 
     /// A move from `start` that ends at rest exactly on `target` (u) within `limits`.
     ///
-    /// `profile` is the method that the axis asks for; a planner may support only one. `before` are the
-    /// limits of the motion that `start` belongs to: until the state is inside `limits` the larger of the
-    /// two apply.
+    /// `profile` is the method of the axis; a planner may support only one. `before` are the limits of
+    /// the motion that `start` belongs to: until the state is inside `limits` the larger of the two
+    /// apply.
     ///
     /// # Errors
     /// [`PlanError`] if an input is invalid or the move too long.

@@ -187,8 +187,8 @@ impl Executor {
         Ok(())
     }
 
-    /// Stops the resource: no program runs any more, and every axis is asked to stop and switch off as it
-    /// is configured, which takes further scans. No effect on a stopped resource.
+    /// Stops the resource: no program runs any more, and every axis stops and switches off as it is
+    /// configured, which takes further scans. No effect on a stopped resource.
     pub fn stop<P: Planner, D: Drive>(
         &mut self,
         programs: &mut impl Programs<P, D>,

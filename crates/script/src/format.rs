@@ -11,7 +11,7 @@ const WIDTH: usize = 110;
 /// Spaces per level.
 const INDENT: usize = 2;
 
-/// Keys of the script whose members always stand one per line.
+/// Keys of the script whose members are always one per line.
 const ONE_PER_LINE: [&str; 5] = ["axes", "tasks", "blocks", "steps", "expect"];
 
 /// Lays out a script: two spaces per level; an object or list on one line if it fits in 110 columns; the

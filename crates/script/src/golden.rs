@@ -30,8 +30,8 @@ pub enum Mode {
 pub struct UnderCi;
 
 impl Mode {
-    /// The mode that the environment asks for: `CI` (unless empty, `0` or `false`) and `INSTA_UPDATE=no`
-    /// write nothing, `INSTA_UPDATE=always` accepts, everything else proposes. `accept` is the user's own
+    /// The mode set by the environment: `CI` (unless empty, `0` or `false`) and `INSTA_UPDATE=no` write
+    /// nothing, `INSTA_UPDATE=always` accepts, everything else proposes. `accept` is the user's own
     /// request.
     ///
     /// # Errors
@@ -57,7 +57,7 @@ impl Mode {
 pub enum Standing {
     /// Every bit is as reviewed.
     Same,
-    /// Events are as reviewed, and set-points within the tolerance asked for: how far they are.
+    /// Events are as reviewed, and set-points within the requested tolerance: their distance.
     Close(Option<Closeness>),
     /// Every bit that the golden knows is as reviewed, but it is of version 1: what to do about it.
     Old(String),

@@ -50,7 +50,7 @@ pub struct Script {
     pub parameters: BTreeMap<String, f64>,
     /// Whether a golden counts beside the claims.
     pub golden: bool,
-    /// Values above the limits are meant.
+    /// Values above the limits are intended.
     pub clamps_expected: bool,
     /// The texts that places point into.
     pub(crate) files: Arc<[File]>,
@@ -142,7 +142,7 @@ impl Instance {
             .map(|(index, pin)| (index, pin.name))
     }
 
-    /// Whether the axis stands at one of its pins.
+    /// Whether the axis is at one of its pins.
     pub(crate) fn has_axis(&self, axis: usize) -> bool {
         let mut constants = self.constants.iter();
         constants.any(|(_, value)| matches!(value, Value::Axis(id) if id.index() == axis))
@@ -408,7 +408,7 @@ pub enum Signal {
     State(usize),
     /// A number of an axis.
     Axis(usize, AxisNumber),
-    /// A master of an axis that stands at a `Slave` pin; empty while it follows none.
+    /// A master of an axis at a `Slave` pin; empty while it follows none.
     Master(usize, WhichMaster),
     /// Backward difference of published positions of this order (1-4) over cycle^order.
     Difference(usize, u8),

@@ -41,7 +41,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Whether all claims hold and the golden is met.
+    /// Whether all claims hold and the golden matches.
     pub fn passed(&self) -> bool {
         self.outcome.passed() && !matches!(self.golden, Standing::Failed(_))
     }
@@ -197,7 +197,7 @@ pub fn judge_file(
 /// [`judge_file`].
 ///
 /// # Errors
-/// [`SuiteError`], but for [`SuiteError::Golden`].
+/// [`SuiteError`], except [`SuiteError::Golden`].
 pub fn run_file(
     path: &Path,
     parameters: &[(String, f64)],

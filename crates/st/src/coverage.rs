@@ -21,7 +21,7 @@ pub struct Counter {
     /// 0 for the statement; otherwise the number of one of its branches, from 1. The last branch is ELSE,
     /// even if it is not written.
     pub branch: u32,
-    /// Where the count stands in memory, 8 bytes.
+    /// The address of the count in memory, 8 bytes.
     pub address: u32,
 }
 

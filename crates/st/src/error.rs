@@ -6,7 +6,7 @@ use std::fmt;
 
 macro_rules! codes {
     ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal,)*) => {
-        /// The kinds of mistakes. The name stands in the first line of a message; tools may rely on it.
+        /// The kinds of errors. The name is in the first line of a message; tools may rely on it.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         #[non_exhaustive]
         pub enum Code { $($(#[doc = $doc])+ $variant,)* }

@@ -54,7 +54,7 @@ enum Open {
 struct Layout {
     out: String,
     open: Vec<Open>,
-    /// The token before, if one stands on this line.
+    /// The token before on this line, if any.
     last: Option<Token>,
     /// Whether the last token was an operator or opened something, so that a sign behind it is no subtraction.
     expects_value: bool,
@@ -240,7 +240,7 @@ impl Layout {
         }
     }
 
-    /// Whether a space stands before a token on the same line.
+    /// Whether there is a space before a token on the same line.
     fn space(&self, token: Token) -> bool {
         use Token as T;
         match (self.last.unwrap_or(T::End), token) {
@@ -322,7 +322,7 @@ fn is_type(text: &str) -> bool {
     Elementary::find(text).is_some() || text.eq_ignore_ascii_case("STRING")
 }
 
-/// Whether a label of CASE stands here: what comes before a `:` on the way to the next statement.
+/// Whether a label of CASE is here: text before a `:` on the way to the next statement.
 fn is_label(tokens: &[(Token, crate::source::Span)]) -> bool {
     let stops = |token: &Token| {
         matches!(

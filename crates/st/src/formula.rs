@@ -10,7 +10,7 @@ use crate::syntax::{Expression, ExpressionKind, Path, Selector};
 /// A name that an expression reads, such as `Z.ActualPosition` or `cell.Units[1].Busy`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reference {
-    /// The name as it stands in the text, up to a bit of it.
+    /// The name as in the text, up to a bit of it.
     pub path: String,
     /// Where: bytes of the text.
     pub span: Span,

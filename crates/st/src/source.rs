@@ -49,7 +49,7 @@ impl Span {
     }
 }
 
-/// Where a character stands: line and column from 1, the column in characters.
+/// The position of a character: line and column from 1, the column in characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Position {
     /// Line.
@@ -180,7 +180,8 @@ impl Sources {
         &self.file(span.start).name
     }
 
-    /// The file a place is in, by its number, and the bytes of it that are meant; a byte order mark does not count.
+    /// The file a place is in, by its number, and its bytes in that file; a byte order mark does not
+    /// count.
     #[must_use]
     pub fn locate(&self, span: Span) -> (usize, std::ops::Range<usize>) {
         let index = self.index(span.start);

@@ -2,7 +2,7 @@
 
 use crate::source::Span;
 
-/// A name as it stands in the text.
+/// A name as in the text.
 #[derive(Clone, Debug)]
 pub(crate) struct Ident {
     pub text: String,
@@ -212,7 +212,7 @@ impl Operator {
 /// `Units[i].Mv.Done`, `w.%X3`
 #[derive(Debug)]
 pub(crate) struct Path {
-    /// Whether `THIS^.` stands before it.
+    /// Whether `THIS^.` is before it.
     pub this: bool,
     pub root: Ident,
     pub selectors: Vec<Selector>,

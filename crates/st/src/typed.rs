@@ -154,7 +154,7 @@ pub(crate) enum StmtKind {
     Assign(Place, Expr),
     /// A variable with members or elements: its number of bytes.
     Copy(Place, Expr, u32),
-    /// A function whose value goes nowhere.
+    /// A function whose value is not used.
     Evaluate(Expr),
     Block(Box<BlockCall>),
     If(Vec<(Expr, Vec<Stmt>)>, Vec<Stmt>),

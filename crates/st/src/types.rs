@@ -141,7 +141,7 @@ impl Elementary {
     }
 }
 
-/// Most bytes of a string: its length stands in one byte.
+/// Most bytes of a string: its length is in one byte.
 pub(crate) const TEXT_MOST: u8 = 254;
 
 /// The bytes of a STRING without a length.
@@ -233,7 +233,7 @@ pub(crate) struct Member {
     pub name: String,
     pub ty: TypeId,
     pub kind: MemberKind,
-    /// Where it begins; of an in_out, where its address stands.
+    /// Its address; of an in_out, the place of its address.
     pub offset: u32,
     pub start: Start,
     pub span: Span,
@@ -302,7 +302,7 @@ impl Members {
     }
 }
 
-/// Where something in the row of types of a program stands.
+/// The index of an entry in the types of a program.
 #[derive(Debug)]
 pub(crate) struct Types {
     list: Vec<Type>,
@@ -383,7 +383,7 @@ impl Types {
         matches!(self.get(id), Type::Enumeration(_))
     }
 
-    /// Bytes and alignment; the size of a block stands with its unit.
+    /// Bytes and alignment; the size of a block is stored with its unit.
     pub(crate) fn size(&self, id: TypeId, unit_size: impl Fn(UnitId) -> u32) -> (u32, u32) {
         match self.get(id) {
             Type::Elementary(it) => (it.size(), it.size()),

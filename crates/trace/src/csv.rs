@@ -44,7 +44,8 @@ pub fn write(trace: &Trace, out: &mut impl Write) -> io::Result<()> {
     write_as(trace, Dialect::default(), out)
 }
 
-/// As [`write()`], in another dialect. [`read`] takes every dialect of [`DELIMITERS`] but a decimal comma between commas.
+/// As [`write()`], in another dialect. [`read`] takes every dialect of [`DELIMITERS`] except a decimal
+/// comma between commas.
 ///
 /// # Errors
 /// Those of `out`.

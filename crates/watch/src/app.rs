@@ -70,7 +70,7 @@ pub struct App<'a> {
     pub(crate) says: Vec<String>,
     pub(crate) mode: Mode,
     speed: usize,
-    /// Scans that are due by the clock and not done yet.
+    /// Scans that the clock requires and that are not done yet.
     owed: f64,
     pub(crate) axis: usize,
     pub(crate) lines: Vec<Line>,
@@ -371,7 +371,7 @@ impl<'a> App<'a> {
         }
     }
 
-    /// Inverts a BOOL; asks for any other value.
+    /// Inverts a BOOL; opens the input of any other value.
     fn begin_edit(&mut self) {
         let Some(line) = self.lines.get(self.selected) else {
             return;

@@ -21,7 +21,7 @@ const IDLE: Duration = Duration::from_millis(100);
 /// The part of a frame that the run may use; the rest is for the screen.
 const WORK: Duration = Duration::from_millis(30);
 
-/// Number of [`IDLE`] checks after which a view that was asked to end must have ended.
+/// Number of [`IDLE`] checks after which a view must have ended after a request to end.
 const PATIENCE: u32 = 3;
 
 /// How the watching ended.
@@ -59,7 +59,7 @@ struct Taken {
 impl Drop for Taken {
     fn drop(&mut self) {
         self.guard.is_over.store(true, Ordering::Relaxed);
-        // Nothing can be done about it on the way out.
+        // An error here has no remedy.
         let _ = ratatui::try_restore();
     }
 }

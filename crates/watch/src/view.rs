@@ -50,7 +50,7 @@ impl Look {
     }
 }
 
-/// Draws the screen; without colour if asked to.
+/// Draws the screen; without colour on request.
 pub fn draw(frame: &mut Frame<'_>, app: &App<'_>, color: bool) {
     let look = Look { color };
     let area = frame.area();

@@ -67,7 +67,7 @@ impl<P: Planner> Axis<P> {
         Ok(entry.id)
     }
 
-    /// MC_Stop's Execute fell: the lock ends as soon as the axis stands (note 6).
+    /// MC_Stop's Execute fell: the lock ends as soon as the axis is at rest (note 6).
     pub fn release_stop(&mut self, id: CommandId) {
         if let Some(owner) = &mut self.owner
             && owner.id == id

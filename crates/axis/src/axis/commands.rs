@@ -209,7 +209,7 @@ pub(super) struct Manner {
     pub moves: bool,
 }
 
-/// What happens when a motion has come to its goal.
+/// The effect when a motion has reached its goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Ending {
     /// It is done once the axis is in position, or at once if it passes its end in motion.
@@ -523,7 +523,7 @@ pub(super) struct Entry {
     pub run: Run,
     /// MC_Stop: Execute is still TRUE.
     pub held: bool,
-    /// It brakes, or stands, because MC_Power bars a direction it needs.
+    /// It brakes, or is at rest, because MC_Power bars a direction it needs.
     pub paused: bool,
     /// No block follows it: its instance was triggered anew and refused.
     pub orphaned: bool,

@@ -122,7 +122,7 @@ impl<P: Planner> Axis<P> {
         if !(is_finite && is_resolved) {
             return Err(ErrorId::PositionInvalid);
         }
-        // What rounding there takes from the plan in progress does not come back.
+        // A rounding error of the plan in progress is permanent.
         self.coarsest = self.coarsest.max(self.setpoint.position.abs()).max(at.abs());
         let before = (self.setpoint, self.layer);
         self.setpoint.position = at;
@@ -192,7 +192,7 @@ impl<P: Planner> Axis<P> {
         };
         let start = self.aim(&mut owner, self.setpoint.position);
         self.look_through(&mut owner, start, 0);
-        // With something superimposed it may find no room just now.
+        // With a superimposed motion there may be no room at this time.
         let motion = self.plan_next(&mut owner)?.ok_or(ErrorId::InMotion)?;
         self.before = self.limits_before(&owner.limits);
         self.adopt(owner, motion, scope);
@@ -205,7 +205,7 @@ impl<P: Planner> Axis<P> {
         self.record(Event::Shifted { by }, scope);
     }
 
-    /// The place where the axis stands is called `position` (u) from now on (MC_Home).
+    /// The present position has the value `position` (u) from now on (MC_Home).
     pub(super) fn call_set_position(&mut self, position: f64, scope: &mut Scope<'_>) {
         let by = position - self.setpoint.position;
         if by != 0.0 {

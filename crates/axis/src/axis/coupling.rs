@@ -73,7 +73,7 @@ enum Rung {
     BesideLaw(Anchor),
     /// The same beside a law of measured values, within this room.
     BesideMeasured { anchor: Anchor, room: Limits },
-    /// The master went out of operation: the slave stands until a block couples it anew.
+    /// The master went out of operation: the slave is at rest until a block couples it anew.
     Lost,
     /// A plan beside a straight line. The law joins the line this many scans after the start of the plan.
     /// The line has this place at the start, and this velocity (u/s).
@@ -325,7 +325,7 @@ impl<P: Planner> Axis<P> {
         coupling.gearing.legs().map(|leg| leg.map(ratio))
     }
 
-    /// Whether the master went out of operation. The slave then stands until a block couples it anew.
+    /// Whether the master went out of operation. The slave is then at rest until a block couples it anew.
     pub fn has_lost_master(&self) -> bool {
         matches!(self.rung(), Some(Rung::Lost)) || self.has_lost_master_on_cam()
     }
@@ -462,7 +462,7 @@ impl<P: Planner> Axis<P> {
     /// The motion of `entry` until the next motion step finds a better one.
     ///
     /// # Errors
-    /// The reason why it can't follow its master, or that the axis stands outside its software limits.
+    /// The reason why it cannot follow its master, or that the axis is outside its software limits.
     pub(super) fn gear_motion(&self, entry: &Entry, start: &Setpoint) -> Result<Motion<P::Plan>, ErrorId> {
         if let Some(error) = entry.barred {
             return Err(error);

@@ -41,7 +41,7 @@ impl Factors {
     }
 
     /// The limits `asked`, scaled, and at most those of `axis`. With velocity factor 0 the motion is a
-    /// ramp to rest, which needs no other velocity than the one asked for.
+    /// ramp to rest, which needs no velocity above the commanded one.
     pub(super) fn of(&self, asked: &Limits, axis: &Limits) -> Limits {
         Limits {
             velocity: scaled(

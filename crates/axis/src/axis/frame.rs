@@ -31,7 +31,7 @@ impl Frame {
         self.rename = Some(position);
     }
 
-    /// Whether the drive has not got its new name yet.
+    /// Whether the drive has not got its new position yet.
     pub fn is_renaming(&self) -> bool {
         self.rename.is_some()
     }

@@ -332,7 +332,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the axis stands at a mechanical stop; the set-point then returns to it.
+    /// Whether the axis is blocked at a mechanical stop; the set-point then returns to it.
     fn look_for_stop(&mut self, mut search: Search, step: f64, scope: &mut Scope<'_>) {
         let Some(block) = self.config.homing.block else {
             return;
@@ -347,7 +347,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The reference is at `reference` (u): the axis comes to rest, or goes `to` a place (u) first.
+    /// The reference is at `reference` (u): the axis comes to rest, or first moves `to` a place (u).
     fn found(&mut self, reference: f64, to: Option<f64>, scope: &mut Scope<'_>) {
         self.homing.reference = reference;
         self.homing.phase = Phase::Found;

@@ -29,7 +29,7 @@ const RING: usize = AVERAGES * ACTUAL_FILTER_MAX as usize;
 /// Steps of the output from which its derivatives in this scan and in the last one are computed.
 const OUTPUTS: usize = 6;
 
-/// The feedback stands still if it has been within this span (increments) ..
+/// The feedback is constant if it has been within this span (increments) ..
 const BAND: u64 = 2;
 
 /// .. for at least this many scans.
@@ -78,7 +78,7 @@ struct Counted {
     band: Band,
 }
 
-/// A dead band: whether the feedback stands still except for one increment either way.
+/// A dead band: whether the feedback is constant except for one increment in either direction.
 #[derive(Clone, Copy, Debug, Default)]
 struct Band {
     lowest: i64,
@@ -88,7 +88,7 @@ struct Band {
     /// The last reported position, and for how many scans.
     last: i64,
     same: u32,
-    /// The place where it stands.
+    /// Its constant value.
     held: Option<i64>,
 }
 
@@ -523,7 +523,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether its actual values stand still.
+    /// Whether its actual values are constant.
     pub(crate) fn is_measured_still(&self) -> bool {
         self.measured.is_still()
     }

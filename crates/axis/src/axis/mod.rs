@@ -324,7 +324,7 @@ pub struct Axis<P: Planner = Standard> {
     links: coupling::Links,
     /// Whether anything is new, where some axis may follow another.
     steady: coupling::Steady,
-    /// The owner is MC_Stop, stands, and is held by its Execute.
+    /// The owner is MC_Stop, at rest, and held by its Execute.
     stop_held: bool,
     queue: Queue,
     fates: Fates,
@@ -516,7 +516,7 @@ impl<P: Planner> Axis<P> {
         if let Some(owner) = &self.owner
             && owner.id == id
         {
-            // A stop that stands has completed.
+            // A stop at rest has completed.
             if self.stop_held {
                 return Fate::Done;
             }

@@ -8,7 +8,7 @@
 //! the axis to rest is never barred, so it is never paused either.
 //!
 //! A superimposed motion has a direction of its own. When either motion is barred the sum brakes, and the
-//! rest of the superimposed distance waits as it does for room.
+//! rest of the superimposed distance waits, as it waits for room.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_Power; V9.
 
@@ -216,8 +216,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The paused owner stands. The direction it needs now may be permitted, because the stop may have
-    /// passed its end.
+    /// The paused owner is at rest. The direction it needs now may be permitted, because the stop may
+    /// have passed its end.
     #[cold]
     pub(super) fn settle_paused(&mut self, scope: &mut Scope<'_>) {
         if self.is_paused() && matches!(self.motion, Motion::Run { .. }) {

@@ -361,8 +361,8 @@ impl<P: Planner> Axis<P> {
         self.enter(AxisEvent::Fault);
     }
 
-    /// MC_Reset: leaves ErrorStop once the axis stands (V10a). Outside ErrorStop it completes in the next
-    /// scan without effect (V10). A reset during another one shares its result.
+    /// MC_Reset: leaves ErrorStop once the axis is at rest (V10a). Outside ErrorStop it completes in the
+    /// next scan without effect (V10). A reset during another one shares its result.
     ///
     /// # Errors
     /// [`ErrorId::CauseStillPresent`] if the cause is known to be still there.
@@ -387,7 +387,7 @@ impl<P: Planner> Axis<P> {
             || self.power.fault().is_some_and(|fault| fault.cause_present)
     }
 
-    /// Completes a reset when all its conditions are met (notes 3 and 4, S12).
+    /// Completes a reset when all its conditions are fulfilled (notes 3 and 4, S12).
     pub(super) fn finish_reset(&mut self) {
         if let Some(id) = self.failure.reset() {
             self.try_reset(id);

@@ -288,9 +288,9 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
-    /// The next command is a profile: it owns the axis from now on, which continues as its predecessor
-    /// left it. It waits for a superimposed motion to end. A superimposed command that waits for room
-    /// would not find any beside it.
+    /// The next command is a profile: it owns the axis from now on; the axis continues as at the end of
+    /// its predecessor. It waits for a superimposed motion to end. A superimposed command that waits for
+    /// room would not find any beside it.
     pub(super) fn begin_due(&mut self, mut next: Entry) {
         if self.layer.as_ref().is_some_and(|layer| layer.moves()) {
             return;

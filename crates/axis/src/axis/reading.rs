@@ -122,8 +122,8 @@ impl<P: Planner> Axis<P> {
 
     /// The state of the motion, by the values that `source` names.
     ///
-    /// - Commanded values are those the active command asks for. They change only in jumps, so the pace
-    ///   is constant. The direction is that from the set position to the target, or that of the commanded
+    /// - Commanded values are those of the active command. They change only in jumps, so the pace is
+    ///   constant. The direction is that from the set position to the target, or that of the commanded
     ///   velocity.
     /// - Set values: pace and direction by the plan's acceleration and velocity at the last set-point,
     ///   and not by differences (V12b).

@@ -134,7 +134,7 @@ impl<P: Planner> Axis<P> {
         let planned = match self.plan_next(&mut halt) {
             Ok(Some(motion)) => Ok(motion),
             Ok(None) => {
-                // There is no room for a stop beside the superimposed motion, so that ends, too.
+                // There is no room for a stop beside the superimposed motion, so that motion ends too.
                 self.end_superimposed(Fate::Aborted);
                 self.plan_for(&mut halt)
             }

@@ -1,8 +1,8 @@
 //! A second motion on top of the owner's: what MC_MoveSuperimposed adds and MC_HaltSuperimposed ends.
 //!
 //! The owner's set-point and the added motion are planned apart and published as their sum, so the owner
-//! keeps its time and path. The added motion must leave the sum inside the limits of the axis. It is
-//! taken as asked, or slower, or it waits until the owner's motion leaves room (docs/superimposed.md,
+//! keeps its time and path. The added motion must leave the sum inside the limits of the axis. It is used
+//! as commanded, or slower, or it waits until the owner's motion leaves room (docs/superimposed.md,
 //! docs/decisions/0006).
 //!
 //! Source: PLCopen Motion Control Part 1, sections MC_MoveSuperimposed and MC_HaltSuperimposed; R51, R64 to
@@ -58,7 +58,7 @@ enum Progress {
     Waits,
     /// The motion added is this command's.
     Runs,
-    /// The same, slower than asked for.
+    /// The same, slower than commanded.
     RunsSlower,
 }
 
@@ -368,7 +368,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The place where the owner will stand (u); NaN if it does not come to rest by itself.
+    /// The place where the owner will come to rest (u); NaN if it does not by itself.
     fn base_end(&self, layer: &Layer<P::Plan>) -> f64 {
         match (&self.motion, self.owner.as_ref().map(|owner| owner.work)) {
             (Motion::Run { .. }, Some(Work::Velocity { .. } | Work::Through { .. })) => f64::NAN,

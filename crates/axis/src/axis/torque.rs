@@ -184,7 +184,7 @@ fn within(torque: f64, most: f64) -> f64 {
     }
 }
 
-/// The torque that `entry` asks for.
+/// The torque of `entry`.
 fn torque_of(entry: &Entry) -> f64 {
     match entry.work {
         Work::Torque {

@@ -411,9 +411,9 @@ fn printed(command: impl FnOnce(&mut dyn Write) -> Result<Exit, Failure>) -> Res
 
 /// A script of a call.
 enum Script {
-    /// One that stands in the folder.
+    /// A file in the folder.
     Path(String),
-    /// One that came as text, in a folder of its own that goes with this.
+    /// A file from text, in a temporary folder that is removed with this value.
     Text(tempfile::TempDir),
 }
 

@@ -41,7 +41,7 @@ pub fn grid(fields: &Fields<'_>, problem: &Problem, method: Method) -> Result<Pl
     ))
 }
 
-/// A plan whose acceleration and deceleration are the same, asked for so or not.
+/// A plan whose acceleration and deceleration are the same, whether requested or not.
 fn with_one_rate(plan: &GridPlan, asked_for: bool) -> Planned {
     Planned {
         boxes: asked_for.then(|| boxes(plan)),

@@ -14,7 +14,7 @@ use standstill_planner::{Excess, Segment, Setpoint};
 pub struct MethodInfo {
     /// Its name on a line.
     pub name: &'static str,
-    /// The fields it takes besides those that all take.
+    /// Its fields in addition to those of all methods.
     fields: &'static [&'static str],
     /// What plans.
     plan: PlanFn,
@@ -99,7 +99,7 @@ pub struct Planned {
     pub counts: Option<Counts>,
     /// Which of its cases the method found, if it has some.
     pub case: Option<&'static str>,
-    /// The velocity at the target (u/s), of methods that may change the one asked for.
+    /// The velocity at the target (u/s), of methods that may change the requested one.
     pub end_velocity: Option<f64>,
     /// By how much the start state forces the plan out of its limits, if it does.
     pub unavoidable: Option<Excess>,

@@ -5,7 +5,7 @@ use super::words::{Command, HomingStatus, State, Statusword};
 use standstill_axis::{DriveHoming, DrivePosition};
 
 /// The controller's side. It asks for mode 6, sets bit 4 once the mode is acknowledged (CI-7), and judges
-/// the status from then on. Once the drive stands it returns to mode 8.
+/// the status from then on. Once the drive is at rest it returns to mode 8.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Link {
     /// The axis requests homing by the drive.

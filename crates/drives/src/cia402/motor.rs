@@ -101,7 +101,7 @@ impl Motor {
         self.torque
     }
 
-    /// Goes to `target` within this scan.
+    /// Moves to `target` within this scan.
     pub fn follow(&mut self, target: i64) {
         self.be_late(self.delay);
         let before = self.velocity;

@@ -47,7 +47,7 @@ pub struct Outputs {
     pub mode: i8,
     /// 607Ah (increments), modulo 2^32.
     pub target_position: i32,
-    /// 60FFh (increments/s), of mode 9. The adapter never asks for that mode.
+    /// 60FFh (increments/s), of mode 9. The adapter never requests that mode.
     pub target_velocity: i32,
     /// 6071h (thousandths of the rated torque), of mode 10.
     pub target_torque: i16,

@@ -100,7 +100,7 @@ pub struct SimulatedNode {
     motor: Motor,
     probes: NodeProbes,
     homing: Progress,
-    /// Increments that its own homing has taken off its count.
+    /// Increments that its own homing has subtracted from its count.
     origin: i64,
     error_code: u16,
     fault_pending: bool,
@@ -153,7 +153,7 @@ impl SimulatedNode {
         self.motor.actual()
     }
 
-    /// Increments that its own homing has taken off its count since the start.
+    /// Increments that its own homing has subtracted from its count since the start.
     pub fn origin(&self) -> i64 {
         self.origin
     }

@@ -3,7 +3,7 @@
 /// State of a power drive system.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum State {
-    /// Self-test; nothing works yet.
+    /// Self-test; no function is available yet.
     #[default]
     NotReadyToSwitchOn,
     /// Waits for a controller.
@@ -79,7 +79,7 @@ pub enum HomingStatus {
     Done,
     /// 1 0 0: an error, and the drive still moves. Also 1 1 0, which the profile does not have.
     ErrorMoving,
-    /// 1 0 1: an error, and the drive stands. Also 1 1 1.
+    /// 1 0 1: an error, and the drive is at rest. Also 1 1 1.
     ErrorStopped,
 }
 

@@ -104,7 +104,7 @@ impl Allowed {
         lists.chain(single)
     }
 
-    /// Whether true and false may stand there.
+    /// Whether true and false are allowed there.
     pub(crate) fn has_booleans(&self) -> bool {
         self.schemas.iter().any(|it| match it.get("type") {
             Some(Value::String(ty)) => ty == "boolean",

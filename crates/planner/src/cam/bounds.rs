@@ -244,7 +244,7 @@ impl CamBounds {
         [self.first, self.second, self.third]
     }
 
-    /// Whether the slave stands, however its master moves.
+    /// Whether the slave is at rest for any motion of its master.
     pub fn is_level(&self) -> bool {
         self.first == 0.0
     }

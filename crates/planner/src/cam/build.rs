@@ -176,7 +176,7 @@ impl CamBuild {
         }
         self.head.smooth_inside = self.smooth();
         if !self.head.periodic {
-            // Before its first row and behind its last the slave stands.
+            // Before its first row and after its last the slave is at rest.
             self.note_jumps(1, LEVEL, first);
             self.note_jumps(self.count, last, LEVEL);
         }

@@ -16,7 +16,7 @@ use standstill_fb::{BlockInfo, Direction, PinType, TableRef, Value};
 
 /// A recorder: its contents, and the places they are at.
 pub trait Recorded: Called {
-    /// Where rows and records stand.
+    /// The position of rows and records.
     fn ring(&self) -> &Ring;
 
     /// Unit label and configuration of the axis at an index; none behind the last axis.

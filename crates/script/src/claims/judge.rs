@@ -137,7 +137,7 @@ impl Judge for By<'_> {
     fn failures(&self, rows: &Rows<'_>, path: &str, range: Range) -> Vec<Failure> {
         let deadline = match within_run(rows, path, range) {
             Ok(scans) => *scans.end(),
-            // A value before the end of the run came in time, however long the range is.
+            // A value before the end of the run is in time, for any length of the range.
             Err(_) if range.from < rows.count() && self.held.is_some() => return Vec::new(),
             Err(failure) => return vec![failure],
         };

@@ -288,7 +288,7 @@ impl Reader {
     }
 }
 
-/// The variable that stands for a signal.
+/// The variable for a signal.
 fn variable(number: usize) -> String {
     format!("signal_{number}")
 }
@@ -380,7 +380,7 @@ impl Place {
         if !self.plain {
             return self.span;
         }
-        // A quote and the sign stand before it, a quote behind it.
+        // A quote and the sign are before it, a quote after it.
         let at = |offset: usize| (self.span.start + 2 + offset).min(self.span.end - 1);
         Span {
             start: at(start),

@@ -198,7 +198,7 @@ impl<'a> Session<'a> {
         self.scans
     }
 
-    /// Whether the run has come to its end.
+    /// Whether the run has ended.
     #[must_use]
     pub const fn is_over(&self) -> bool {
         self.over

@@ -1,4 +1,4 @@
-//! Objects whose keys stand in a table: those of axes and drives.
+//! Objects whose keys are in a table: those of axes and drives.
 
 use super::of::{any_of_these, boolean, definition, scans_in, text};
 use super::{add, required};

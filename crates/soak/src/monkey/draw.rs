@@ -20,8 +20,8 @@ use crate::rules::Kind;
 /// Most axes of a machine.
 const AXES: u64 = 3;
 
-/// Sequences that are played more often than by chance: a curve, a command that waits for an edge and one
-/// that ends it, limits that are written while moves blend.
+/// Sequences that occur more often than by chance: a curve, a command that waits for an edge and one that
+/// ends it, limits that are written while moves blend.
 const FAVOURED: [&[&str]; 22] = [
     &["MC_PositionProfile"],
     &["MC_VelocityProfile"],
@@ -608,7 +608,7 @@ mod tests {
     use standstill_fb::Group;
     use std::collections::BTreeSet;
 
-    /// A block that programs do not play would count as correct without a test.
+    /// A block that programs do not contain would count as correct without a test.
     #[test]
     fn every_block_of_an_axis_is_played() {
         for info in REGISTRY.iter().filter(|info| info.group != Group::Standard) {

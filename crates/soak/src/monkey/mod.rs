@@ -28,7 +28,7 @@ pub struct Episode {
     pub failure: Option<(Failure, Scenario)>,
 }
 
-/// Lets the monkey play for `scans` scans; everything follows from `seed` and `number`.
+/// Runs random inputs for `scans` scans; everything depends only on `seed` and `number`.
 pub fn play(seed: u64, number: u64, scans: u64) -> Episode {
     let (seen, failure, scenario) = record(seed, number, scans);
     Episode {

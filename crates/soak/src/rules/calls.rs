@@ -41,7 +41,7 @@ impl Kind {
             "MC_TouchProbe" | "MC_DigitalCamSwitch" => Self::Other,
             // The drives here have no torque.
             "MC_TorqueControl" | "MC_ReadActualTorque" => Self::Other,
-            // No table stands here, so they are always refused.
+            // There is no table here, so they are always refused.
             "MC_PositionProfile" | "MC_VelocityProfile" | "MC_AccelerationProfile" => Self::Other,
             _ if !has("Axis") => Self::Other,
             // MC_TouchProbe can be aborted, but moves nothing.

@@ -339,7 +339,7 @@ impl<'a> Checker<'a> {
         made(function, of, vec![value], Types::of(of), span)
     }
 
-    /// TRUNC: to the type of whole numbers that is asked for, or DINT.
+    /// TRUNC: to the required type of whole numbers, or DINT.
     fn trunc(&mut self, value: &'a Expression, span: Span, expected: Option<TypeId>) -> Expr {
         let value = self.expression(value, None);
         let value = self.settle(value);

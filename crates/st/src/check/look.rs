@@ -11,7 +11,7 @@ use standstill_fb::Pin;
 /// The place in question, and the name there.
 #[derive(Debug, Default)]
 pub(crate) struct Look {
-    /// Place of a byte, if any is asked for.
+    /// Place of a requested byte, if any.
     at: Option<u32>,
     found: Option<Hover>,
 }

@@ -106,7 +106,7 @@ impl<'a> Checker<'a> {
         self.types.shared(Type::Block(unit))
     }
 
-    /// A type that the sources declare, resolved now if it was not yet.
+    /// A type that the sources declare, resolved now if it was not resolved before.
     pub(super) fn named_type(&mut self, key: &str, span: Span) -> (TypeId, Start) {
         let wrong = (WRONG, Start::Default);
         let Some(named) = self.named.get_mut(key) else {

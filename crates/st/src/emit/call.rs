@@ -180,7 +180,7 @@ impl Emitter<'_, '_, '_> {
         );
     }
 
-    /// How a parameter of a FUNCTION is handed over.
+    /// The way in which a parameter of a FUNCTION is passed.
     pub(super) fn parameter(of: Option<Elementary>) -> ValType {
         of.map_or(ValType::I32, value_type)
     }

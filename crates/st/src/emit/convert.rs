@@ -98,7 +98,7 @@ impl Emitter<'_, '_, '_> {
                 self.narrow(to);
             }
             (false, false) => {
-                // What fits as it stands needs no instruction.
+                // A value that fits unchanged needs no instruction.
                 let fits = to.size() == 4 || from.size() < to.size() && !from.is_signed();
                 if !fits && !from.widens_to(to) {
                     self.narrow(to);

@@ -36,7 +36,7 @@ pub(super) const fn at(offset: u32, align: u32) -> MemArg {
     }
 }
 
-/// How a value of an elementary type stands on the stack.
+/// The representation of a value of an elementary type on the stack.
 pub(super) const fn value_type(of: Elementary) -> ValType {
     match (of.is_real(), of.size()) {
         (true, 4) => ValType::F32,
@@ -64,7 +64,7 @@ impl Function {
         InstructionSink::new(&mut self.code)
     }
 
-    /// A call of something whose number is not known yet.
+    /// A call of a function whose number is not known yet.
     pub(super) fn call(&mut self, target: Target) {
         self.code.push(0x10);
         self.calls.push((self.code.len(), target));
@@ -89,7 +89,7 @@ impl Function {
         self.active.len()
     }
 
-    /// Gives back the local variables that were taken since.
+    /// Releases the local variables that were reserved since.
     pub(super) fn release(&mut self, mark: usize) {
         self.free.extend(self.active.drain(mark..));
     }

@@ -13,7 +13,7 @@ use wasm_encoder::{BlockType, ValType};
 #[derive(Clone, Copy, Debug)]
 enum Stride {
     Known(i128),
-    /// The local variables with its size, and with whether it goes up.
+    /// The local variables with its size, and with its direction.
     Local {
         size: u32,
         up: u32,

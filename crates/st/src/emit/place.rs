@@ -12,7 +12,7 @@ use wasm_encoder::{BlockType, ValType};
 pub(super) enum Root {
     Zero,
     Local(u32),
-    /// The address that stands at this offset from a local variable, or from 0.
+    /// The address at this offset from a local variable, or from 0.
     Pointer(Option<u32>, u32),
 }
 

@@ -118,7 +118,8 @@ const fn place(offset: u32, ty: TypeId) -> Place {
 }
 
 impl Emitter<'_, '_, '_> {
-    /// Puts the parameters of a FUNCTION, from local variable `first` on, where its variables stand.
+    /// Copies the parameters of a FUNCTION, from local variable `first` on, to the addresses of its
+    /// variables.
     fn take_parameters(&mut self, members: &[Member], frame: u32, first: u32) {
         let taken = members
             .iter()
@@ -197,7 +198,7 @@ impl Emitter<'_, '_, '_> {
         }
     }
 
-    /// Counts a statement or one of its branches, if that is asked for.
+    /// Counts a statement or one of its branches, if requested.
     fn count(&mut self, place: Span, branch: u32) {
         if let Some(address) = self.context.counters.address(place, branch) {
             let mut sink = self.function.sink();

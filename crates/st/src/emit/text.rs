@@ -198,7 +198,7 @@ impl Emitter<'_, '_, '_> {
         self.function.call(Target::Text(helper));
     }
 
-    /// Pushes the address of a string that stands in the text.
+    /// Pushes the address of a string literal.
     pub(super) fn text(&mut self, bytes: &[u8]) {
         let place = self.context.templates_at + self.context.templates.len() as u32;
         // As the lexer has it, a string is no longer than its length can say.

@@ -139,7 +139,7 @@ pub(crate) fn prelude(sources: &[Source<'_>]) -> String {
     [counters, strings].join("\n")
 }
 
-/// Whether one of these pieces of names stands in a source, in letters of any case.
+/// Whether one of these pieces of names is in a source, in letters of any case.
 fn names(sources: &[Source<'_>], pieces: &[&str]) -> bool {
     let stands = |bytes: &[u8], place: usize, piece: &str| {
         let before = piece.find('_').unwrap_or(0);

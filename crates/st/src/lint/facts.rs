@@ -338,7 +338,7 @@ fn place_in(value: &Expr) -> Option<&Place> {
     }
 }
 
-/// Where a pin stands in its instance.
+/// The offset of a pin in its instance.
 fn relative(place: &Place, begin: u32) -> u32 {
     match place.base {
         Base::Callee => place.offset,

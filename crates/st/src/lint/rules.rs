@@ -64,7 +64,7 @@ fn motion(program: &Program<'_>, unit: UnitId) -> bool {
     )
 }
 
-/// Where the pin of a unit stands in an instance.
+/// The offset of the pin of a unit in an instance.
 fn pin(program: &Program<'_>, unit: UnitId, key: &str) -> Option<u32> {
     let members = &program.units.get(unit.0 as usize)?.members;
     members.find(key).map(|(_, member)| member.offset)

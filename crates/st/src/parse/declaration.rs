@@ -211,7 +211,7 @@ impl Parser<'_> {
         }))
     }
 
-    /// Whether a word stands here that says who may use something.
+    /// Whether an access word (such as PRIVATE) is here.
     fn is_access(&self) -> bool {
         ["ABSTRACT", "FINAL", "PUBLIC", "PRIVATE", "INTERNAL", "PROTECTED"]
             .iter()
@@ -280,7 +280,7 @@ impl Parser<'_> {
         sections
     }
 
-    /// The statements of a unit, up to and with its end; methods stand between them.
+    /// The statements of a unit, up to and with its end; methods are between them.
     fn body(
         &mut self,
         kind: UnitKind,
@@ -395,7 +395,7 @@ impl Parser<'_> {
             match self.token() {
                 Token::Word(word) if word == end => {
                     self.next();
-                    // CODESYS and others let a `;` stand there.
+                    // CODESYS and others allow a `;` there.
                     if end == Word::EndVar {
                         self.take(Token::Semicolon);
                     }

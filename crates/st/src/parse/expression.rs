@@ -352,7 +352,7 @@ impl Parser<'_> {
         }
     }
 
-    /// The arguments behind `callee`, which stands before a `(`.
+    /// The arguments after `callee`, which is before a `(`.
     pub(super) fn call(&mut self, callee: Path) -> Call {
         let arguments = self.arguments();
         Call {

@@ -221,7 +221,7 @@ impl<'a> Parser<'a> {
         self.ident(&format!("the name of {what}"))
     }
 
-    /// Goes one level down, if that is not too deep; `None` and a message otherwise.
+    /// Enters one level, if that is not too deep; `None` and a message otherwise.
     fn deeper<T>(&mut self, inner: impl FnOnce(&mut Self) -> T) -> Option<T> {
         if self.depth >= NESTING_MOST {
             let message = format!("this is nested more than {NESTING_MOST} levels deep");

@@ -50,7 +50,7 @@ impl Parser<'_> {
         self.open.last() == Some(&Word::EndCase)
     }
 
-    /// Whether a label of CASE stands here: names and numbers up to a `:`.
+    /// Whether a label of CASE is here: names and numbers up to a `:`.
     fn is_label(&self) -> bool {
         let mut ahead = 0;
         loop {
@@ -202,7 +202,7 @@ impl Parser<'_> {
         self.skip_to_semicolon();
     }
 
-    /// The `;` behind END_IF and its kin, which may be absent.
+    /// The `;` after END_IF and similar words, which may be absent.
     fn semicolon_after_end(&mut self) {
         let span = self.before();
         if !self.take(Token::Semicolon) {

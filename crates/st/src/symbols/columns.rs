@@ -10,7 +10,7 @@ pub struct BlockAt {
     pub path: String,
     /// Its block: `MC_MoveAbsolute`.
     pub block: &'static str,
-    /// Where it stands; its key is there.
+    /// Its place; its key is there.
     pub address: u32,
 }
 
@@ -89,7 +89,7 @@ impl Symbols {
         }
     }
 
-    /// Whether a STRING stands at a path, which is no signal.
+    /// Whether there is a STRING at a path, which is no signal.
     #[must_use]
     pub fn is_text(&self, path: &str) -> bool {
         self.part(path)

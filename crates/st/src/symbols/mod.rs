@@ -45,7 +45,7 @@ pub enum Value {
 pub struct Symbol {
     /// Its path, as declared: `cell.Units[1].Done`.
     pub path: String,
-    /// How it stands in memory.
+    /// Its representation in memory.
     pub ty: Elementary,
     /// What its type is called in the sources.
     pub type_name: String,

@@ -81,8 +81,8 @@ impl Predictor {
     }
 }
 
-/// Within this many bytes of the least that any predictor can need, the search ends: a column that stands
-/// still costs its first value.
+/// Within this many bytes of the least that any predictor can need, the search ends: a constant column
+/// costs its first value.
 const BYTES_SPARE: usize = 10;
 
 /// The predictor under which a column takes the fewest bytes, or nearly the least possible, found by

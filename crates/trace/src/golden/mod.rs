@@ -42,7 +42,7 @@ pub enum Verdict {
     /// Every bit that a golden of version 1 knows is as reviewed. Accepting again converts it to the
     /// present version.
     Old,
-    /// Events are as reviewed, and set-points within the tolerance asked for.
+    /// Events are as reviewed, and set-points within the requested tolerance.
     Close(Option<Closeness>),
     /// There is no golden yet.
     Missing,
@@ -56,7 +56,7 @@ pub enum Verdict {
 /// How a run differs from its golden; `Display` writes all of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
-    /// The comparison that was asked for.
+    /// The requested comparison.
     pub yardstick: Yardstick,
     /// The first scan and signals that differ; `None` if the rows are equal or the companion cannot be
     /// used.
@@ -66,8 +66,8 @@ pub struct Mismatch {
     /// The subjects whose digests differ, and those whose digests are equal; both empty for a golden of
     /// version 1.
     pub subjects: [Vec<String>; 2],
-    /// The difference of the texts in unified form, golden first; only of their events if no more was
-    /// asked for.
+    /// The difference of the texts in unified form, golden first; only of their events if only these are
+    /// compared.
     pub text: String,
 }
 

@@ -82,7 +82,7 @@ pub fn compare(recorded: &[Edge], found: &[Edge], window: (i64, i64), tolerance:
         match (left.peek(), right.peek()) {
             (None, None) => break,
             (Some(a), Some(b)) if a.1 == b.1 && a.0.abs_diff(b.0) <= tolerance.unsigned_abs() => {
-                // A value that both have before the window was not asked for.
+                // A value that both have before the window does not count.
                 let inside = |ns: i64| ns >= window.0 && ns <= window.1;
                 if inside(a.0) || inside(b.0) {
                     matched += 1;

@@ -57,7 +57,7 @@ fn entries(folder: &Path) -> Vec<std::path::PathBuf> {
     entries.flatten().map(|entry| entry.path()).collect()
 }
 
-/// Events stand below a line `events` down to an empty line: scan, subject, text.
+/// Events are below a line `events`, up to an empty line: scan, subject, text.
 fn golden(text: &str) -> Golden {
     let title = text.lines().find_map(|line| line.strip_prefix("title "));
     let events = text.lines().skip_while(|line| *line != "events").skip(1);

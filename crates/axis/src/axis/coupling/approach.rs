@@ -175,7 +175,7 @@ impl<P: Planner> Axis<P> {
         if let (Some(way), Some(scans)) = (&mut onto, view.future.measured()) {
             // The line is a good guess that only leads near the law; the last part of the way goes beside
             // the law. A slave that waits for its sync point does so at rest beside the line, because the
-            // law itself may tremble.
+            // law itself may jitter.
             (way.lock, way.left) = (way.motion.scans(), scans);
             let near = 2 * scans;
             let waits = coupling.is_syncing() && difference.position * velocity > 0.0 && way.lock > near;
@@ -562,7 +562,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The same beside a law of measured values, with half of the limits that the law leaves now. Each
-    /// step is checked before it is made. There is none again if the half was not enough just now.
+    /// step is checked before it is made. There is none again if the half was not enough in this step.
     fn beside_measured(
         &self,
         view: &View<'_, P::Plan>,
@@ -755,7 +755,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The owner can't reach its sync point: it fails, and the slave comes to rest.
+    /// The owner cannot reach its sync point: it fails, and the slave comes to rest.
     #[cold]
     fn give_up(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let Some(owner) = self.owner else { return };

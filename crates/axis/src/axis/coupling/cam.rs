@@ -93,7 +93,7 @@ enum Rung {
     /// A move in the slave's own coordinates, in its turn of this number, to where the curve is when the master is at this place; to
     /// rest without one.
     Moving { turns: i64, to: Option<Place> },
-    /// It waits at its place: there is no way onto the curve yet.
+    /// It waits at its position: no plan onto the curve exists yet.
     Waiting,
     /// The master went out of operation: the slave rests until a block couples it anew.
     Lost,
@@ -564,7 +564,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// `entry` goes onto a cam from the next motion step on, or has new values for it.
+    /// `entry` moves onto a cam from the next motion step on, or has new values for it.
     pub(super) fn await_master_on_cam(&mut self, camming: Camming, entry: &Entry, scope: &mut Scope<'_>) {
         self.links.set_bound(true);
         let known = self.on_cam.as_ref().map(|on_cam| on_cam.camming);

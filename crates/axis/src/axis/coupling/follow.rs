@@ -41,7 +41,7 @@ impl Coupling {
         part(0, first) + part(1, second)
     }
 
-    /// Whether the law stands still for any motion of the masters.
+    /// Whether the law is constant for any motion of the masters.
     pub(super) fn stands<Q>(&self, future: &Future<'_, Q>) -> bool {
         let [first, second] = &future.parts;
         self.gearing.factor(0, first.factor) == 0.0 && self.gearing.factor(1, second.factor) == 0.0
@@ -281,8 +281,8 @@ impl<P: Planner> Axis<P> {
             && both.all(|(was, now)| was.place == now.place && was.at.is_at_rest())
     }
 
-    /// The plans ahead, as the law of a gear has them, or unchanged for a cam; `None` while it stands or
-    /// they are not known.
+    /// The plans ahead, as the law of a gear has them, or unchanged for a cam; `None` while the law is
+    /// constant or they are not known.
     pub(in crate::axis) fn leads_of_law<'a>(&self, view: &View<'a, P::Plan>) -> Option<Leads<'a, P::Plan>> {
         if self.is_on_cam() {
             return self.lead_of_master(view).map(|lead| [Some(lead), None]);
@@ -534,8 +534,8 @@ impl<P: Planner> Axis<P> {
 
     /// `Some` if this step was not checked against the limits before. Causes: the slave stays in gear as
     /// long as it can, the master's motion ahead is not known, it was not known until now, or the master
-    /// stands, perhaps after a plan of one scan. `Some(TRUE)` if the master's motion is less smooth than
-    /// the slave needs.
+    /// is at rest, perhaps after a plan of one scan. `Some(TRUE)` if the master's motion is less smooth
+    /// than the slave needs.
     fn rough(&self, view: &View<'_, P::Plan>, law: &Setpoint) -> Option<bool> {
         let degree = self.slowed(&self.parameters.limits).order().degree();
         let is_rough = view.degree() < degree && law.acceleration != 0.0;

@@ -570,7 +570,7 @@ impl<P: Planner> Axis<P> {
 }
 
 /// The turn in which the master's sync point is. On the way from the start point it is the turn ahead;
-/// otherwise the next one the master passes, or the present one while it stands.
+/// otherwise the next one the master passes, or the present one while it is at rest.
 fn master_turn<Q>(sync: &Sync, was: &Seen, view: &View<'_, Q>) -> i64 {
     let Some(length) = view.turn else { return 0 };
     let (from, heading) = if sync.start_distance == 0.0 {

@@ -246,8 +246,8 @@ impl<'a, P: Plan> Future<'a, P> {
     }
 
     /// The plans of the masters from the end of the last scan, or from the end of this one if they are
-    /// late. Each has the factor that `geared` returns for it, and its number. Masters that stand, or
-    /// have a ratio of 0, are left out.
+    /// late. Each has the factor that `geared` returns for it, and its number. Masters at rest, or with a
+    /// ratio of 0, are omitted.
     pub(super) fn leads(&self, geared: impl Fn(usize, f64) -> f64) -> Option<Leads<'a, P>> {
         let is_late = self.is_late();
         let mut leads = [None; 2];

@@ -27,7 +27,7 @@ impl<P: Planner> Axis<P> {
     /// Refuses what could not be added even to a master at rest.
     ///
     /// # Errors
-    /// The planner refuses the command as asked, or MC_Power bars its direction.
+    /// The planner refuses the original command, or MC_Power bars its direction.
     pub(super) fn propose_alone(&self, layer: &Layer<P::Plan>, command: &Added) -> Result<(), ErrorId> {
         let room = || Room {
             limits: self.slowed(&self.config.limits),
@@ -62,7 +62,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Before the step of a slave: a motion without room beside the law gives way, and a command that
+    /// Before the step of a slave: a motion without room beside the law slows down, and a command that
     /// waits for room begins. `is_new`: the master's motion differs from the known one, or a limit has
     /// changed. The slave loses its gear for lack of room if it `may_lose` it.
     ///
@@ -114,8 +114,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The motion beside the law gives way to the master's new motion: it becomes slower, or comes to
-    /// rest. If there is no room for that either, the gear is lost.
+    /// The motion beside the law adapts to the master's new motion: it becomes slower, or comes to rest.
+    /// If there is no room for that either, the gear is lost.
     fn give_way(&mut self, view: &View<'_, P::Plan>, may_lose: bool, scope: &mut Scope<'_>) {
         let Some(layer) = &mut self.layer else { return };
         layer.retry = layer.retry.min(1);
@@ -316,8 +316,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The place where the slave will stand once everything is added (u), if its master comes to rest as
-    /// far as is known.
+    /// The rest position of the slave once everything is added (u), if its master comes to rest as far as
+    /// is known.
     fn end_behind(&self, view: &View<'_, P::Plan>, layer: &Layer<P::Plan>) -> Option<f64> {
         if self.is_on_cam() {
             // The end of a cam's motion is not checked.
@@ -329,7 +329,7 @@ impl<P: Planner> Axis<P> {
         Some(self.setpoint.position + way + layer.left())
     }
 
-    /// Refuses a distance with which the slave would stand outside its software limits.
+    /// Refuses a distance with which the slave would come to rest outside its software limits.
     #[cold]
     fn refuse_end(&mut self, view: &View<'_, P::Plan>, command: &Added, scope: &mut Scope<'_>) {
         let Adds::Distance { distance, .. } = command.adds else {
@@ -369,7 +369,7 @@ impl<P: Planner> Axis<P> {
         }
         layer.added = Setpoint::at_rest(added.position);
         layer.motion = Motion::Hold;
-        // It stands now, from where more may fit.
+        // It is at rest now, and more may fit from there.
         layer.try_soon();
         let is_done = |command: &Added| !command.halting && (command.runs() || command.adds == Adds::Halt);
         if layer.command.as_ref().is_none_or(is_done) {

@@ -10,14 +10,14 @@ use standstill_planner::{Limits, Plan, Planner, Setpoint};
 /// Motions tried, one after the other, until one fits.
 pub(super) const PROPOSALS: usize = 7;
 
-/// From the fourth on, the motion asked for is slowed by this factor: the same path in more time.
+/// From the fourth on, the commanded motion is slowed by this factor: the same path in more time.
 const SLOWER: [f64; PROPOSALS - 3] = [0.75, 0.5, 0.25, 0.125];
 
 /// A motion that fits.
 pub(super) struct Proposal<Plan> {
     pub plan: Plan,
     pub limits: Limits,
-    /// It is not the one asked for.
+    /// It is not the commanded one.
     pub lowered: bool,
 }
 
@@ -53,8 +53,8 @@ pub(super) fn slower(limits: &Limits, rate: f64) -> Limits {
     }
 }
 
-/// The limits of proposal `index`: as asked; at most the velocity that is always free; at most all limits
-/// that are always free; then slower and slower. `None` if there is no such proposal.
+/// The limits of proposal `index`: as commanded; at most the velocity that is always free; at most all
+/// limits that are always free; then slower and slower. `None` if there is no such proposal.
 pub(super) fn limits_of(index: usize, asked: &Limits, room: &Room) -> Option<Limits> {
     const LEAST: f64 = SLOWER[SLOWER.len() - 1];
     const LEAST_2: f64 = LEAST * LEAST;
@@ -109,7 +109,7 @@ impl<P: Planner> Axis<P> {
     /// `Ok(None)` if none does for now.
     ///
     /// # Errors
-    /// The planner refuses the command as it is asked for, or MC_Power bars its direction.
+    /// The planner refuses the original command, or MC_Power bars its direction.
     pub(super) fn propose(
         &self,
         layer: &Layer<P::Plan>,
@@ -259,7 +259,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Records which pins ask for more than there is room for.
+    /// Records the pins whose values exceed the room.
     fn record_lowered(&self, command: &Added, used: &Limits, scope: &mut Scope<'_>) {
         let asked = &command.limits;
         let pins = [

@@ -280,7 +280,7 @@ impl<'a> Parser<'a> {
         Ok(Json::Number(value))
     }
 
-    /// The word or the single character that stands here; empty at the end of the text.
+    /// The word or the single character at this place; empty at the end of the text.
     fn token(&self) -> Span {
         let rest = self.rest();
         let is_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '+' | '-' | '#');
@@ -319,7 +319,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// `what` should stand at or before this place.
+    /// `what` is missing at or before this place.
     fn missing(&self, what: &str, token: &str) -> Diagnostic {
         let mut diagnostic = self.unexpected(what);
         diagnostic.message = format!("expected {what} at or before this place");

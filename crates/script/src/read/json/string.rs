@@ -5,7 +5,7 @@ use crate::error::{Code, Diagnostic};
 use crate::model::Span;
 
 impl Parser<'_> {
-    /// The string whose opening quote stands here.
+    /// The string whose opening quote is here.
     pub(super) fn string(&mut self) -> Result<String, Diagnostic> {
         let open = self.at;
         self.at += 1;
@@ -42,7 +42,7 @@ impl Parser<'_> {
         ))
     }
 
-    /// The character of an escape whose backslash stands at `start`.
+    /// The character of an escape whose backslash is at `start`.
     fn escape(&mut self, start: usize) -> Result<char, Diagnostic> {
         let kind = self.peek();
         self.at += kind.map_or(0, char::len_utf8);
