@@ -146,13 +146,13 @@ pub(super) struct Camming {
     /// Which values of it are followed: set or actual ones.
     pub source: ValueSource,
     pub cam: CamId,
-    /// So many of its derivatives go on without a jump.
+    /// The number of derivatives that are continuous.
     pub continuity: u8,
     /// Its steepest slope, scalings included.
     pub steepest: f64,
-    /// Scalings and turns; where the cam begins is found when it is laid.
+    /// Scalings and turns. The place where the cam begins is found when it is laid.
     pub law: CamLaw,
-    /// The places of the table are those of the axes.
+    /// The places of the table are absolute places of the axes.
     pub master_absolute: bool,
     pub slave_absolute: bool,
     pub master_offset: f64,

@@ -9,16 +9,16 @@
 //!
 //! | file | subject |
 //! | --- | --- |
-//! | [`view`] | what a slave may know of its master |
+//! | [`view`] | the values of its master that a slave may use |
 //! | [`follow`] | the motion step of a slave |
-//! | [`needs`] | what a step from one set-point to the next needs of the limits |
+//! | [`needs`] | the share of the limits that a step between two set-points needs |
 //! | [`approach`] | the rungs: how a slave comes onto the law |
-//! | [`bound`] | what the limits of slaves leave to their master |
+//! | [`bound`] | the part of its limits that slaves leave to their master |
 //! | [`cam`] | the same on a cam, in a folder of its own |
 //! | [`links`] | the place of an axis among masters and slaves |
-//! | [`phasing`] | a shift between the master and what the slave sees of it |
-//! | [`steady`] | the same in a scan in which nothing is new |
-//! | [`sync`] | MC_GearInPos: a law that is given, and a start that waits for a place of the master |
+//! | [`phasing`] | a shift of the master's place as the slave sees it |
+//! | [`steady`] | the motion step in a scan in which nothing is new |
+//! | [`sync`] | MC_GearInPos: a law given by sync positions, and a start that waits for a place of the master |
 //!
 //! Source: PLCopen Motion Control Part 1, MC_GearIn, MC_GearOut; V16, V18, V18b, V18d. What the standard leaves open is told in
 //! docs/coupling.md.

@@ -4,16 +4,16 @@
 //!
 //! | part | what it holds |
 //! | --- | --- |
-//! | [`commands`] | what a command is: its work, the table of what each kind of work is, its entry |
+//! | [`commands`] | a command: its work, the properties of each kind of work, its entry |
 //! | [`queue`] | commands that wait |
-//! | [`stage`] | the power stage: what is wanted of it, what the drive tells of it |
+//! | [`stage`] | the power stage: what is requested, and what the drive reports |
 //! | [`failure`] | the error shown, whether its cause persists, the reset under way |
 //! | [`feedback`] | actual positions, and which can be compared |
-//! | [`frame`] | what positions are called, for the drive and since when |
-//! | [`modulo`] | turns, and the way round |
+//! | [`frame`] | the names of positions, at the axis and at the drive |
+//! | [`modulo`] | turns, and the shorter way round |
 //! | [`measured`] | actual positions as slaves see them: filtered |
 //!
-//! What it decides has a file for each subject:
+//! The decisions are in one file for each subject:
 //!
 //! | file | subject |
 //! | --- | --- |
@@ -161,7 +161,7 @@ struct BesideMotion {
     report: DriveReport,
     order: DriveOrder,
     probes: probe::Probes,
-    /// Of outputs that follow positions.
+    /// The outputs that follow positions.
     cam_tracks: [CamTrack; DIGITAL as usize],
 }
 
@@ -290,7 +290,7 @@ pub struct Axis<P: Planner = Standard> {
     modulo: Option<Modulo>,
     /// Actual positions.
     feedback: Feedback,
-    /// What the drive has beside its motion.
+    /// The peripherals of the drive.
     beside: BesideMotion,
     /// What positions are called.
     frame: Frame,
@@ -312,13 +312,13 @@ pub struct Axis<P: Planner = Standard> {
     coupling: Option<coupling::Coupling>,
     /// The same on a cam.
     on_cam: Option<coupling::OnCam>,
-    /// Ends of cams that were reached.
+    /// The number of cam ends reached.
     cam_ends: u32,
-    /// The shift between its master and what it sees of that.
+    /// The phase shift between it and its master.
     phasing: coupling::Phasing<P::Plan>,
-    /// What follows a master from a place of it on, and waits for that.
+    /// The command that waits for a place of a master.
     awaited: Option<coupling::Awaited>,
-    /// What its slaves leave of its limits.
+    /// The part of its limits that its slaves leave.
     bound: coupling::Bound,
     /// Its place among axes that follow each other.
     links: coupling::Links,

@@ -39,11 +39,11 @@ pub(super) struct Call {
 #[derive(Debug, Default)]
 pub(super) struct Facts {
     pub calls: Vec<Call>,
-    /// Variables that are read, written, called or handed over.
+    /// Variables that are read, written, called or passed.
     pub used: std::collections::BTreeSet<Variable>,
     /// Variables that a statement gives a value.
     pub assigned: std::collections::BTreeSet<Variable>,
-    /// Reads of a part of a variable: where the part begins, and of an array whether any element is meant.
+    /// Reads of a part of a variable: its offset, and for an array whether it is any element.
     pub reads: Vec<(Variable, u32)>,
     /// Comparisons of two numbers with a point.
     pub equal: Vec<Span>,
