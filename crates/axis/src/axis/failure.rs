@@ -1,11 +1,11 @@
-//! What an axis in ErrorStop shows, and the MC_Reset that waits to end it.
+//! The error of an axis in ErrorStop, and the MC_Reset that waits to end it.
 
 use crate::{CommandId, ErrorId};
 
-/// Scans a drive may take to answer a fault reset before MC_Reset gives up.
+/// Scans a drive may take to answer a fault reset before MC_Reset fails.
 const RESET_PATIENCE: u32 = 1000;
 
-/// The error of an axis; without one as it starts.
+/// The error of an axis; it starts without one.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Failure {
     error: ErrorId,
@@ -28,7 +28,7 @@ impl Failure {
         self.error
     }
 
-    /// What the drive, or who raised the error, calls it; 0 without one.
+    /// The code of the error from the drive or from its other source; 0 without one.
     pub fn code(&self) -> u16 {
         self.code
     }
@@ -45,7 +45,7 @@ impl Failure {
         self.has_cause = has_cause;
     }
 
-    /// The command of the reset under way.
+    /// The command of the reset in progress.
     pub fn reset(&self) -> Option<CommandId> {
         self.reset.map(|reset| reset.id)
     }
@@ -58,7 +58,7 @@ impl Failure {
         self.reset = None;
     }
 
-    /// Counts a scan of the reset under way. Returns TRUE if a drive should have answered it by now.
+    /// Counts a scan of the reset in progress. Returns TRUE if a drive should have answered it by now.
     pub fn waits_too_long(&mut self) -> bool {
         self.reset.as_mut().is_some_and(|reset| {
             reset.waited = reset.waited.saturating_add(1);

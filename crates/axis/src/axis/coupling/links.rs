@@ -1,6 +1,7 @@
-//! The place of an axis among those that follow each other. [`couple`](crate::couple) finds it, looking at all of them.
+//! The place of an axis in the chains of masters and slaves. [`couple`](crate::couple) finds it from all
+//! axes.
 
-/// Where an axis stands, whether it follows a master and whether some slave follows it.
+/// The place of an axis, and whether it follows a master or some slave follows it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Links {
     rank: u16,
@@ -10,17 +11,18 @@ pub(crate) struct Links {
     is_above: bool,
 }
 
-/// One entry of the order in which axes move; the entries of all axes, in the order of their numbers, are the whole of it.
+/// One entry of the order in which axes move. The entries of all axes, by number, form the whole order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Turn {
-    /// The index of the axis that moves after as many axes as the index of the one that keeps this.
+    /// The index of the axis at this position of the order; the position is the index of the axis with
+    /// this entry.
     pub index: usize,
-    /// How many axes there were when the order was found.
+    /// The number of axes when the order was found.
     pub among: usize,
 }
 
 impl Links {
-    /// How many masters stand above the axis.
+    /// The number of masters above the axis.
     pub(crate) fn rank(&self) -> u16 {
         self.rank
     }
@@ -38,7 +40,7 @@ impl Links {
         self.turn = turn;
     }
 
-    /// The owner of the axis or a command that waits may follow a master; never FALSE where one does.
+    /// The owner of the axis or a waiting command may follow a master; never FALSE if one does.
     #[inline]
     pub(crate) fn is_bound(&self) -> bool {
         self.is_bound
@@ -58,7 +60,7 @@ impl Links {
         self.is_followed = true;
     }
 
-    /// The search for a ring that is under way has come to this axis.
+    /// The current search for a ring has reached this axis.
     pub(crate) fn is_above(&self) -> bool {
         self.is_above
     }

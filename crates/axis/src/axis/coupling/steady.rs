@@ -14,18 +14,20 @@ use super::{Coupling, Seen};
 use crate::{AxisId, OnLimit, Scope, ValueSource};
 use standstill_planner::{Limits, Place, Planner, Setpoint};
 
-/// What an axis keeps of its last step, where some axis may follow another: whether anything is new in the next.
+/// The data of the last step of an axis, if some axis may follow another: they tell whether anything is
+/// new in the next.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::axis) struct Steady {
-    /// Nothing is new; never stale where it is TRUE.
+    /// Nothing is new; never out of date if it is TRUE.
     is_settled: bool,
-    /// In the last step nothing was new, nor for the masters of the axis.
+    /// In the last step nothing was new, for the axis or its masters.
     has_gone_on: bool,
-    /// What the limits of the axis leave in a scan in which nothing is new; `None` before the first of these behind a master.
+    /// The room of the limits in a scan in which nothing is new; `None` before the first such scan behind
+    /// a master.
     pub(super) room: Option<Room>,
-    /// Where the axis was before its step in this scan; only where some slave may follow it.
+    /// The place of the axis before its step in this scan, only if some slave may follow it.
     was: Seen,
-    /// Where the set-point comes from in this scan.
+    /// The source of the set-point in this scan.
     pub(super) source: Source,
 }
 

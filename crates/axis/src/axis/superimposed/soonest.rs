@@ -1,8 +1,9 @@
-//! A superimposed distance from rest, on top of an owner that moves: now or later, as asked or slower, whatever ends first.
+//! A superimposed distance from rest, on top of an owner in motion. Of all starts, now or later, as
+//! commanded or slower, it takes the one that ends first.
 //!
-//! What keeps it from going as asked at once is mostly a stretch of the owner's plan that is soon over. So each pace is tried from
-//! now and from each switch of that plan. A slower motion that starts now may do better still: at one of the next switches it is
-//! tried again as asked, and may then end first.
+//! Usually a short piece of the owner's plan prevents the commanded motion from starting at once. So each
+//! pace is tried from now and from each switch of that plan. A slower motion that starts now may end even
+//! sooner: at one of the next switches it is tried again as commanded.
 
 use super::plan::{PROPOSALS, Proposal, Room, limits_of, slower};
 use super::{Added, Adds, Layer};
@@ -11,25 +12,26 @@ use crate::axis::commands::refusal;
 use crate::axis::{Axis, Motion};
 use standstill_planner::{Limits, Plan, Planner};
 
-/// Paces besides those that every command has: the same path in longer time ..
+/// Additional paces: the same path in longer time ..
 const BETWEEN: [f64; 3] = [0.875, 0.625, 0.375];
 
-/// .. and the velocity alone lowered.
+/// .. and only the velocity lowered.
 const VELOCITIES: [f64; 6] = [0.8, 0.6, 0.45, 0.3, 0.2, 0.1];
 
 /// All of them.
 const PACES: usize = PROPOSALS + BETWEEN.len() + VELOCITIES.len();
 
-/// Switches of the owner's plan that are looked at; no plan has more but a curve, on top of which nothing moves.
+/// Switches of the owner's plan that are tried. Only a curve has more, and no motion can be added to a
+/// curve.
 const SWITCHES: usize = 16;
 
-/// Slower motions that are tried as what goes before one as asked ..
+/// Slower motions that are tried before the commanded one ..
 const BEFORE: usize = 3;
 
-/// .. and switches at which that may begin.
+/// .. and switches at which the commanded one may begin.
 const AFTER: usize = 6;
 
-/// The owner's plan and what the sum must keep.
+/// The owner's plan and the limits of the sum.
 pub(super) struct Below<'a, Plan> {
     pub rest: (&'a Plan, u64),
     /// Limits of the axis.
@@ -68,10 +70,11 @@ fn pace(index: usize, asked: &Limits, room: &Room) -> Option<Limits> {
 }
 
 impl<P: Planner> Axis<P> {
-    /// What starts now for `command`, which begins at rest; `Ok(None)` if something ends sooner that starts later, or nothing fits.
+    /// The motion that starts now for `command`, which begins at rest; `Ok(None)` if a later start ends
+    /// sooner, or nothing fits.
     ///
-    /// Cost: at most 32 plans from rest, two for each pace; 18 from a moving state, [`BEFORE`] times [`AFTER`]; and a look at both
-    /// plans together for each pace and switch, and for each of the 18.
+    /// Cost: at most 32 plans from rest, two for each pace; 18 from a moving state, [`BEFORE`] times
+    /// [`AFTER`]; and a check of the sum of both plans for each pace and switch, and for each of the 18.
     ///
     /// # Errors
     /// As [`Axis::propose`].
@@ -106,7 +109,7 @@ impl<P: Planner> Axis<P> {
         self.before(best, layer, command, room, below)
     }
 
-    /// The motion of a pace; `Ok(None)` if there is none that the axis could make alone.
+    /// The motion of a pace; `Ok(None)` if the axis alone could not make it.
     fn with_pace(
         &self,
         index: usize,
@@ -165,7 +168,8 @@ impl<P: Planner> Axis<P> {
         self.planner.fits(later, (plan, 0), below.axis, below.range)
     }
 
-    /// A slower motion that starts now and, speeded up at a switch, ends before `best`; else `best`, if that starts now.
+    /// A slower motion that starts now, speeds up at a switch and ends before `best`; otherwise `best`,
+    /// if that starts now.
     fn before(
         &self,
         best: Start<P::Plan>,
