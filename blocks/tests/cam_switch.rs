@@ -1,7 +1,7 @@
-//! Cams switch in the right scan, at every speed, either way, on axes with and without turns.
+//! Cams switch in the right scan, at every speed, in both directions, on axes with and without turns.
 //!
-//! What must be on is found without the block's arithmetic: the position is followed without turns, and every turn has
-//! cams of its own.
+//! The expected outputs are computed without the block's arithmetic: the position is followed without
+//! turns, and every turn has its own cams.
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, Command, Comms, Direction, DriveFeedback, DrivePosition, DriveSignals,

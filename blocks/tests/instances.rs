@@ -1,4 +1,5 @@
-//! What a host may rely on of instances: whom they follow, and for how long their results are kept.
+//! The guarantees of instances for a host: which command they follow, and how long their results are
+//! kept.
 
 #[path = "bad_input/bench.rs"]
 mod bench;

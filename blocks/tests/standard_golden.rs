@@ -1,10 +1,10 @@
 //! The standard blocks over 22 scans of 10 ms, side by side.
 //!
-//! Timer and edge columns are what the open-source IEC compiler matiec gave for the same program in October
-//! 2024 (commit 6bb2c33); STruC++ gave the same in August 2026 but for its CTD. F_TRIG follows the advice of
-//! IEC 61131-8 for the first call. Counter columns are the standard's rule that only the limits of the type
-//! end counting, as IronPLC 0.239 and truST 0.9.15 do. All inputs are `x`, PT is T#30ms, PV is 2; CTU.R is
-//! TRUE in scan 20 and CTD.LD in scan 1.
+//! Timer and edge columns are the results of the open-source IEC compiler matiec for the same program in
+//! October 2024 (commit 6bb2c33); STruC++ gave the same in August 2026, except for its CTD. F_TRIG
+//! follows the advice of IEC 61131-8 for the first call. Counter columns are the standard's rule that
+//! only the limits of the type end counting, as IronPLC 0.239 and truST 0.9.15 do. All inputs are `x`, PT
+//! is T#30ms, PV is 2; CTU.R is TRUE in scan 20 and CTD.LD in scan 1.
 
 use standstill_axis::{Log, Scope, Standard};
 use standstill_blocks::BlockInstance;

@@ -1,8 +1,8 @@
-//! What blocks do with input that is no good, held against two tables.
+//! The reaction of blocks to bad input, compared with two tables.
 //!
-//! `pins.txt` says for every numeric and enumeration pin of every registered block what each bad value gives,
-//! `states.txt` what each block gives in each state of the axis. A block or pin without a row fails. Both
-//! tables are published as `docs/bad-input.md`.
+//! `pins.txt` has the result of each bad value at every numeric and enumeration pin of every registered
+//! block, `states.txt` the result of each block in each state of the axis. A block or pin without a row
+//! fails. Both tables are published as `docs/bad-input.md`.
 
 mod bench;
 mod no_axis;

@@ -1,5 +1,5 @@
 //! A planner that only counts: every change takes two scans. At velocity 2 a move takes two scans even to
-//! where it is: what is superimposed must not make the positions many.
+//! the present position, so that superimposed motions do not create many positions.
 
 use standstill_axis::{
     Excess, Limits, MoveProfile, Passage, Plan, PlanError, Planner, ProfileFault, ProfileKind, ProfilePoint,

@@ -1,5 +1,5 @@
-//! The rules every scan must keep: those of `standstill-soak`, which random programs are held against too, and some
-//! that only this system of blocks can be asked.
+//! The rules for every scan: those of `standstill-soak`, which also check random programs, and some that
+//! only apply to this system of blocks.
 
 use crate::system::{Inputs, NAMES};
 use standstill_axis::{AxisState, Outlook, WorkKind};

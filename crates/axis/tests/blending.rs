@@ -1,9 +1,9 @@
-//! Chains of buffered and blended moves, drawn at random: what holds in every scan, whatever is queued when.
+//! Random chains of buffered and blended moves: the rules of every scan, for any queue.
 //!
-//! The rules are those of `docs/buffering.md`: the ends are passed in order, never exceeded but by the one scan
-//! of a hand-over, nothing turns on the way, the axis limits hold across every arming, and the last command ends
-//! exactly on its target. Set-points are judged from outside, by their backward differences (B1, B2, B10, B13,
-//! B14, B15). The numbers are seeded; a failing case prints its own.
+//! The rules are those of `docs/buffering.md`: the ends are passed in order and exceeded only by the one
+//! scan of a hand-over, nothing turns on the way, the axis limits hold across every arming, and the last
+//! command ends exactly on its target. Set-points are judged from outside, by their backward differences
+//! (B1, B2, B10, B13, B14, B15). The numbers are seeded; a failing case prints its own.
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Dynamics, Fate, Limits, Log,

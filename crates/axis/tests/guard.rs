@@ -1,4 +1,4 @@
-//! The last line of defence (ErrorID 904): a planner that goes wrong moves nothing further than the limits allow.
+//! The last check (ErrorID 904): an error of the planner moves nothing further than the limits allow.
 //!
 //! The planner here is the product's own, but one set-point of its plans is put elsewhere.
 

@@ -1,8 +1,9 @@
-//! MC_Stop and MC_Halt against the least number of scans any sequence of snaps needs, by linear programming.
+//! MC_Stop and MC_Halt against the least number of scans that any sequence of snaps needs, by linear
+//! programming.
 //!
-//! The cases are those of the planner (`crates/planner/tests/data`), each the state of a move under way. No
-//! command brings an axis into exactly such a state, so a planner stands between that puts it there; the stop is
-//! planned by the product's own.
+//! The cases are those of the planner (`crates/planner/tests/data`), each the state of a move in
+//! progress. No command brings an axis into exactly such a state, so a test planner does; the product's
+//! own planner plans the stop.
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Direction, Dynamics, Excess, Fate, Limits, Log,

@@ -1,5 +1,5 @@
-//! Masters that are measured: what a slave of actual values sees, and that nothing the drive of its master tells takes it over
-//! its limits.
+//! Measured masters: the values that a slave of actual values sees; no report of the master's drive takes
+//! it beyond its limits.
 //!
 //! The judge knows neither filter nor planner: it takes differences of published positions, and sums of its own over what was
 //! told.

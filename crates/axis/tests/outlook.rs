@@ -1,4 +1,4 @@
-//! What an axis tells it will do next.
+//! The forecast of an axis for its next motion.
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, Direction, Dynamics, ErrorId, Limits, Log,

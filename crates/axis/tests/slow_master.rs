@@ -1,11 +1,12 @@
-//! Slaves with `on_limit` `slow_master` at random (G51): whatever is commanded to their master, all stay in gear and no axis
-//! leaves its limits.
+//! Slaves with `on_limit` `slow_master` at random (G51): for any command to their master, all stay in
+//! gear and no axis leaves its limits.
 //!
-//! A master has one to three slaves, some behind each other, with limits, orders and ratios of their own. From the scan after
-//! the last came into gear the master is given anything that is planned: moves of every kind in every buffer mode, an override,
-//! superimposed motions, halts and stops, a direction barred and permitted, power off; slaves are given shifts. Left out is what
-//! no plan of the master is made within the bound of its slaves for, as docs/coupling.md tells: faults of the master, a profile
-//! or torque in progress, homing by the drive, and limits of a slave that are written.
+//! A master has one to three slaves, some behind each other, with limits, orders and ratios of their own.
+//! From the scan after the last one came into gear the master gets all kinds of planned motion: moves of
+//! every kind in every buffer mode, an override, superimposed motions, halts and stops, a direction
+//! barred and permitted, power off; slaves are given shifts. Left out are the motions without a plan
+//! within the bound of the slaves (docs/coupling.md): faults of the master, a profile or torque in
+//! progress, homing by the drive, and limits of a slave that are written.
 //!
 //! `SLOW_MASTER_CASES` runs more of them.
 

@@ -1,5 +1,5 @@
-//! Superimposed motions at random: the sum keeps the limits of the axis, the motion under it does not notice,
-//! and both targets are met to the bit.
+//! Random superimposed motions: the sum keeps the limits of the axis, the motion under it is unchanged,
+//! and both targets are reached to the bit.
 //!
 //! Every case runs two axes with the same commands; one of them is also given superimposed ones, at random
 //! times, in both directions, halted or given again on the way.

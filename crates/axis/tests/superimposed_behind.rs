@@ -1,8 +1,9 @@
-//! Superimposed motions on slaves at random: the sum keeps the limits of the slave, the law under it stays what it was, and in the
-//! end the slave is as far from where it would be as was added.
+//! Random superimposed motions on slaves: the sum keeps the limits of the slave, the law under it is
+//! unchanged, and in the end the slave is displaced by the added distance.
 //!
-//! Every case runs a master, a slave that is also given superimposed commands, and a twin of it that is not. The master is told
-//! to go elsewhere at random times, so what is added has to wait, to give way, or to take the gear with it.
+//! Every case runs a master, a slave that is also given superimposed commands, and an equal slave that is
+//! not. The master gets new targets at random times, so the added motion has to wait, to slow down, or to
+//! end the gear.
 //!
 //! Covers: G66.
 

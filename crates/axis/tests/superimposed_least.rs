@@ -1,4 +1,4 @@
-//! How soon a superimposed distance has been added, beside the least scans there are.
+//! The time until a superimposed distance has been added, compared with the least number of scans.
 //!
 //! `superimposed_least.txt` holds 200 random cases: an axis of order 4 moves from rest, and at some scan MC_MoveSuperimposed is
 //! given. The last number of a line is the least count of scans in which the distance can be added: the smallest for which the

@@ -1,8 +1,9 @@
-//! Commands that take over from random motions, with limits of their own: what the axis promises of all of them.
+//! Commands that take over from random motions, with their own limits: the guarantees of the axis for all
+//! of them.
 //!
-//! Set-points are held against the limits of the axis by the rules of `standstill-soak`. 10^4 take-overs of each
-//! kind by default; `STANDSTILL_TAKE_OVERS=1000000` in the environment tries a million. The numbers are seeded and
-//! a failing case prints its own.
+//! Set-points are checked against the limits of the axis by the rules of `standstill-soak`. 10^4
+//! take-overs of each kind by default; `STANDSTILL_TAKE_OVERS=1000000` in the environment tries a
+//! million. The numbers are seeded and a failing case prints its own.
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, Event, Fate,

@@ -1,4 +1,4 @@
-//! Values of configurations and commands: what is refused, and what counts as the same.
+//! Values of configurations and commands: which are refused, and which count as equal.
 
 use standstill_axis::{
     AxisConfig, Command, ConfigError, Defaults, Direction, Dynamics, InPosition, Limits, MODULO_MAX, Raw,

@@ -1,9 +1,11 @@
-//! Plans from any state beside those of `rsruckig`, an open third-order planner: the same inputs, in the same
-//! run. `cargo bench -p standstill-bench --bench beside_rsruckig [-- INPUTS]`, 100,000 for each set if not said.
+//! Plans from any state beside those of `rsruckig`, an open third-order planner: the same inputs, in the
+//! same run. `cargo bench -p standstill-bench --bench beside_rsruckig [-- INPUTS]`, 100,000 for each set
+//! by default.
 //!
-//! Every input is planned once by each planner in every round. Its time is the least over the rounds, so that
-//! what else the machine does plays no part; median, 99.9th percentile and largest are over the inputs. Both
-//! check their inputs in the time measured, and rsruckig keeps its memory from plan to plan, as it is made for.
+//! Every input is planned once by each planner in every round. Its time is the least over the rounds, so
+//! that other load of the machine has no effect; median, 99.9th percentile and largest are over the
+//! inputs. Both check their inputs in the time measured, and rsruckig keeps its memory from plan to plan,
+//! as it is made for.
 
 use rsruckig::prelude::{DataArrayOrVec, InputParameter, Ruckig, ThrowErrorHandler, Trajectory};
 use standstill_bench::{CYCLE, Random, Replan, any_unit, ordinary};

@@ -1,5 +1,6 @@
-//! A guest's scan beside that of a native program, in one run: each calls one MC_MoveAbsolute in the middle of a move,
-//! under the same executor, axis and drive. A guest that does nothing shows what the interpreter itself costs.
+//! A guest's scan beside that of a native program, in one run: each calls one MC_MoveAbsolute in the
+//! middle of a move, under the same executor, axis and drive. A guest that does nothing shows the cost of
+//! the interpreter itself.
 
 use standstill_axis::{
     AxisConfig, AxisId, DrivePosition, IdealDrive, InstanceId, Limits, Standard, StartState,

@@ -1,7 +1,7 @@
 //! Times of the scan path as multiples of one sample of a plain trapezoid, timed in the same run.
 //!
-//! Prints a table with the bars of docs/performance.md and marks what is above its bar. The bars are multiples of
-//! a sample from its parameters; the multiples of one that was planned before are shown too.
+//! Prints a table with the bars of docs/performance.md and marks values above their bar. The bars are
+//! multiples of a sample from its parameters; the multiples of one that was planned before are shown too.
 
 use standstill_axis::ConfigError;
 use standstill_bench::{

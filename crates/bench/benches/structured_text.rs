@@ -1,7 +1,7 @@
-//! Programs in Structured Text beside the same in C through clang, as guests of the same runtime, in one run; and what compiling
-//! costs.
+//! Programs in Structured Text beside the same in C through clang, as guests of the same runtime, in one
+//! run; and the cost of compiling.
 //!
-//! Without clang there is nothing to compare with: it says so and tells the rest.
+//! Without clang there is nothing to compare with: it says so and prints the rest.
 
 use standstill_axis::{AxisConfig, DrivePosition, IdealDrive, Limits, Standard, StartState};
 use standstill_export::{Dialect, Prefix, Target, export};

@@ -1,5 +1,5 @@
-//! A paced scan of `standstill live` takes nothing from the heap, its row in the trace included; only what is worth a note does, and a word
-//! that the trace never had before. And the trace is that of `run`.
+//! A paced scan of `standstill live` does not use the heap, including its row in the trace. Exceptions
+//! are events with a note, and a word that is new in the trace. The trace is that of `run`.
 
 mod counting;
 

@@ -1,4 +1,4 @@
-//! Nothing accumulates: many moves there and back, and standing still for long.
+//! Nothing accumulates: many moves there and back, and a long time at rest.
 //!
 //! An hour of standstill at 1 ms with `STANDSTILL_SOAK=3600000`; a minute in a plain run.
 

@@ -1,4 +1,4 @@
-//! A scan uses no heap, whatever happens in it: commands, buffers, aborts, faults, resets, bad numbers.
+//! A scan never uses the heap: commands, buffers, aborts, faults, resets, bad numbers.
 
 mod counting;
 

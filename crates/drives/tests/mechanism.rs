@@ -1,4 +1,4 @@
-//! The mechanism against formulas it does not know, and the drive over it.
+//! The mechanism against independent formulas, and the drive over it.
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Drive, DrivePosition, Dynamics, Fate, InstanceId, Limits,

@@ -1,5 +1,5 @@
-//! A host in Rust for feed and place: the program of `prog.st` with its blocks in a struct of its own, the cell, and the
-//! buttons.
+//! A host in Rust for feed and place: the program of `prog.st` with its blocks in its own struct, the
+//! cell, and the buttons.
 
 use standstill::blocks::administrative::mc_read_status::McReadStatus;
 use standstill::blocks::standard::{r_trig::RTrig, ton::Ton};

@@ -1,5 +1,6 @@
-//! The same three axes, coupled by a scan script, by a guest and by Structured Text: every column of every axis is the same in
-//! every scan, to the bit. The C library is held against the same script beside its other examples.
+//! The same three axes, coupled by a scan script, by a guest and by Structured Text: every column of
+//! every axis is the same in every scan, to the bit. The C library is compared with the same script
+//! beside its other examples.
 
 use standstill_trace::{Cell, Trace};
 use std::path::Path;

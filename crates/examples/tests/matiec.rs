@@ -1,8 +1,8 @@
 //! `prog.st` through matiec: linked to the C library, and as a guest, with the digest of the other hosts.
 //!
-//! matiec is in no package registry and not in Debian, so CI cannot install it and these tests say SKIP there; what CI holds
-//! of this path is said in `docs/porting.md`. Here it is found as `iec2c` on the PATH; a C library for WebAssembly
-//! in `WASI_SYSROOT`, or where Debian puts it.
+//! matiec is in no package registry and not in Debian, so CI cannot install it and these tests say SKIP
+//! there; `docs/porting.md` lists what CI tests of this path. Here it is found as `iec2c` on the PATH; a
+//! C library for WebAssembly in `WASI_SYSROOT`, or where Debian puts it.
 
 mod common;
 #[path = "../../st/tests/foreign/matiec.rs"]

@@ -1,8 +1,9 @@
 //! `prog.st` through STruC++: linked to the C library, and as a guest, with the digest of the other hosts.
 //!
-//! STruC++ is in no package registry and not in Debian, so CI cannot install it and these tests say SKIP there; what CI holds
-//! of this path is said in `docs/porting.md`. Here it is found as `strucpp` on the PATH, its runtime's headers in
-//! `STRUCPP_RUNTIME`, archives of its standard blocks in `STRUCPP_LIBS`, if wanted.
+//! STruC++ is in no package registry and not in Debian, so CI cannot install it and these tests say SKIP
+//! there; `docs/porting.md` lists what CI tests of this path. Here it is found as `strucpp` on the PATH,
+//! its runtime's headers in `STRUCPP_RUNTIME`, archives of its standard blocks in `STRUCPP_LIBS`, if
+//! needed.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! `prog.st` through our own compiler, as it stands: the digest of the other hosts.
+//! `prog.st` through our own compiler, unchanged: the digest of the other hosts.
 
 // The other tests build their hosts, too.
 #[allow(dead_code)]

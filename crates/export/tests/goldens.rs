@@ -1,5 +1,5 @@
-//! What is written for every target is held against files: the headers of the C library, and those in `golden/`.
-//! `STANDSTILL_GOLDENS=write` in the environment writes them.
+//! The output for every target is compared with files: the headers of the C library, and those in
+//! `golden/`. `STANDSTILL_GOLDENS=write` in the environment writes them.
 
 use standstill_export::{Dialect, File, Prefix, Target, export};
 use std::fs;

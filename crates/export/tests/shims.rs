@@ -1,5 +1,6 @@
-//! The bodies of the shims compile against stand-ins for what their compilers make of the declarations: for matiec pins
-//! as `struct { T value; uint8_t flags; }` behind its two macros, for STruC++ values with `get` and `set`.
+//! The bodies of the shims compile against replacements for the declarations that their compilers make:
+//! for matiec pins as `struct { T value; uint8_t flags; }` behind its two macros, for STruC++ values with
+//! `get` and `set`.
 //!
 //! The compilers themselves are not here. Without a C compiler the tests say SKIP; with `CI` in the environment that is a
 //! failure.

@@ -1,4 +1,4 @@
-//! Guests in text form under the executor: motion, snapshots, and everything a hostile one may try.
+//! Guests in text form under the executor: motion, snapshots, and the attacks of a hostile one.
 
 use standstill_axis::{AxisConfig, AxisState, DrivePosition, IdealDrive, Limits, Standard};
 use standstill_fb::{Context, Value};

@@ -1,4 +1,4 @@
-//! Random bytes as hostile guests: a bounded run of what `crates/soak/fuzz` does for as long as one likes.
+//! Random bytes as hostile guests: a bounded run of the target in `crates/soak/fuzz`.
 
 use crate::hostile;
 

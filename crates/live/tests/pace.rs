@@ -1,4 +1,4 @@
-//! The pacing under a clock of our own: what is late, what is skipped, and that motion knows nothing of it.
+//! The pacing under a test clock: late and skipped scans, without any effect on the motion.
 
 use standstill_live::{Clock, Ended, OnOverrun, Overrun, Stopped, Timing, pace};
 use standstill_script::{Outcome, Session, model::Script, read, run};

@@ -1,4 +1,4 @@
-//! Cams: the laws between two rows, what joins them, what bounds them, and where they lie between two axes.
+//! Cams: the laws between two rows, their joints, their bounds, and their place between two axes.
 
 use standstill_planner::cam::CAM_ROWS;
 use standstill_planner::{

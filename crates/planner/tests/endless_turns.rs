@@ -1,4 +1,4 @@
-//! Endless motions brought back by whole turns: where they are after a thousand million turns, against exact
+//! Endless motions brought back by whole turns: their place after a thousand million turns, against exact
 //! integer arithmetic.
 
 use standstill_planner::{Limits, MoveProfile, OnlinePlan, Plan, Planner, RampPlan, Setpoint, Standard};

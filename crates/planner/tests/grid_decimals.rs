@@ -1,4 +1,4 @@
-//! Decimal inputs give their nominal counts, though binary numbers miss them by a last place.
+//! Decimal inputs give their nominal counts, although binary numbers differ from them in the last place.
 //!
 //! The nominal count is computed from the digits, in whole numbers.
 

@@ -1,7 +1,7 @@
 //! `Grid` and `Overlapped` are proven shortest: no boxes of a smaller sum reach the thresholds.
 //!
-//! Lengthening the last box breaks no condition, so it is enough that no boxes sum to N - 1. The thresholds
-//! and the conditions are written down here again, without the planner's code.
+//! A longer last box breaks no condition, so it is enough that no boxes sum to N - 1. The thresholds and
+//! the conditions are written here again, without the planner's code.
 
 use crate::grid_support::{Move, Random, limits, power};
 use standstill_planner::{GridPlan, Method};

@@ -1,4 +1,4 @@
-//! What a grid plan refuses, with the field it names, and the odd inputs it accepts.
+//! The refusals of a grid plan, with the named field, and the unusual inputs that it accepts.
 
 use crate::grid_support::{Move, limits};
 use standstill_planner::{Field, Limits, Method, PlanError};

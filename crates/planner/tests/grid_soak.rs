@@ -1,5 +1,5 @@
-//! Many random moves. 10,000 in a plain test run; `STANDSTILL_SOAK=1000000` asks for more and prints the
-//! most work any of them took.
+//! Many random moves. 10,000 in a plain test run; `STANDSTILL_SOAK=1000000` runs more and prints the
+//! largest work of one.
 
 use crate::grid_support::{Move, Random, limits, servo};
 use standstill_planner::grid::Work;

@@ -1,5 +1,6 @@
-//! Bounds so high that they limit nothing: what a plan acts on (docs/planner.md, eq. 39), and that it lands, keeps the
-//! other bounds and does not jump. Every difference is taken from published positions alone.
+//! Bounds so high that they limit nothing: the bounds that a plan uses (docs/planner.md, eq. 39); it
+//! lands, keeps the other bounds and does not jump. Every difference is taken from published positions
+//! alone.
 
 use standstill_planner::{
     Limits, MoveProfile, OnlinePlan, Plan, Planner, RampPlan, Setpoint, Standard, StandardPlan,

@@ -1,5 +1,6 @@
-//! Profiles: a curve meets its points, is smooth from the state it starts in to its end, and is accepted exactly where
-//! it keeps the limits. The curve is judged by its set-points alone, looked at between the scans of a coarse cycle.
+//! Profiles: a curve passes its points, is smooth from its start state to its end, and is accepted
+//! exactly if it keeps the limits. Only its set-points are judged, sampled between the scans of a coarse
+//! cycle.
 
 use standstill_planner::{
     Limits, PROFILE_POINTS, ProfileCause, ProfileKind, ProfilePlan, ProfilePoint, Setpoint,

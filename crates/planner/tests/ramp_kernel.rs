@@ -1,4 +1,5 @@
-//! The third-order kernel by itself: from any state, inside its bounds or not, it arrives; fast.
+//! The third-order kernel by itself: from any state, inside its bounds or not, it arrives, with little
+//! work.
 
 use standstill_planner::kernel::{
     Bounds, MAX_STEPS, Point, Profile, Sides, falling_root, second, third, zero,

@@ -1,7 +1,7 @@
-//! Plans with unequal rates are proven shortest: no two ramps of their family fit into a scan less.
+//! Plans with unequal rates are proven shortest: no two ramps of their family fit into one scan less.
 //!
-//! Whatever fits into N scans fits into N + 1 with a longer cruise, so it is enough that nothing fits into
-//! N - 1. The thresholds and the conditions are written down here again, without the planner's code.
+//! Every plan of N scans fits into N + 1 with a longer cruise, so it is enough that nothing fits into N -
+//! 1. The thresholds and the conditions are written here again, without the planner's code.
 
 use crate::grid_support::{Move, Random, limits, power};
 use standstill_planner::UnequalPlan;

@@ -1,6 +1,6 @@
-//! The unit of length or time is nobody's business: a million times larger or smaller, no power of two, it
-//! changes no count of scans. Here for the grid and the papers' systems; `online_plans` and `ramp_plans` have
-//! theirs.
+//! The unit of length or time does not matter: a million times larger or smaller, which is no power of
+//! two, it changes no count of scans. Here for the grid and the papers' systems; `online_plans` and
+//! `ramp_plans` have theirs.
 
 use crate::grid_support::{Move, Random, limits, servo};
 use standstill_planner::papers::{Profile, SCurve, ShortPath, ShortPathPolicy, Timed, Tracking, Trapezoid};

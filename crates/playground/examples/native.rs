@@ -1,5 +1,6 @@
-//! Times the function `run` as it is without a browser: a request on standard input, how often as the argument; a line with
-//! milliseconds for each. `crates/playground/browser/measure.mjs` holds the page's times against these.
+//! Times the function `run` without a browser: a request on standard input, the number of runs as the
+//! argument; a line with milliseconds for each. `crates/playground/browser/measure.mjs` compares the
+//! times of the page with these.
 
 use std::io::Read;
 use std::time::Instant;

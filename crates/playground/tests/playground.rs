@@ -1,4 +1,5 @@
-//! What the page gets: the digests of the command line, messages with their places, and refusals with their bounds.
+//! The answers for the page: the digests of the command line, messages with their places, and refusals
+//! with their bounds.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

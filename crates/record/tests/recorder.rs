@@ -1,4 +1,4 @@
-//! What a recorder keeps, when it stops, and that its trace is what happened.
+//! The contents of a recorder, its stop, and the agreement of its trace with the run.
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, Drive, DrivePosition, ErrorId, Event, ExecutionMode, IdealDrive, InstanceId,

@@ -1,4 +1,4 @@
-//! The page is one file that loads nothing and takes nothing for markup, and holds every bit of its traces.
+//! The page is one file that loads nothing, escapes all texts, and has every bit of its traces.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

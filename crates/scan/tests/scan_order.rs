@@ -1,4 +1,4 @@
-//! The order of one scan, its instant, and what of it reaches drives and outputs.
+//! The order of one scan, its instant, and its effect on drives and outputs.
 //!
 //! Ids: TM time, SC scan cycle, OV overrun and faults, ST starts.
 

@@ -1,4 +1,4 @@
-//! What a stop or a fault of the resource does to axes, and what a start finds.
+//! The effect of a stop or a fault of the resource on axes, and the state at a start.
 //!
 //! Ids: OV faults, ST starts, TM-6 nominal tick, SC-6 axes in a scan.
 

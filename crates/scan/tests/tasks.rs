@@ -1,4 +1,4 @@
-//! Which task runs in which scan.
+//! The tasks that run in each scan.
 //!
 //! Ids: CF configuration, TK tasks, OV overrun.
 

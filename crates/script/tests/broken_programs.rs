@@ -1,7 +1,8 @@
-//! Programs of the gallery with one fault each, as an engineer makes them: the first line of "why" names the fault.
+//! Programs of the gallery with one typical fault each: the first line of "why" names the fault.
 //!
-//! `broken_programs/programs.json` holds the faults: what is replaced in the text of the script (or which block is called
-//! before which), and the words that name the fault. Nothing here is told what the walk does.
+//! `broken_programs/programs.json` holds the faults: the replacement in the text of the script (or the
+//! changed call order), and the words that name the fault. The search for reasons does not use these
+//! data.
 
 use serde::Deserialize;
 use standstill_script::suite::read_text;

@@ -1,7 +1,7 @@
-//! Which scan script shows which row of what may happen to axes that are coupled: a row without a script is a failing test.
+//! The scan script for each row of the events at coupled axes: a row without a script is a failing test.
 //!
-//! Names are those of `scan-tests/coupling`, or of a folder beside it. What each block does with each value at its pins is in
-//! `blocks/tests/bad_input`.
+//! Names are those of `scan-tests/coupling`, or of a folder beside it. The reaction of each block to each
+//! value at its pins is in `blocks/tests/bad_input`.
 
 use std::path::Path;
 

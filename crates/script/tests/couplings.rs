@@ -1,7 +1,8 @@
-//! What a script sees of axes that follow axes: the columns of slaves, and their signals in claims, steps and wires.
+//! The view of a script on coupled axes: the columns of slaves, and their signals in claims, steps and
+//! wires.
 //!
-//! S follows M at 1/1 from scan 1 on. M goes at 200 u/s from scan 10 on, S may go at 100: it lags, and catches up
-//! when M rests again. L follows S; A follows nothing and stands at no `Slave` pin.
+//! S follows M at 1/1 from scan 1 on. M moves at 200 u/s from scan 10 on; the limit of S is 100: it lags,
+//! and catches up when M is at rest again. L follows S; A follows nothing and is at no `Slave` pin.
 
 use standstill_script::{Outcome, read, run};
 use standstill_trace::{Cell, cell_text};

@@ -1,4 +1,5 @@
-//! What tests nothing is told with its place, each kind of it; what tests something is not. Claims notice mutants.
+//! Every kind of part that tests nothing is reported with its place; others are not. Claims detect
+//! mutants.
 
 use standstill_script::mutate::{Fate, mutants};
 use standstill_script::suite::{Allowed, find, run_script};

@@ -1,5 +1,5 @@
-//! The claim `follows`: it holds for what the runtime makes, and fails for every position that is one unit in the last
-//! place off.
+//! The claim `follows`: it holds for the positions of the runtime, and fails for every position with an
+//! error of one unit in the last place.
 
 use standstill_script::model::Script;
 use standstill_script::{Outcome, judge_recording, read, run, warnings};

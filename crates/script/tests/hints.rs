@@ -1,4 +1,4 @@
-//! Mistakes of the first day: each message says what to write instead.
+//! Typical first errors: each message has the remedy.
 
 use standstill_script::{Diagnostic, read};
 

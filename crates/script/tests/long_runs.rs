@@ -1,5 +1,6 @@
-//! A run whose rows are given up on the way is the run whose rows are kept: the same verdicts in the same words, the same digest,
-//! extremes and events; one that keeps few columns has the same verdicts. Half of the claims of every scan test are broken on purpose, so that there are words to compare.
+//! A run that drops its rows on the way equals a run that keeps them: the same verdicts in the same
+//! words, the same digest, extremes and events; one that keeps few columns has the same verdicts. Half of
+//! the claims of every scan test are broken on purpose, so that there are words to compare.
 
 use serde_json::{Value, json};
 use standstill_script::model::Script;

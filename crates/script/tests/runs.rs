@@ -1,6 +1,6 @@
-//! What a script does when it runs: steps at the latch, wires, tasks, drives and faults, row by row.
+//! The run of a script: steps at the latch, wires, tasks, drives and faults, row by row.
 //!
-//! Scripts here are as small as the rule they show; motion has its tests in `scan-tests`.
+//! Scripts here are as small as possible for their rule; motion has its tests in `scan-tests`.
 
 use standstill_script::{Outcome, RunError, read, read_with_programs, run};
 use standstill_trace::Cell;

@@ -1,7 +1,7 @@
 //! Every script under `scan-tests` is one test, called by its path there without extension.
 //!
-//! A new script needs no registration. What a failing test means, and how a golden is accepted, stands in
-//! `docs/scan-scripts.md`; `standstill test` judges by the same code.
+//! A new script needs no registration. `docs/scan-scripts.md` explains failing tests and the acceptance
+//! of goldens; `standstill test` judges by the same code.
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use standstill_script::golden::Mode;

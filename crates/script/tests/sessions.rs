@@ -1,5 +1,5 @@
-//! A run taken scan by scan is the run, claims are decided as they will be judged, and what was changed on the way can be
-//! saved as a script.
+//! A run that advances scan by scan equals the whole run, claims are decided as in the final judgement,
+//! and changes on the way can be saved as a script.
 
 use standstill_script::model::Point;
 use standstill_script::suite::{Allowed, find, read_file};

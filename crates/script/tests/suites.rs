@@ -1,4 +1,4 @@
-//! Folders of scripts: what is found, and what each mode does to goldens.
+//! Folders of scripts: the found scripts, and the effect of each mode on goldens.
 
 use standstill_script::golden::{Mode, Standing};
 use standstill_script::suite::{

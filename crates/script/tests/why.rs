@@ -1,4 +1,4 @@
-//! Reasons: through expressions in wires, steps and claims, and within their bound whatever the script is.
+//! Reasons: through expressions in wires, steps and claims, and within their bound for any script.
 
 use standstill_script::{Outcome, read, run};
 use std::fmt::Write as _;

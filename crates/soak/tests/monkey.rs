@@ -1,4 +1,4 @@
-//! What a random program does, its minutes repeat to the bit, and its scan script is one that runs.
+//! The record of a random program repeats its run to the bit, and its scan script runs.
 
 use standstill_axis::{AxisConfig, Limits, StartState};
 use standstill_blocks::REGISTRY;

@@ -1,4 +1,5 @@
-//! What expressions are worth. Each is also worked out at work: operands are variables where it matters.
+//! The values of expressions. They are also computed at run time: operands are variables where it
+//! matters.
 
 use crate::common;
 

@@ -1,4 +1,4 @@
-//! What an editor is told of names, and what it may offer, at places marked by `|`.
+//! The information on names and the completions for an editor, at places marked by `|`.
 
 use standstill_st::editor::{Completion, CompletionKind, Hover, complete, hover, variable};
 use standstill_st::{Options, Source, Sources};

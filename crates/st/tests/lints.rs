@@ -1,4 +1,4 @@
-//! Lints: what each of them finds, and what it leaves alone.
+//! Lints: the findings of each, and code without a finding.
 
 use standstill_st::{Options, Source};
 

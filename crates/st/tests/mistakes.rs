@@ -1,4 +1,4 @@
-//! Mistakes: each is told at its place, with its reason, and never ends in a panic or takes long.
+//! Errors: each is reported at its place, with its reason, and never causes a panic or a long run.
 
 use crate::common;
 

@@ -1,4 +1,4 @@
-//! Strings: what they hold, how they are compared, and their functions.
+//! Strings: their contents, comparisons and functions.
 
 use crate::common;
 

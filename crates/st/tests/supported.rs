@@ -1,6 +1,6 @@
-//! What is supported, and what is refused: every row of the two tables of docs/structured-text.md is compiled here, run for a
-//! scan, and worth what it should be; the tables must be those that this file writes. With `STANDSTILL_DOCS=update` they
-//! are written.
+//! Supported and refused constructs: every row of the two tables of docs/structured-text.md is compiled
+//! here, run for a scan, and its value compared; the tables must be those that this file writes. With
+//! `STANDSTILL_DOCS=update` they are written.
 
 use crate::common::{Running, compile, wrong};
 use std::fmt::Write as _;

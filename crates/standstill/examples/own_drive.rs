@@ -1,7 +1,8 @@
-//! A host with a drive of its own, and a block of its own beside those of the standard, all in its own structs.
+//! A host with its own drive, and its own block beside those of the standard, all in its own structs.
 //!
-//! The drive stands for whatever a fieldbus leads to: in every scan it takes a position in increments and reports where
-//! the shaft is. The program moves to and fro and counts the turns with a block that is no motion block.
+//! The drive represents a drive on a fieldbus: in every scan it takes a position in increments and
+//! reports the position of the shaft. The program moves to and fro and counts the turns with a block that
+//! is no motion block.
 
 use standstill::axis::{Comms, DriveSignals, Scaling};
 use standstill::prelude::*;

@@ -1,7 +1,7 @@
 //! A host that records in production: the last scans are kept, and frozen when an axis goes into ErrorStop.
 //!
-//! The dump is a trace as any other: `standstill report recording.jsonl -o recording.html` shows it,
-//! `standstill explain` holds it against another one.
+//! The dump is a normal trace: `standstill report recording.jsonl -o recording.html` shows it,
+//! `standstill explain` compares it with another one.
 
 use standstill::prelude::*;
 

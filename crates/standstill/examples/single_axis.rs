@@ -1,4 +1,4 @@
-//! The least host: one axis, two blocks of the runtime's, scanned until the move is done.
+//! The smallest host: one axis, two blocks of the runtime, scanned until the move is done.
 
 use standstill::prelude::*;
 

@@ -1,8 +1,8 @@
 //! Axis-scans a second of sweeps, beside a bare loop of trapezoid samples timed in the same run.
 //!
-//! A case is read, run through executor, blocks, axis and drive, judged and measured; the loop computes the position of a
-//! trapezoid from its parameters and adds it up. One thread each, medians of some rounds. Names of sweeps after `--` choose among
-//! them.
+//! A case is read, run through executor, blocks, axis and drive, judged and measured; the loop computes
+//! the position of a trapezoid from its parameters and adds it up. One thread each, medians of some
+//! rounds. Names of sweeps after `--` select some of them.
 
 use standstill_script::suite::Allowed;
 use standstill_sweep::{Job, SweepError, run};

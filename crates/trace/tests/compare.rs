@@ -1,5 +1,5 @@
-//! A comparison must name the first scan and signal that differ, and by how much, and see every way in which
-//! two traces can differ.
+//! A comparison must name the first scan and signal that differ, and the size of the difference, and
+//! detect every kind of difference of two traces.
 
 use crate::common;
 

@@ -1,5 +1,5 @@
-//! Events must tell what changed, when, in the order of cause and effect, and stay silent where values
-//! merely run along.
+//! Events must show each change and its time, in the order of cause and effect, and must not show
+//! continuous changes.
 
 use standstill_trace::{
     Axis, Cell, Direction, Header, Input, Instance, Limits, Note, Pin, Trace, events_text, extremes,

@@ -1,4 +1,4 @@
-//! The companion of a golden must hold every bit, be the same for the same trace, be small, and notice
+//! The companion of a golden must hold every bit, be the same for the same trace, be small, and detect
 //! damage.
 
 use crate::common;

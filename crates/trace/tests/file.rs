@@ -1,4 +1,4 @@
-//! Traces in files: the name decides the form, the header goes along, and errors name the file.
+//! Traces in files: the name selects the form, the header is included, and errors name the file.
 
 use crate::common;
 

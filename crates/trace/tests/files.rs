@@ -1,5 +1,5 @@
-//! CSV and JSON Lines must carry every bit there and back, and say clearly what is wrong with a file that
-//! is not ours, or not all there.
+//! CSV and JSON Lines must keep every bit when written and read, and give a clear error for a foreign or
+//! incomplete file.
 
 use crate::common;
 

@@ -1,5 +1,5 @@
-//! Goldens on disk: what is accepted is judged the same, every difference is seen and named, and insta
-//! reads the very files.
+//! Goldens on disk: an accepted golden passes again, every difference is detected and named, and insta
+//! reads the same files.
 
 use crate::common;
 

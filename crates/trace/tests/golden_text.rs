@@ -1,4 +1,4 @@
-//! The golden text must tell what happened, stay short, and change where behaviour changes and only there.
+//! The golden text must show the events, stay short, and change exactly if the behaviour changes.
 
 use crate::common;
 

@@ -1,4 +1,4 @@
-//! A swing is found with the frequency and the damping that it was made with, and where there is none that is said.
+//! A vibration is found with its frequency and its damping; without one the result says so.
 
 use standstill_testkit::Random;
 use standstill_trace::ring_down::{NoRingDown, RingDown, identify};

@@ -1,5 +1,5 @@
-//! Digests by subject: every bit that counts changes the digest of its subject and no other; what keeps its default, and the
-//! order of columns, change nothing: no digest, no event, no golden.
+//! Digests by subject: every bit that counts changes the digest of its subject and no other; columns at
+//! their default, and the order of columns, change nothing: no digest, no event, no golden.
 
 use crate::common;
 

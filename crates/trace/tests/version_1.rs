@@ -1,5 +1,5 @@
-//! Goldens of version 1, which had one digest over all columns there were: they are judged by the columns they know, whatever
-//! columns came since.
+//! Goldens of version 1, which had one digest over all columns: they are judged by their own columns,
+//! independent of later ones.
 
 use crate::common;
 

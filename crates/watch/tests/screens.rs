@@ -1,4 +1,4 @@
-//! What a person sees and what keys do, on a terminal of 80 by 24.
+//! The screen and the effect of keys, on a terminal of 80 by 24.
 
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;

@@ -1,4 +1,4 @@
-//! The pages hang together: every link in them leads to a file, and to a heading of it, and every page stands in the book.
+//! The links of the pages: each leads to a file and to a heading of it, and every page is in the book.
 
 use standstill_xtask::{files, root};
 use std::collections::{BTreeMap, BTreeSet};

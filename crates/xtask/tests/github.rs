@@ -1,5 +1,5 @@
-//! The files that others read for us, forms and workflows, are what they expect: read with a YAML reader, and held against
-//! the parts of their formats that are used here.
+//! The files for GitHub and GitLab, forms and workflows, are valid: read with a YAML reader, and compared
+//! with the parts of their formats that are used here.
 
 use standstill_xtask::{files, root};
 use std::collections::BTreeSet;

@@ -1,4 +1,4 @@
-//! Sums of products without rounding, and the law of a gear held against them.
+//! Sums of products without rounding, and the law of a gear compared with them.
 
 /// Bits of a limb; the rest of its 64 takes carries.
 const BITS: usize = 32;

@@ -1,5 +1,5 @@
-//! Random masters, limits, ratios and re-commands: no slave without a plan, none over a limit, and in gear all on the law to
-//! the bit.
+//! Random masters, limits, ratios and re-commands: no slave without a plan, none beyond a limit, and in
+//! gear all on the law to the bit.
 //!
 //! 1000 episodes in a plain run, 10^6 with `STANDSTILL_SOAK=1000000`; `STANDSTILL_FIRST` is the number of the first.
 

@@ -1,4 +1,4 @@
-//! The product's planner, of whose plans one set-point is wrong.
+//! The product's planner with one wrong set-point in its plans.
 
 use standstill_axis::{
     Excess, Limits, MoveProfile, Passage, Plan, PlanError, Planner, ProfileFault, ProfileKind, ProfilePoint,

@@ -1,4 +1,4 @@
-//! The two hosts: one in C, a program of its own, and one in Rust.
+//! The two hosts: one in C, as a separate program, and one in Rust.
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, Comms, ConfigError, DriveFeedback, DrivePosition, DriveSignals, InstanceId,

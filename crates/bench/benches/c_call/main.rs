@@ -1,6 +1,6 @@
 //! One call of a block by a host in C as a multiple of the same call by a host in Rust, in the same run.
 //!
-//! Both are what a host does in every scan: it writes inputs, calls, and looks at the outputs. Without a C compiler
+//! Both do the work of a host in every scan: write inputs, call, read the outputs. Without a C compiler
 //! there is nothing to measure, and it says so.
 
 mod hosts;

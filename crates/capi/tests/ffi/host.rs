@@ -1,4 +1,4 @@
-//! A host, as short as can be.
+//! The shortest possible host.
 
 use standstill_capi::*;
 use std::mem::MaybeUninit;

@@ -1,5 +1,5 @@
-//! The border as C crosses it, with everything a host may get wrong: each mistake has its code, changes nothing, and
-//! never lets an axis move without a controlled stop. Miri runs this file, too.
+//! The interface as C uses it, with all errors of a host: each has its code, changes nothing, and never
+//! lets an axis move without a controlled stop. Miri runs this file, too.
 #![allow(unsafe_code)]
 
 mod host;

@@ -1,4 +1,4 @@
-//! The flight recorder in memory of the host: what it keeps, what it tells, and every mistake with it.
+//! The flight recorder in memory of the host: its contents, its dump, and every wrong use.
 
 use crate::host::Host;
 use crate::{inputs, outputs, velocity};

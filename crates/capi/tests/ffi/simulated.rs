@@ -1,4 +1,4 @@
-//! What simulated drives can have, and what befalls them.
+//! The parts of simulated drives, and their faults.
 
 use crate::host::Host;
 use crate::{inputs, outputs, velocity};

@@ -1,4 +1,4 @@
-//! What the program says of itself: blocks, schema, version, help.
+//! The information of the program about itself: blocks, schema, version, help.
 
 use crate::support::{command, ended};
 use serde_json::Value;

@@ -1,5 +1,5 @@
-//! Files of strangers: what they say cannot forge what is printed, nothing is written where it must not be, and work and
-//! memory stay in proportion.
+//! Files of strangers: their texts cannot forge the output, nothing is written outside the allowed
+//! places, and work and memory stay in proportion.
 
 use crate::support::{SCRIPT, command, ended, read, scratch, standstill, with_script, write};
 use std::fs;

@@ -1,7 +1,7 @@
 //! `cam`: laws against their published constants and through the runtime, tables against their axes.
 //!
-//! What is written is judged by code that shares nothing with the writer: its own reader of CSV, its own curves of degree 7 (by
-//! divided differences), and the laws as integrals of their acceleration.
+//! The output is judged by code that shares nothing with the writer: its own reader of CSV, its own
+//! curves of degree 7 (by divided differences), and the laws as integrals of their acceleration.
 #![expect(
     clippy::disallowed_methods,
     clippy::approx_constant,

@@ -1,4 +1,4 @@
-//! How the program ends when something is in its way.
+//! The end of the program after an error of its environment.
 
 use crate::support::{command, ended, standstill, with_script};
 use std::io::{Write, pipe};

@@ -1,4 +1,4 @@
-//! `identify`: the swing of simulated loads and of recordings, held against what their peaks say.
+//! `identify`: the vibration of simulated loads and of recordings, compared with their peaks.
 #![expect(
     clippy::disallowed_methods,
     reason = "a judge that takes logarithms and sines from elsewhere than what it judges; its tolerances are far above rounding"

@@ -1,4 +1,4 @@
-//! `init`: a first test in an empty folder, and nothing where something stands.
+//! `init`: a first test in an empty folder; existing files are not overwritten.
 
 use crate::support::{command, ended, read, scratch, standstill, write};
 use std::fs;

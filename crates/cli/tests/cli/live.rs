@@ -1,4 +1,4 @@
-//! `live`: the same run, paced by the wall clock, and what ends it.
+//! `live`: the same run, paced by the wall clock, and its ends.
 
 use crate::support::{standstill, with_script};
 

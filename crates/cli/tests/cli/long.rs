@@ -1,5 +1,5 @@
-//! Runs of more scans than rows are kept of: the same text but for the drawing, memory that does not grow, and a trace file that has
-//! whole rows however the run ends.
+//! Runs of more scans than rows are kept of: the same text except for the drawing, constant memory, and a
+//! trace file with whole rows after every kind of end.
 
 use crate::support::{Ended, command, ended, read, scratch, standstill, write};
 use std::path::{Path, PathBuf};

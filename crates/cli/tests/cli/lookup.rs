@@ -1,4 +1,4 @@
-//! What one looks up: blocks, errors, completions, manual pages.
+//! Reference output: blocks, errors, completions, manual pages.
 
 use crate::support::{Ended, read, scratch, standstill};
 use std::path::Path;

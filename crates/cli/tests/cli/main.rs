@@ -1,4 +1,4 @@
-//! The program from outside: what it prints, and how it ends.
+//! The program from outside: its output and its exit.
 
 mod blocks;
 mod borders;

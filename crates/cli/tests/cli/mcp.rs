@@ -1,4 +1,4 @@
-//! `mcp` over pipes: what a client asks and is told, and what it can't do.
+//! `mcp` over pipes: requests and answers of a client, and refused ones.
 
 use crate::support::{SCRIPT, command, fed, read, with_script, write};
 use serde_json::{Value, json};

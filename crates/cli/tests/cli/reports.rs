@@ -1,4 +1,4 @@
-//! Traces as pages, pictures and waveforms, and what is said where there can be none.
+//! Traces as pages, pictures and waveforms, and the message if there is none.
 
 use crate::support::{Ended, SCRIPT, ended, read, standstill, with_script, write};
 use std::fs;

@@ -1,4 +1,4 @@
-//! `serve`: what it gives out over HTTP, to whom, and what it refuses. A site of three small files stands for the page.
+//! `serve`: its answers over HTTP, and its refusals. A site of three small files replaces the page.
 
 use crate::support::{SCRIPT, command, scratch, standstill, write};
 use serde_json::Value;

@@ -1,4 +1,4 @@
-//! Random replans, in one go and interrupted.
+//! Random replans, in one run and interrupted.
 
 use crate::support::{read, scratch, standstill, write};
 

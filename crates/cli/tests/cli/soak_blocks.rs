@@ -1,4 +1,4 @@
-//! Random programs, in one go and interrupted.
+//! Random programs, in one run and interrupted.
 
 use crate::support::{read, scratch, standstill};
 

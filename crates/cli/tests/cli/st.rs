@@ -1,4 +1,4 @@
-//! `st`: what it says of a program, and what it makes of it.
+//! `st`: its messages about a program, and its output.
 
 use crate::support::{scratch, standstill};
 use std::fs;

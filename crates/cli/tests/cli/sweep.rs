@@ -1,4 +1,4 @@
-//! Sweeps from outside: tables, shards, interruptions, and files that make no sense.
+//! Sweeps from outside: tables, shards, interruptions, and invalid files.
 
 use crate::support::{SCRIPT, read, scratch, standstill, with_script, write};
 use std::fs;

@@ -1,4 +1,4 @@
-//! `test` of some scripts only, of none, and again and again.
+//! `test` of some scripts, of none, and repeatedly.
 
 use crate::support::{SCRIPT, command, ended, standstill, with_script, write};
 use std::fs;

@@ -1,4 +1,4 @@
-//! `watch` takes a terminal over and gives it back as it was, on every way out.
+//! `watch` takes over a terminal and restores it on every way out.
 
 use crate::support::{SCRIPT, command, read, standstill, with_script, write};
 

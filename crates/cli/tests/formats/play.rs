@@ -1,5 +1,5 @@
-//! Bytes as a file of any format the program reads. Nothing may panic, and work and memory stay in proportion: who calls
-//! bounds both.
+//! Bytes as a file of any format the program reads. Nothing may panic, and work and memory stay in
+//! proportion: the caller bounds both.
 
 use standstill_cli::plan::plan;
 use standstill_script::{format, read_map, read_sweep, read_with_programs};

@@ -1,4 +1,4 @@
-//! Drives that tell what is no number, or far too large a one, in any scan of any motion.
+//! Drives that report NaN, infinity or far too large numbers, in any scan of any motion.
 
 use super::rig::{Random, Rig, STEP, Told, Upset};
 use super::{MOTIONS, begin};

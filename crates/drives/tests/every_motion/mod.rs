@@ -1,4 +1,4 @@
-//! Every kind of motion with everything that can go wrong with a drive, in random order.
+//! Every kind of motion with every fault of a drive, in random order.
 
 mod lies;
 mod rig;

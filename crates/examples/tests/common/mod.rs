@@ -1,4 +1,4 @@
-//! What is digested of feed and place, in this one place, and how its hosts are built.
+//! The digested signals of feed and place, only here, and the builds of its hosts.
 
 use standstill_trace::{Axis, Cell, Header, Input, Trace, digest};
 use std::ffi::OsStr;

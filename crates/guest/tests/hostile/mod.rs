@@ -1,8 +1,8 @@
 //! Bytes as a hostile guest: it calls any block, `log` and `log_read` with any addresses, sizes, counts and pins, and
 //! any of its variables is read and written from outside. A fuzzer makes the bytes, or a test does.
 //!
-//! What has to hold: nothing panics, every call answers with a code of the list or ends the guest by a fault, and after a
-//! fault every axis ramps down and switches off.
+//! The rules: nothing panics, every call answers with a code of the list or ends the guest by a fault,
+//! and after a fault every axis ramps down and switches off.
 
 use standstill_axis::{AxisConfig, DrivePosition, IdealDrive, Limits, Standard};
 use standstill_blocks::REGISTRY;

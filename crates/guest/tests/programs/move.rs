@@ -1,4 +1,4 @@
-//! What move.wat does, in Rust.
+//! The program move.wat, in Rust.
 #![no_std]
 #![no_main]
 #![allow(static_mut_refs)]

@@ -1,4 +1,4 @@
-//! What the grid tests share: the reference vectors, seeded random moves and a digest.
+//! The common parts of the grid tests: the reference vectors, seeded random moves and a digest.
 use serde_json::Value;
 use standstill_planner::{GridPlan, Limits, Method, PlanError, Setpoint};
 pub use standstill_testkit::Random;

@@ -1,4 +1,4 @@
-//! A velocity bound for each direction: each is kept, and a push goes for that of its own side.
+//! A velocity bound for each direction: each is kept, and a push uses that of its side.
 
 use super::support::{self, ORDERS, Random, integrate};
 use standstill_planner::{DirectedLimits, Limits, OnlinePlan, RampPlan, Rung, Setpoint};

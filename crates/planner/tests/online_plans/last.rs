@@ -1,4 +1,4 @@
-//! The last rung of the ladder, and the caps: what must not fail does not, and nothing is cut short.
+//! The last rung of the ladder, and the caps: the last rung never fails, and no search is cut short.
 
 use super::support::{self, ORDERS, Random, integrate};
 use standstill_planner::kernel::MAX_STEPS;

@@ -1,4 +1,4 @@
-//! Plans from any moving state to a position: fewest scans, limits kept, targets met.
+//! Plans from any moving state to a position: fewest scans, limits kept, targets reached.
 
 mod blend;
 mod chains;

@@ -1,4 +1,4 @@
-//! Scans against the least number any sequence of snaps needs, by linear programming.
+//! Scans against the least number that any sequence of snaps needs, by linear programming.
 
 use serde_json::Value;
 use standstill_planner::{GridPlan, Limits, Method, OnlinePlan, RampPlan, Rung, Setpoint};

@@ -1,4 +1,4 @@
-//! What holds for single plans: units, continuity, rungs, special targets, refusals.
+//! The properties of single plans: units, continuity, rungs, special targets, refusals.
 
 use super::support::{self, ORDERS, Random, integrate};
 use standstill_planner::{

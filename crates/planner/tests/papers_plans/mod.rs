@@ -1,4 +1,4 @@
-//! The papers' systems, against what they publish and from outside.
+//! The papers' systems, against their published results and from outside.
 
 mod docs;
 mod generator;

@@ -1,4 +1,5 @@
-//! Moves in a given time: limits, landing, the least duration, and the bridge to the least-time profile.
+//! Moves in a given time: limits, landing, the least duration, and the relation to the least-time
+//! profile.
 
 use super::support::{Random, bounds, keeps_its_word, random_bounds, rounds};
 use standstill_planner::papers::{SCurve, Timed, Trapezoid};

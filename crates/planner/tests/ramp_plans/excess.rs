@@ -1,4 +1,4 @@
-//! What counts as excess, and ramps that come to nothing.
+//! The definition of excess, and ramps without motion.
 
 use standstill_planner::{Limits, PlanError, RampPlan, Setpoint};
 

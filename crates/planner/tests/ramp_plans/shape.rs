@@ -1,4 +1,4 @@
-//! Least time, symmetry, continuity: what a ramp is, rather than what it keeps.
+//! Least time, symmetry, continuity: the properties of a ramp besides its limits.
 
 use super::support::{self, ORDERS, Random};
 use standstill_planner::{Limits, Order, PlanError, RampPlan, Setpoint};

@@ -1,5 +1,5 @@
-//! Ramps to the other sign with a deceleration of its own, begun where it is hardest: late in a stop that
-//! brakes harder than the motion that follows may speed up, or the other way round.
+//! Ramps to the other sign with a deceleration of its own, started in the hardest states: late in a stop
+//! that brakes harder than the motion that follows may speed up, or the other way round.
 
 use super::support::{self, ORDERS, Random, integrate};
 use standstill_planner::{Limits, Order, RampPlan, Setpoint};

@@ -1,4 +1,4 @@
-//! A host that writes down what the executor does, on one tape with its drives.
+//! A host that records the actions of the executor and of its drives in one list.
 #![allow(dead_code, reason = "each test target uses its own part")]
 
 use standstill_axis::{

@@ -1,5 +1,5 @@
-//! What the schema accepts the reader accepts, and the other way round: every value of three scripts is exchanged for others,
-//! every key left out, and every object given one that it does not have.
+//! The schema and the reader accept the same scripts: every value of three scripts is replaced by others,
+//! every key omitted, and an unknown key added to every object.
 
 use super::cases::GOOD;
 use super::schema::Validator;

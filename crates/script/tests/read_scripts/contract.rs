@@ -1,4 +1,4 @@
-//! The example of the script format, read and looked at value by value.
+//! The example of the script format, read and compared value by value.
 
 use standstill_axis::{AxisState, Limits, StartState};
 use standstill_fb::Value;

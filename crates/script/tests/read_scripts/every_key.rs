@@ -1,4 +1,4 @@
-//! A script with every key of the format, looked at where the example of the format says nothing.
+//! A script with every key of the format, compared where the example of the format lacks it.
 
 use standstill_axis::{
     AboveLimit, AxisId, BlockDetection, DrivePosition, EdgeWhileBusy, Following, HomeDirection, Homing,

@@ -1,4 +1,4 @@
-//! Scripts with expressions: what is told of one that cannot be read, and of one that has no value.
+//! Scripts with expressions: the messages for one that cannot be read, and for one without a value.
 
 use standstill_script::{read, run};
 use std::fmt::Write;

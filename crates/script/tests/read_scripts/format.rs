@@ -1,4 +1,4 @@
-//! The canonical layout: the example comes out as a person would write it, and nothing else changes.
+//! The canonical layout: the example has a readable layout, and nothing else changes.
 
 use standstill_script::{format, read};
 

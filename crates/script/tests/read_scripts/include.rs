@@ -1,4 +1,4 @@
-//! Scripts that include machine files: what comes of them, and messages that name the right file.
+//! Scripts that include machine files: the resulting scripts, and messages that name the right file.
 
 use super::cases::GOOD;
 use standstill_axis::StartState;

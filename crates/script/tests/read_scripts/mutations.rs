@@ -1,5 +1,5 @@
-//! Whatever is done to a script, reading it ends in a script or in at least one message with a place in the
-//! text, never in a panic. Seeded, so a failure comes back.
+//! After any change of a script, reading it gives a script or at least one message with a place in the
+//! text, never a panic. Seeded, so a failure can be repeated.
 
 use super::cases::GOOD;
 use standstill_script::{format, read};

@@ -1,4 +1,4 @@
-//! Scripts with programs: what is read of them, and a message for everything that can be wrong with one.
+//! Scripts with programs: the data read from them, and a message for every error in one.
 
 use super::cases::GOOD;
 use standstill_fb::PinType;

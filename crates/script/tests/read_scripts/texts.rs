@@ -1,4 +1,4 @@
-//! Scripts with programs in Structured Text: a message for everything that can be wrong with one.
+//! Scripts with programs in Structured Text: a message for every error in one.
 
 use standstill_script::{ScriptError, model::Script, read_with_programs};
 use std::fmt::Write;

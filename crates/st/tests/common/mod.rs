@@ -1,4 +1,4 @@
-//! Programs in Structured Text, compiled, checked by a validator of others, and run.
+//! Programs in Structured Text, compiled, checked by an independent validator, and run.
 use standstill_axis::{IdealDrive, Standard};
 use standstill_fb::Value;
 use standstill_guest::{Fault, Guest, Program, Settings, SymbolType};

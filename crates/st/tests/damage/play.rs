@@ -1,5 +1,5 @@
-//! Bytes as the text of a program: nothing of it panics, what compiles is a valid module, what is laid out stays so, and an
-//! editor may ask at any place.
+//! Bytes as the text of a program: nothing panics, a compiled program is a valid module, a second layout
+//! changes nothing, and an editor may ask at any place.
 
 use standstill_st::editor::{complete, hover};
 use standstill_st::{Options, Source, compile, format, references};

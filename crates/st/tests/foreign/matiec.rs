@@ -1,4 +1,4 @@
-//! Where matiec is, for tests of two packages.
+//! The location of matiec, for tests of two packages.
 
 use std::env;
 use std::path::PathBuf;

@@ -1,6 +1,7 @@
-//! What edition 2 of the standard has, other compilers accept with the same results.
+//! Other compilers accept programs of edition 2 of the standard with the same results.
 //!
-//! matiec is in no package registry, so this says SKIP where there is none. What else is accepted here and not there stands in `docs/structured-text.md`.
+//! matiec is in no package registry, so this says SKIP without it. `docs/structured-text.md` lists what
+//! is accepted only here.
 
 mod matiec;
 

@@ -1,8 +1,8 @@
-//! Random well-typed programs, in Structured Text and in C side by side. Which types go together and what an operator is
-//! worth is said here once more, from the standard; nothing of the compiler is used.
+//! Random well-typed programs, in Structured Text and in C side by side. The rules for types and
+//! operators are written here again, from the standard; nothing of the compiler is used.
 //!
-//! Whole numbers are 128 bits wide in C and cut to their type behind every operator, so nothing overflows; divisors are
-//! not 0, indices are in their bounds, and loops end.
+//! Whole numbers are 128 bits wide in C and truncated to their type after every operator, so nothing
+//! overflows; divisors are not 0, indices are in their bounds, and loops end.
 
 use standstill_testkit as testkit;
 use std::fmt::Write;

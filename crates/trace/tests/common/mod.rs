@@ -1,7 +1,7 @@
 //! A run made by hand: one axis, four blocks, a jerk-limited move of 15 segments and one back.
 //!
 //! The positions are those of a snap-limited profile, summed up from polynomial segments, so files and
-//! predictors meet the kind of numbers they are made for.
+//! predictors get realistic numbers.
 
 use std::fs;
 use std::path::{Path, PathBuf};
