@@ -1436,7 +1436,7 @@ int32_t standstill_instance_make(struct standstill_runtime *runtime, const char 
 
 /* The library was compiled with these sizes. */
 STANDSTILL_ASSERT(runtime_config, sizeof(standstill_runtime_config) == 24);
-STANDSTILL_ASSERT(axis_setup, sizeof(standstill_axis_setup) == 376);
+STANDSTILL_ASSERT(axis_setup, sizeof(standstill_axis_setup) == 416);
 STANDSTILL_ASSERT(drive_setup, sizeof(standstill_drive_setup) == 248);
 STANDSTILL_ASSERT(feedback, sizeof(standstill_feedback) == 136);
 STANDSTILL_ASSERT(command, sizeof(standstill_command) == 80);
