@@ -675,3 +675,67 @@ fn other_dynamics_or_another_way_end_one_motion() {
         );
     }
 }
+
+/// Dynamics of a command within these limits: all of them, or a part.
+fn drawn_dynamics(random: &mut Random, limits: &Limits) -> Dynamics {
+    let part = |random: &mut Random, limit: f64| {
+        if limit.is_finite() {
+            limit * random.between(0.3, 1.0)
+        } else {
+            0.0
+        }
+    };
+    Dynamics {
+        velocity: limits.velocity * random.between(0.1, 1.0),
+        acceleration: part(random, limits.acceleration),
+        deceleration: part(random, limits.deceleration),
+        jerk: part(random, limits.jerk),
+        snap: part(random, limits.snap),
+    }
+}
+
+/// Buffered moves are passed at rest, and so is an end that is told too late to be passed at speed: nothing is ever later.
+#[test]
+fn with_other_dynamics_a_chain_is_no_later_than_buffered() {
+    let mut ratios = Vec::new();
+    let mut later = Vec::new();
+    for seed in 0..4_000 {
+        let mut random = Random(seed);
+        let limits = drawn_limits(&mut random);
+        let ends = drawn_ends(&mut random, &limits);
+        let longest = [1, 10, 100, 400][random.below(4) as usize];
+        let mut at = 0;
+        let moves: Vec<_> = ends
+            .iter()
+            .map(|end| {
+                let mode = BLENDING[random.below(4) as usize];
+                let now = at;
+                at += random.below(longest);
+                (*end, drawn_dynamics(&mut random, &limits), mode, now)
+            })
+            .collect();
+        let told = |buffered: bool| {
+            let mut rig = Rig::new(limits);
+            for (end, dynamics, mode, at) in &moves {
+                while rig.scan < *at {
+                    rig.step();
+                }
+                let mode = if buffered { BufferMode::Buffered } else { *mode };
+                rig.move_with(*end, mode, *dynamics);
+            }
+            rig.run()
+        };
+        let (blended, buffered) = (told(false), told(true));
+        if blended > buffered {
+            later.push((seed, blended, buffered));
+        }
+        ratios.push(blended as f64 / buffered as f64);
+    }
+    ratios.sort_by(f64::total_cmp);
+    println!(
+        "median {:.3}, worst {:.3}",
+        ratios[ratios.len() / 2],
+        ratios[ratios.len() - 1]
+    );
+    assert_eq!(later, [], "seed, blended, buffered");
+}
