@@ -184,7 +184,7 @@ impl Rig {
             if done.is_none() && self.axis.fate(*id) == Fate::Done {
                 *done = Some(scan);
                 self.speeds.push(point.velocity.abs());
-                let small = 1e-12 * self.watch.largest;
+                let small = 1e-10 * self.watch.largest;
                 let passed = |at: f64| (at - *end) * (*end - from).signum();
                 assert!(
                     passed(point.position) >= -small,
@@ -405,6 +405,57 @@ fn an_override_on_the_way_keeps_order_and_limits() {
                 rig.axis.set_override(factors, scope).expect("good factors");
             }
         });
+    }
+}
+
+/// Halted by the override where ever it is, a chain goes on from there, not back to an end that the halt has passed. Only a halt that begins in the last
+/// brake ends where nothing is left to go.
+///
+/// Covers: B17
+#[test]
+fn a_halt_on_the_way_is_no_reason_to_go_back() {
+    for seed in 0..2_000 {
+        let mut random = Random(seed);
+        let limits = drawn_limits(&mut random);
+        let ends = drawn_ends(&mut random, &limits);
+        let mut rig = Rig::new(limits);
+        for end in &ends {
+            rig.move_to(*end, BufferMode::BlendingPrevious);
+        }
+        let halt = random.below(300);
+        let on = halt + 1 + random.below(200);
+        let side = ends[0].signum();
+        let mut ended_at_last = false;
+        while rig.axis.state() != AxisState::Standstill {
+            assert!(rig.scan < LONGEST, "seed {seed}: does not end");
+            if rig.scan == halt || rig.scan == on {
+                let velocity = if rig.scan == on { 1.0 } else { 0.0 };
+                let factors = Factors {
+                    velocity,
+                    ..Factors::ONE
+                };
+                let scope = &mut Scope::new(rig.scan, &mut rig.log);
+                rig.axis.set_override(factors, scope).expect("good factors");
+            }
+            let before = rig.axis.setpoint().position;
+            steps::advance(
+                slice::from_mut(&mut rig.axis),
+                &mut Scope::new(rig.scan, &mut rig.log),
+            );
+            rig.scan += 1;
+            let now = rig.axis.setpoint().position;
+            rig.watch.see(now);
+            let left = (ends[ends.len() - 1] - before).abs();
+            ended_at_last |= rig.scan > halt && rig.scan <= on && left <= 0.02 * limits.velocity * CYCLE;
+            let back = side * (before - now);
+            assert!(
+                ended_at_last || back <= 1e-9 * rig.watch.largest,
+                "seed {seed}: back by {back}"
+            );
+        }
+        assert_eq!(rig.axis.setpoint().position, ends[ends.len() - 1], "seed {seed}");
+        let done = |(id, ..): &(CommandId, f64, Option<u64>)| rig.axis.fate(*id) == Fate::Done;
+        assert!(rig.moves.iter().all(done), "seed {seed}: not all are done");
     }
 }
 

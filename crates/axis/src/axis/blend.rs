@@ -77,6 +77,10 @@ impl<P: Planner> Axis<P> {
             return Some(plan);
         }
         entry.run = Run::NONE;
+        if entry.is_behind {
+            // All there is to be passed is here: it goes back and comes to rest.
+            (entry.is_behind, entry.passage) = (false, REST);
+        }
         self.blended(entry, start, entry.end?, &entry.passage, before)
     }
 
@@ -267,7 +271,10 @@ impl<P: Planner> Axis<P> {
         const NONE: Option<Leg<'_>> = None;
         let mut legs = [NONE; QUEUE_MAX];
         let mut from = first.end;
-        let mut forward = from.is_none_or(|end| end > start);
+        let way = first
+            .end
+            .map(|end| if first.is_behind { start - end } else { end - start });
+        let mut forward = way.is_none_or(|way| way > 0.0);
         for (leg, entry) in legs.iter_mut().zip(self.queue.iter().skip(skip)) {
             let end = from.and_then(|from| self.end_of_leg(entry, from, forward));
             *leg = Some(Leg {
@@ -283,7 +290,7 @@ impl<P: Planner> Axis<P> {
         let alone = Leg {
             entry: first,
             end: first.end,
-            way: first.end.map(|end| end - start),
+            way,
         };
         let (count, end) = self.joined(&alone, &legs, shortest);
         let mut run = Run {

@@ -521,6 +521,8 @@ pub(super) struct Entry {
     pub passage: Passage,
     /// What is one motion with it.
     pub run: Run,
+    /// It was to pass its end in motion, and has passed it while it was held up.
+    pub is_behind: bool,
     /// MC_Stop: Execute is still TRUE.
     pub held: bool,
     /// It brakes, or is at rest, because MC_Power bars a direction it needs.
@@ -563,6 +565,7 @@ impl Entry {
             end: None,
             passage: REST,
             run: Run::NONE,
+            is_behind: false,
             held: work == Work::Stop,
             paused: false,
             orphaned: false,

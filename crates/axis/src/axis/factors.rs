@@ -156,6 +156,7 @@ impl<P: Planner> Axis<P> {
             return Ok(());
         };
         self.note_passing(&mut owner);
+        owner.is_behind |= owner.halted && self.is_past_its_end(&owner);
         self.override_entry(&mut owner);
         self.replan(owner, scope)?;
         self.end_orphan();

@@ -137,7 +137,7 @@ impl<P: Planner> Axis<P> {
         else {
             return;
         };
-        if !owner.halted && !owner.passed {
+        if !owner.halted && !owner.passed && !owner.is_behind {
             owner.turns = self.never_back(owner, here, end, 0, modulo.length);
         }
     }

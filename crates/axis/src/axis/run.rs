@@ -89,7 +89,9 @@ impl<P: Planner> Axis<P> {
             let before = passed;
             passed = passing_scan(plan, before, end, forward);
             from = end;
-            is_past(plan, passed, end, forward) && !is_past(plan, before, end, forward)
+            // Behind an end that was passed while it was held up each has a scan all the same.
+            let is_new = !is_past(plan, before, end, forward) || (entry.is_behind && passed > before);
+            is_past(plan, passed, end, forward) && is_new
         })
     }
 
@@ -109,10 +111,11 @@ impl<P: Planner> Axis<P> {
         else {
             return true;
         };
-        if owner.id != entry.id || self.motion.goes_on() || present.at(*scans).velocity != 0.0 {
+        let rest = Setpoint::at_rest(end);
+        let leads_to_rest = !self.motion.goes_on() && present.at(*scans) == rest;
+        if owner.id != entry.id || !leads_to_rest {
             return true;
         }
-        let rest = Setpoint::at_rest(end);
         let profile = self.config.profile;
         let onwards = self
             .planner
@@ -170,7 +173,12 @@ impl<P: Planner> Axis<P> {
             return false;
         }
         self.aim(&mut next, from);
-        self.look_through(&mut next, self.setpoint.position, 1);
+        let here = self.setpoint.position;
+        let forward = owner.end.is_some_and(|end| owner.run.end > end);
+        next.is_behind = next
+            .end
+            .is_some_and(|end| if forward { here >= end } else { here <= end });
+        self.look_through(&mut next, here, 1);
         // As it was planned; what is another chain now is planned anew.
         next.run = Run {
             count: owner.run.count.saturating_sub(1),
@@ -183,7 +191,7 @@ impl<P: Planner> Axis<P> {
             return false;
         };
         *scans = match next.end {
-            Some(end) if next.run.count > 0 => passing_scan(plan, *elapsed, end, owner.run.end > end),
+            Some(end) if next.run.count > 0 => passing_scan(plan, *elapsed, end, forward),
             _ => u64::from(plan.scans()),
         };
         if next.run.count == 0 {
@@ -197,6 +205,17 @@ impl<P: Planner> Axis<P> {
         self.before = next.limits;
         self.own(next);
         true
+    }
+
+    /// Whether a command that was to pass its end in motion and has been held up is behind it now: it need not go back there.
+    pub(super) fn is_past_its_end(&self, owner: &Entry) -> bool {
+        let (Some(end), Some(next)) = (owner.end, self.queue.first()) else {
+            return false;
+        };
+        let beyond = self.setpoint.position - end;
+        let target = self.end_of_leg(next, end, self.last_velocity > 0.0);
+        let is_onward = target.is_some_and(|target| (target - end) * beyond > 0.0);
+        self.layer.is_none() && owner.passage.wanted > 0.0 && next.mode.blends() && is_onward
     }
 
     /// Where the last of what is one motion with `first`, which is at the head of the buffer, ends (u).
