@@ -2,7 +2,7 @@
 
 use standstill_xtask::{Compliance, Faults, Package, Requirements, files, generated, root};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 #[test]
 fn generated_files_are_fresh() {
@@ -57,6 +57,32 @@ fn every_file_of_tests_is_part_of_a_program() {
             assert!(
                 !is_module || is_named,
                 "{}: tests/main.rs does not name it",
+                path.display()
+            );
+        }
+    }
+}
+
+/// A test in a library that Cargo does not test would not run.
+#[test]
+fn libraries_that_are_not_tested_have_no_tests() {
+    let files = files();
+    let is_untested = |manifest: &&PathBuf| {
+        let text = fs::read_to_string(manifest).unwrap();
+        text.split("\n[")
+            .any(|section| section.starts_with("lib]") && section.contains("\ntest = false\n"))
+    };
+    for manifest in files
+        .iter()
+        .filter(|path| path.ends_with("Cargo.toml"))
+        .filter(is_untested)
+    {
+        let sources = manifest.with_file_name("src");
+        for path in files.iter().filter(|path| path.starts_with(&sources)) {
+            let has_tests = is(path, "rs") && fs::read_to_string(path).unwrap().contains("#[test]");
+            assert!(
+                !has_tests,
+                "{} is in a library that is not tested",
                 path.display()
             );
         }

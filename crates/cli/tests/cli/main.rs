@@ -4,6 +4,7 @@ mod blocks;
 mod borders;
 mod cam;
 mod compare;
+mod docs;
 mod ends;
 mod export;
 mod fmt;
@@ -18,6 +19,8 @@ mod machine;
 #[cfg(feature = "mcp")]
 mod mcp;
 mod plan;
+mod readme;
+mod recorder;
 mod reports;
 mod run;
 mod serve;

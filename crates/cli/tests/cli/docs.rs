@@ -86,7 +86,7 @@ fn checked_pictures(page: &str, text: &str, input: &str) -> usize {
             assert!(
                 kept == drawn,
                 "{page}: the picture plan-{name}.svg is not that of its lines: \
-                 STANDSTILL_WRITE_DOCS=1 cargo test -p standstill-cli --test docs draws it"
+                 STANDSTILL_WRITE_DOCS=1 cargo test -p standstill-cli --test cli docs draws it"
             );
         })
         .count()
@@ -243,7 +243,7 @@ fn the_picture_of_a_cam_is_drawn_by_the_commands_beside_it() {
     let kept = std::fs::read_to_string(&path).unwrap_or_default();
     assert!(
         kept == drawn,
-        "cam-modified-sine.svg is not what is drawn: STANDSTILL_WRITE_DOCS=1 cargo test -p standstill-cli --test docs draws it"
+        "cam-modified-sine.svg is not what is drawn: STANDSTILL_WRITE_DOCS=1 cargo test -p standstill-cli --test cli docs draws it"
     );
 }
 
