@@ -354,6 +354,8 @@ impl Shapers {
 mod tests {
     use super::*;
 
+    // The library is what they are held against.
+    #[allow(clippy::disallowed_methods)]
     #[test]
     fn decay_and_sine_are_those_of_the_library() {
         for step in 0..=2000 {

@@ -256,7 +256,12 @@ pub fn pages() -> Vec<Generated> {
     text.push_str(&shaped());
     let slow_curves: Vec<_> = SLOW_MOVES
         .iter()
-        .map(|of| (format!("{} (mrad)", of.name.replace('`', "")), slow_run(of, SLOW).deviation))
+        .map(|of| {
+            (
+                format!("{} (mrad)", of.name.replace('`', "")),
+                slow_run(of, SLOW).deviation,
+            )
+        })
         .collect();
     vec![
         Generated {
@@ -285,8 +290,17 @@ fn shaped() -> String {
     text.push_str(&" ---: |".repeat(OFF.len()));
     text.push('\n');
     for of in &SLOW_MOVES {
-        let name = if of.shaper.is_some() { of.name } else { "none, jerk-limited" };
-        let _ = write!(text, "| {name} | {:.1} | {:.2} |", of.acceleration, slow_run(of, SLOW).torque);
+        let name = if of.shaper.is_some() {
+            of.name
+        } else {
+            "none, jerk-limited"
+        };
+        let _ = write!(
+            text,
+            "| {name} | {:.1} | {:.2} |",
+            of.acceleration,
+            slow_run(of, SLOW).torque
+        );
         for off in OFF {
             let run = slow_run(of, SLOW * (1.0 + f64::from(off) / 100.0));
             assert_eq!(run.scans, SLOW_SCANS, "{}: moves of one duration", of.name);

@@ -1,7 +1,7 @@
 //! What a shaped plan keeps: its limits, its target to the bit, the grid, a mirror image, a constant velocity.
 
 use super::{Shaped, limits, mode};
-use crate::grid_support::{Random, servo};
+use crate::grid_support::{Random, power, servo};
 use standstill_planner::shaper::{DAMPING_MAX, LONGEST_PERIOD, SHORTEST_PERIOD};
 use standstill_planner::{Field, Limits, PlanError, Setpoint, Shaper, ShaperKind, Shapers, VibrationMode};
 
@@ -88,7 +88,7 @@ fn limits_hold_the_target_is_exact_and_a_way_out_is_the_way_back_mirrored() {
                 "case {case}: {peak} is above {bound}"
             );
             // What positions resolve.
-            let resolved = 16.0 * 4.0 * size * f64::EPSILON / one.cycle.powi(degree);
+            let resolved = 16.0 * 4.0 * size * f64::EPSILON / power(one.cycle, degree);
             assert!(
                 step <= bound * (1.0 + 1e-9) + resolved,
                 "case {case}: {step} is above {bound}"

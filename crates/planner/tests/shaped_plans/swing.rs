@@ -21,6 +21,8 @@ impl Load {
     ///
     /// Within a scan the acceleration is the one at its end, traced back along the jerk and the snap in force just before.
     /// The response to it is Duhamel's integral.
+    // A judge with the functions of the library: its bits are nobody's.
+    #[allow(clippy::disallowed_methods)]
     pub fn swing(&self, scans: u32, cycle: f64, at: impl Fn(u64) -> Setpoint) -> f64 {
         let natural = std::f64::consts::TAU * self.frequency;
         let sigma = self.damping * natural;
