@@ -101,7 +101,10 @@ impl Image {
         for axis in axes.iter_mut() {
             command(any(&mut *axis), log);
         }
-        steps::advance(any(&mut *axes), &mut Scope::new(*scan, log));
+        let mut past = any([Setpoint::default(); 8]);
+        let mut scope = Scope::new(*scan, log);
+        scope.history = any(&mut past);
+        steps::advance(any(&mut *axes), &mut scope);
         for axis in axes.iter_mut() {
             drive.write(any(0), &axis.drive_command());
         }
