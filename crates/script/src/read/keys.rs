@@ -10,6 +10,8 @@ use standstill_axis::keys::{Bounds, Holds, Key, Object};
 /// The name of a key in messages: with its object.
 fn called<T>(key: &Key<T>) -> String {
     match key.path.rsplit_once('.') {
+        // The place of an object in a list.
+        Some((above, name)) if above.ends_with(|last: char| last.is_ascii_digit()) => format!("`{name}`"),
         Some((above, name)) => format!("`{}.{name}`", above.rsplit('.').next().unwrap_or(above)),
         None => format!("`{}`", key.path),
     }
