@@ -15,7 +15,7 @@
 //! | [`near`] | the same on a long way |
 //! | [`corners`] | its rests where a derivative of the cam jumps |
 //! | [`ahead`] | whether it keeps its limits along the next motion of the master, and where that motion ends |
-//! | [`beside`] | the reserve that it leaves to a shift, and to its master |
+//! | [`beside`] | the room that it leaves to a shift, and to its master |
 //! | [`steady`] | the motion step in a scan in which nothing is new |
 //! | [`ends`], [`after`] | ends of periods, and what follows then |
 //! | [`laid`] | the place of the cam, for drawing |
