@@ -15,6 +15,7 @@ mod least_scans;
 mod measured;
 mod on_cam;
 mod outlook;
+mod shaped;
 mod slow_master;
 mod superimposed;
 mod superimposed_behind;
