@@ -303,6 +303,8 @@ impl Trace {
     }
 
     /// The value of a column in a scan; `None` outside the trace.
+    // Asked for in every scan by other crates.
+    #[inline]
     #[must_use]
     pub fn cell(&self, scan: usize, column: usize) -> Option<Cell<'_>> {
         let kind = self.columns.get(column)?.kind;
