@@ -614,17 +614,18 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The drive's command for this scan.
-    #[inline]
+    #[inline(always)]
     pub fn drive_command(&mut self) -> DriveCommand {
         let rename = if self.calm.is_any() {
             None
         } else {
             self.frame.take_rename()
         };
+        let (position, velocity) = self.for_drive();
         DriveCommand {
             request: self.drive_request(),
-            position: self.position_at_drive(),
-            velocity: self.commanded().velocity,
+            position: self.position_at_drive(position),
+            velocity,
             rename,
         }
     }
@@ -632,8 +633,8 @@ impl<P: Planner> Axis<P> {
     // Calls return only plain numbers: an enum from a call passes through memory, which takes longer than
     // the rest of the scan's drive command.
     #[inline]
-    fn position_at_drive(&self) -> DrivePosition {
-        let position = self.commanded().position - self.frame.shift();
+    fn position_at_drive(&self, position: f64) -> DrivePosition {
+        let position = position - self.frame.shift();
         match (&self.config.scaling, &self.modulo) {
             (None, None) => DrivePosition::Units(position),
             (Some(scaling), None) => DrivePosition::Increments(scaling.to_increments(position)),
@@ -646,11 +647,8 @@ impl<P: Planner> Axis<P> {
     #[inline]
     fn goal_reached(&self) -> bool {
         match &self.motion {
-            Motion::Run { elapsed, scans, .. } => {
-                // What passes its end hands over there.
-                elapsed >= scans && (self.is_through() || self.passes_in_motion())
-            }
-            Motion::Hold | Motion::Geared => self.is_through(),
+            Motion::Run { elapsed, scans, .. } => elapsed >= scans && self.is_goal_published(),
+            Motion::Hold | Motion::Geared => true,
             Motion::Follow | Motion::Closing { .. } => false,
             Motion::Torque { torque, .. } => self.torque_is_held(*torque),
         }

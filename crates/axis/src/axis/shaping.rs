@@ -189,14 +189,28 @@ impl<P: Planner> Axis<P> {
     }
 
     /// A shaper stands between its motion and its drive.
+    #[inline(always)]
     pub(crate) fn is_shaped(&self) -> bool {
         self.shaping.is_some()
     }
 
     /// Nothing of the motion is left in the shaper: it rests, or has a constant velocity.
-    #[inline]
+    // What axes without a shaper have to do with one is a look at a tag, in line; all else is out of it.
+    #[inline(always)]
     pub(super) fn is_through(&self) -> bool {
+        self.shaping.is_none() || self.has_come_out()
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn has_come_out(&self) -> bool {
         self.shaping.as_ref().is_none_or(Shaping::is_through)
+    }
+
+    /// A motion at its goal has come to it for whoever waits: it has come out of the shaper, or hands over in motion.
+    #[inline(always)]
+    pub(super) fn is_goal_published(&self) -> bool {
+        self.shaping.is_none() || self.has_come_out() || self.passes_in_motion()
     }
 
     /// Scans after which a set-point of the motion has come out whole.
@@ -208,12 +222,32 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The set-point for the drive, in the frame of the motion.
-    #[inline]
+    #[inline(always)]
     pub(super) fn commanded(&self) -> Setpoint {
-        match &self.shaping {
-            None => self.setpoint,
-            Some(shaping) => self.setpoint.plus(&shaping.lag),
+        if self.shaping.is_none() {
+            return self.setpoint;
         }
+        self.shaped()
+    }
+
+    /// Position and velocity of that: what a drive is told.
+    #[inline(always)]
+    pub(super) fn for_drive(&self) -> (f64, f64) {
+        if self.shaping.is_none() {
+            return (self.setpoint.position, self.setpoint.velocity);
+        }
+        let shaped = self.shaped();
+        (shaped.position, shaped.velocity)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn shaped(&self) -> Setpoint {
+        let lag = self
+            .shaping
+            .as_ref()
+            .map_or(Setpoint::default(), |shaping| shaping.lag);
+        self.setpoint.plus(&lag)
     }
 
     /// The next set-point of the motion is about to be published.
