@@ -112,8 +112,6 @@ struct Episode {
     /// Lengths of turns, where both axes come round, and the turn that the shadow is in.
     turns: Option<(f64, f64)>,
     turn: f64,
-    /// Where a shadow that lags was at the end of the scan before, and how far it came in that.
-    lagged: Option<(f64, f64)>,
     seed: u64,
 }
 
@@ -156,7 +154,6 @@ impl Episode {
         let coupled = coupled.unwrap_or_else(|| panic!("seed {seed}: not coupled in scan {}", self.rig.scan));
         let Some(shadow) = coupled.shadow else {
             tally.off_curve += 1;
-            self.lagged = None;
             return;
         };
         let ends = slave.cam_ends();
@@ -183,28 +180,9 @@ impl Episode {
                 shadow == master,
                 "seed {seed}: in sync at {shadow}, master at {master}"
             );
-            self.lagged = None;
         } else {
             tally.lagging += 1;
-            self.judge_shadow(shadow, coupled.phase);
         }
-    }
-
-    /// Behind a master of constant velocity a shadow does not turn against it.
-    fn judge_shadow(&mut self, shadow: f64, phase: f64) {
-        let master = self.rig.axes[MASTER].setpoint();
-        let (was, came) = self.lagged.unwrap_or((shadow, 0.0));
-        let step = shadow - was;
-        self.lagged = Some((shadow, step));
-        let is_even = master.acceleration == 0.0 && master.jerk == 0.0 && phase == 0.0;
-        // Whole periods may be dropped, or be waited for.
-        let is_step = (step - came).abs() < 1.0;
-        if self.turns.is_some() || !is_even || !is_step {
-            return;
-        }
-        let turns = came * master.velocity >= 0.0 && step * master.velocity < -1e-9 * master.velocity.abs();
-        let (seed, scan) = (self.seed, self.rig.scan);
-        assert!(!turns, "seed {seed}: it turns against its master in scan {scan}");
     }
 }
 
@@ -357,7 +335,6 @@ fn play_on(seed: u64, master_order: u64, kind: Kind, tally: &mut Tally) -> u64 {
         scalings,
         turns,
         turn: 0.0,
-        lagged: None,
         seed,
     };
     let moves = |episode: &mut Episode, random: &mut Random| {
