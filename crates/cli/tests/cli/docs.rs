@@ -212,6 +212,7 @@ fn every_console_block_and_every_table_of_plans_is_true() {
             "planner-lines",
             "planner-online",
             "planner-ramps",
+            "vibration",
         ];
         let with_picture = with_picture.iter().any(|name| *page == format!("{name}.md"));
         assert_eq!(pictures, usize::from(with_picture), "pictures of plans on {page}");

@@ -6,7 +6,7 @@ use crate::random::Random;
 use standstill_axis::{
     AboveLimit, AxisConfig, BlockDetection, Defaults, EdgeWhileBusy, Following, HomeDirection, Homing,
     InPosition, JogAtLimit, Limits, ModuloTargets, MoveProfile, OnLimit, OnMasterLost, PowerOff, Procedure,
-    QUEUE_MAX, Scaling, StartState, StopLimits, SwitchEdge,
+    QUEUE_MAX, Scaling, ShaperKind, StartState, StopLimits, SwitchEdge, VibrationMode,
 };
 use standstill_blocks::REGISTRY;
 use standstill_drives::cia402::Reaction;
@@ -189,7 +189,35 @@ fn axis(random: &mut Random, cycle: f64) -> AxisSetup {
     supervise(random, &mut config, cycle);
     homing(random, &mut config, &drive, cycle);
     choices(random, &mut config);
+    vibration(&mut config, cycle);
     AxisSetup { config, drive }
+}
+
+/// One or two modes on every sixteenth axis with one rate.
+fn vibration(config: &mut AxisConfig, cycle: f64) {
+    // Not a draw of its own: seeds that found something keep what they stand for.
+    let bits = config.limits.velocity.to_bits() >> 1;
+    if bits & 15 != 0 {
+        return;
+    }
+    let mut random = Random::new(bits, 0);
+    let mut mode = || VibrationMode {
+        frequency: 1.0 / (cycle * random.log_between(8.0, 200.0)),
+        damping: if random.one_in(2) {
+            0.0
+        } else {
+            random.between(0.0, 0.5)
+        },
+        shaper: one_of(&mut random, &ShaperKind::ALL),
+    };
+    let plain = config.vibration;
+    config.vibration[0] = Some(mode());
+    if bits & 16 != 0 {
+        config.vibration[1] = Some(mode());
+    }
+    if config.check().is_err() {
+        config.vibration = plain;
+    }
 }
 
 /// The supervision beside the set-points.
