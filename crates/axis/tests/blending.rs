@@ -5,6 +5,7 @@
 //! command ends exactly on its target. Set-points are judged from outside, by their backward differences
 //! (B1, B2, B10, B13, B14, B15). The numbers are seeded; a failing case prints its own.
 
+use crate::differences::Watch;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Dynamics, Fate, Limits, Log,
     Request, Scope, Standard, StartState, steps,
@@ -112,38 +113,6 @@ fn chain(random: &mut Random, limits: &Limits, cycle: f64) -> Vec<Move> {
         .collect()
 }
 
-/// The last five positions, newest first, and what may be expected of their differences.
-struct Watch {
-    positions: [f64; 5],
-    cycle: f64,
-    limits: Limits,
-    largest: f64,
-}
-
-impl Watch {
-    fn see(&mut self, position: f64) -> Result<(), String> {
-        self.positions.rotate_right(1);
-        self.positions[0] = position;
-        self.largest = self.largest.max(position.abs());
-        let mut differences = self.positions;
-        let wider = self.limits.acceleration.max(self.limits.deceleration);
-        let bounds = [self.limits.velocity, wider, self.limits.jerk, self.limits.snap];
-        let mut unit = 1.0;
-        for (order, bound) in (1..).zip(bounds) {
-            for place in 0..differences.len() - order {
-                differences[place] -= differences[place + 1];
-            }
-            unit *= self.cycle;
-            let value = differences[0].abs() / unit;
-            let resolved = 64.0 * f64::EPSILON * self.largest / unit;
-            if value > bound * (1.0 + 1e-9) + resolved {
-                return Err(format!("difference {order} is {value}, limit {bound}"));
-            }
-        }
-        Ok(())
-    }
-}
-
 /// One chain; the error names what is broken.
 fn judge(seed: u64) -> Result<Seen, String> {
     let mut random = Random(seed);
@@ -157,12 +126,7 @@ fn judge(seed: u64) -> Result<Seen, String> {
     let mut axis = Axis::new(AxisId::new(0), config, Standard::new(cycle)).map_err(|e| format!("{e:?}"))?;
     let mut log = Log::default();
     let mut ids: Vec<CommandId> = Vec::new();
-    let mut watch = Watch {
-        positions: [0.0; 5],
-        cycle,
-        limits,
-        largest: 0.0,
-    };
+    let mut watch = Watch::new(cycle, limits);
     let mut seen = Seen::default();
     let small = 1e-8 * limits.velocity;
     let mut done = 0;

@@ -7,6 +7,7 @@
 //!
 //! `cargo test -p standstill-axis --test all chains:: -- --nocapture` prints the tables of `docs/buffering.md`.
 
+use crate::differences::Watch;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId,
     Factors, Fate, Limits, Log, QUEUE_MAX, Request, Scope, Standard, StartState, steps,
@@ -62,37 +63,6 @@ fn drawn_limits(random: &mut Random) -> Limits {
     }
 }
 
-/// The last five positions, newest first, and what may be expected of their differences.
-struct Watch {
-    positions: [f64; 5],
-    limits: Limits,
-    largest: f64,
-}
-
-impl Watch {
-    fn see(&mut self, position: f64) {
-        self.positions.rotate_right(1);
-        self.positions[0] = position;
-        self.largest = self.largest.max(position.abs());
-        let mut differences = self.positions;
-        let wider = self.limits.acceleration.max(self.limits.deceleration);
-        let bounds = [self.limits.velocity, wider, self.limits.jerk, self.limits.snap];
-        let mut unit = 1.0;
-        for (order, bound) in (1..).zip(bounds) {
-            for place in 0..differences.len() - order {
-                differences[place] -= differences[place + 1];
-            }
-            unit *= CYCLE;
-            let value = differences[0].abs() / unit;
-            let resolved = 64.0 * f64::EPSILON * self.largest / unit;
-            assert!(
-                value <= bound * (1.0 + 1e-9) + resolved,
-                "difference {order} is {value}, limit {bound}"
-            );
-        }
-    }
-}
-
 /// An axis that began at rest at 0, its clock and the moves it was told.
 struct Rig {
     axis: Axis,
@@ -122,11 +92,7 @@ impl Rig {
             axis: Axis::new(AxisId::new(0), config, Standard::new(CYCLE)).expect("a good configuration"),
             log: Log::default(),
             scan: 0,
-            watch: Watch {
-                positions: [0.0; 5],
-                limits: config.limits,
-                largest: 0.0,
-            },
+            watch: Watch::new(CYCLE, config.limits),
             moves: Vec::new(),
             speeds: Vec::new(),
             turning: Vec::new(),
@@ -177,7 +143,7 @@ impl Rig {
         steps::advance(slice::from_mut(&mut self.axis), scope);
         self.scan += 1;
         let point = self.axis.setpoint();
-        self.watch.see(point.position);
+        self.watch.see(point.position).unwrap();
         let scan = self.scan;
         let mut from = 0.0;
         for (id, end, done) in &mut self.moves {
@@ -444,7 +410,7 @@ fn a_halt_on_the_way_is_no_reason_to_go_back() {
             );
             rig.scan += 1;
             let now = rig.axis.setpoint().position;
-            rig.watch.see(now);
+            rig.watch.see(now).unwrap();
             let left = (ends[ends.len() - 1] - before).abs();
             ended_at_last |= rig.scan > halt && rig.scan <= on && left <= 0.02 * limits.velocity * CYCLE;
             let back = side * (before - now);
@@ -607,7 +573,7 @@ fn a_successor_taken_away_leaves_no_limit() {
             while axis.state() != AxisState::Standstill {
                 assert!(scan < LONGEST, "seed {seed}: does not end");
                 steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, &mut log));
-                watch.see(axis.setpoint().position);
+                watch.see(axis.setpoint().position).unwrap();
                 scan += 1;
             }
             let last = rig.moves[rig.moves.len() - 1].1;

@@ -59,3 +59,47 @@ impl Seen {
         }
     }
 }
+
+/// The last five positions, newest first, and what may be expected of their differences.
+pub struct Watch {
+    positions: [f64; 5],
+    cycle: f64,
+    limits: Limits,
+    /// The largest position so far (u).
+    pub largest: f64,
+}
+
+impl Watch {
+    /// An axis of these limits that stands at 0.
+    pub fn new(cycle: f64, limits: Limits) -> Self {
+        Self {
+            positions: [0.0; 5],
+            cycle,
+            limits,
+            largest: 0.0,
+        }
+    }
+
+    /// The next position; the error names the difference that is beyond its limit.
+    pub fn see(&mut self, position: f64) -> Result<(), String> {
+        self.positions.rotate_right(1);
+        self.positions[0] = position;
+        self.largest = self.largest.max(position.abs());
+        let mut differences = self.positions;
+        let wider = self.limits.acceleration.max(self.limits.deceleration);
+        let bounds = [self.limits.velocity, wider, self.limits.jerk, self.limits.snap];
+        let mut unit = 1.0;
+        for (order, bound) in (1..).zip(bounds) {
+            for place in 0..differences.len() - order {
+                differences[place] -= differences[place + 1];
+            }
+            unit *= self.cycle;
+            let value = differences[0].abs() / unit;
+            let resolved = 64.0 * f64::EPSILON * self.largest / unit;
+            if value > bound * (1.0 + 1e-9) + resolved {
+                return Err(format!("difference {order} is {value}, limit {bound}"));
+            }
+        }
+        Ok(())
+    }
+}
