@@ -5,11 +5,11 @@ use crate::exit::{Exit, Failure};
 use crate::is_standard;
 use crate::json::{Object, list, number, string};
 use crate::outcome;
+use standstill_picture as picture;
 use standstill_script::cam::{Asked, CamError, CamTable, Curve, Finding, Fit, Law, Lift, Stretch, csv, fit};
 use standstill_script::model::{Axis, Script};
 use standstill_script::suite::{EXTENSION, read_axes, read_file, shown};
 use standstill_trace::file::replace;
-use standstill_trace::svg;
 use std::fs;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -346,7 +346,7 @@ fn plot(file: &Path, svg: &Path, periodic: bool, outside: &Outside) -> Result<Ex
     let rows: Vec<[f64; 2]> = table.rows.iter().map(|row| [row.master, row.slave]).collect();
     // Without its folder, so that the picture does not depend on the place of the file.
     let title = table.name.rsplit('/').next().unwrap_or_default();
-    let picture = svg::cam(title, &curve.course(), &rows);
+    let picture = picture::cam(title, &curve.course(), &rows);
     replace(svg, |out| out.write_all(picture.as_bytes()))?;
     Ok(Exit::Passed)
 }

@@ -4,8 +4,8 @@
 //! Characters that XML 1.0 cannot have, such as control characters, become U+FFFD.
 
 use crate::exit::Failure;
+use standstill_picture::escaped;
 use standstill_trace::file::replace;
-use standstill_trace::markup::escaped;
 use std::fmt::Write;
 use std::path::Path;
 use std::time::Duration;

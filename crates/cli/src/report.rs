@@ -3,10 +3,11 @@
 
 use crate::exit::{Exit, Failure, complain};
 use crate::limit;
+use standstill_picture as picture;
 use standstill_report::{Mark, ReportError, Source, html_marked};
 use standstill_script::suite::shown;
 use standstill_trace::file::{self, replace};
-use standstill_trace::{Loaded, svg, vcd};
+use standstill_trace::{Loaded, vcd};
 use std::path::{Path, PathBuf};
 
 /// The files to write, each if it is wanted.
@@ -68,7 +69,7 @@ pub fn write_all(sources: &[Source<'_>], marks: &[Mark], targets: Targets<'_>) -
         replace(path, |out| out.write_all(page.as_bytes()))?;
     }
     if let ([source], Some(path)) = (sources, targets.svg) {
-        let picture = svg::report(source.trace);
+        let picture = picture::report(source.trace);
         replace(path, |out| out.write_all(picture.as_bytes()))?;
     }
     if let ([source], Some(path)) = (sources, targets.vcd) {

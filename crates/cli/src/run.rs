@@ -9,13 +9,14 @@ use crate::long;
 use crate::outcome;
 use crate::progress::Progress;
 use crate::report::{self, Targets};
+use standstill_picture::plot;
 use standstill_report::Source;
 use standstill_script::bare::{Bare, run_bare};
 use standstill_script::model::Script;
 use standstill_script::suite::{self, Allowed, Reasons, SuiteError};
 use standstill_script::{Code, Outcome, ScriptError, keeps_rows, run_with, warnings};
 use standstill_trace::csv::Dialect;
-use standstill_trace::{Header, Trace, digest, events_text, extremes_text, file, plot};
+use standstill_trace::{Header, Trace, digest, events_text, extremes_text, file};
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -265,7 +266,7 @@ fn show(name: &str, outcome: &Outcome, out: &mut dyn Write) -> Result<(), Failur
     let trace = &outcome.trace;
     title(name, trace, out)?;
     writeln!(out, "\nevents\n{}", events_text(trace))?;
-    writeln!(out, "{}", plot::plot(trace, WIDTH))?;
+    writeln!(out, "{}", plot(trace, WIDTH))?;
     writeln!(out, "{}", extremes_text(trace))?;
     let failing = failing_claims(outcome);
     if !failing.is_empty() {

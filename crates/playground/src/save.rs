@@ -3,8 +3,9 @@
 use crate::project::Project;
 use crate::runs::run_project;
 use serde_json::{Value, json};
+use standstill_picture as picture;
 use standstill_report::{Source, html};
-use standstill_trace::{Trace, csv, svg, vcd};
+use standstill_trace::{Trace, csv, vcd};
 
 /// Runs the script and returns the file that the command line would write: `form` is `csv`, `vcd`, `svg`
 /// or `report`. The answer is `{"text": ".."}`, or that of [`check`](crate::check).
@@ -27,7 +28,7 @@ fn file(name: &str, trace: &Trace, form: &str) -> Result<String, Value> {
     let written = match form {
         "csv" => csv::write(trace, &mut bytes),
         "vcd" => vcd::write(trace, &mut bytes),
-        "svg" => return Ok(svg::report(trace)),
+        "svg" => return Ok(picture::report(trace)),
         "report" => {
             let source = Source {
                 name,

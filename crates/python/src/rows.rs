@@ -6,8 +6,9 @@ use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::PyDict;
 use standstill_cli::verdict;
+use standstill_picture::svg;
 use standstill_script::{Outcome, Verdict, Warnings};
-use standstill_trace::{Kind, Trace, digest, events, file, svg};
+use standstill_trace::{Kind, Trace, digest, events, file};
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard};
 
@@ -210,7 +211,7 @@ impl Rows {
     fn svg(&self, py: Python<'_>, signals: Vec<String>) -> PyResult<String> {
         self.with_trace(py, |trace| {
             let signals: Vec<&str> = signals.iter().map(String::as_str).collect();
-            svg::svg(trace, &signals)
+            svg(trace, &signals)
         })
     }
 

@@ -1,7 +1,7 @@
 //! The texts of the page: facts, sources, failing claims. All of it is ready markup.
 
 use crate::{Mark, Source};
-use standstill_trace::markup::escaped;
+use standstill_picture::escaped;
 use standstill_trace::{ClaimVerdict, Trace, time_literal};
 use std::fmt::Write;
 

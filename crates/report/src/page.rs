@@ -4,7 +4,7 @@ use crate::{Mark, Source, facts};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
-use standstill_trace::markup::escaped;
+use standstill_picture::escaped;
 use standstill_trace::{Header, events, exact};
 use std::fmt::Write;
 

@@ -303,7 +303,7 @@ fn is_zero(cell: Cell<'_>) -> bool {
 }
 
 /// Equal to the bit: a NaN is the same as itself.
-pub(crate) fn same(a: Cell<'_>, b: Cell<'_>) -> bool {
+pub fn same(a: Cell<'_>, b: Cell<'_>) -> bool {
     match (a, b) {
         (Cell::Real(a), Cell::Real(b)) => a.to_bits() == b.to_bits(),
         _ => a == b,

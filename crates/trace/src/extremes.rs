@@ -114,7 +114,7 @@ fn line(extreme: &Extreme) -> String {
 }
 
 /// The axis and its unit: `X (mm)`.
-pub(crate) fn axis_title(axis: &Axis) -> String {
+pub fn axis_title(axis: &Axis) -> String {
     if axis.unit.is_empty() {
         axis.name.clone()
     } else {

@@ -1,8 +1,8 @@
-//! Scan traces: what every signal was in every scan, as data, as text and as pictures.
+//! Scan traces: what every signal was in every scan, as data and as text.
 //!
 //! A host describes a run in a [`Header`], makes a [`Trace`] of it and pushes one row a scan. From then on
 //! the trace is read only: it can be written as CSV or JSON Lines and read back bit by bit, condensed
-//! into a golden text for people to review, compared with another one, and drawn in a terminal.
+//! into a golden text for people to review, and compared with another one.
 //!
 //! The crate knows no script, no executor and no block, and reads no clock; only [`file`](mod@file) and
 //! [`golden`] touch files. The same trace gives the same bytes on every processor: numbers have their
@@ -39,27 +39,23 @@ pub mod golden;
 mod header;
 pub mod jsonl;
 pub mod machine;
-pub mod markup;
 mod number;
-mod panels;
-pub mod plot;
 mod printable;
 mod read;
 pub mod ring_down;
 pub mod story;
 pub mod subjects;
-pub mod svg;
 mod trace;
 pub mod vcd;
 
 pub use column::{Cell, Column, Kind, Role};
-pub use events::{Event, EventLog, Widths, events, events_text};
-pub use extremes::{Extreme, Extremes, extremes, extremes_text};
+pub use events::{Event, EventLog, Widths, events, events_text, same};
+pub use extremes::{Extreme, Extremes, axis_title, extremes, extremes_text};
 pub use header::{
     AXIS_SIGNALS, Axis, CAM_SIGNALS, CAMS_MAX, COMBINED_SIGNALS, Cam, Claim, ClaimFailure, ClaimVerdict,
     Direction, Header, Input, Instance, Limits, Pin, SLAVE_SIGNALS, SUPERIMPOSED_SIGNALS, Scaling, Written,
 };
-pub use number::{cell_text, shortest, time_literal};
+pub use number::{cell_text, fixed, shortest, time_literal};
 pub use printable::{printable, printable_lines};
 pub use read::{Loaded, ReadError};
 pub use trace::{Note, RowError, Trace};

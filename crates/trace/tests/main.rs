@@ -8,7 +8,6 @@ mod file;
 mod files;
 mod golden_files;
 mod golden_text;
-mod plot;
 mod ring_down;
 mod subjects;
 mod vcd;

@@ -1,9 +1,9 @@
 //! The picture of the README: the tutorial's test, failing.
 
 use crate::{Generated, root};
+use standstill_picture::{Theme, failing, themed};
 use standstill_script::{read, run};
 use standstill_trace::Trace;
-use standstill_trace::svg::{Theme, failing, themed};
 use std::fs;
 
 /// The test.

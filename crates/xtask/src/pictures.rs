@@ -2,9 +2,9 @@
 
 use crate::{Generated, root};
 use standstill_blocks::REGISTRY;
+use standstill_picture::{report, svg};
 use standstill_script::{read_with_programs, run};
 use standstill_trace::Trace;
-use standstill_trace::svg::{report, svg};
 use std::collections::BTreeMap;
 use std::fs;
 

@@ -3,8 +3,8 @@
 use crate::{Generated, NOTICE};
 use standstill_axis::Limits;
 use standstill_drives::mechanism::{Gains, Load, Mechanism, Plant, Servo, SetPoint};
+use standstill_picture::chart;
 use standstill_planner::{GridPlan, Method, ShaperKind, Shapers, VibrationMode};
-use standstill_trace::svg;
 use std::fmt::Write;
 
 const CYCLE: f64 = 0.001;
@@ -266,7 +266,7 @@ pub fn pages() -> Vec<Generated> {
     vec![
         Generated {
             path: "docs/pictures/vibration-shaped.svg".into(),
-            text: svg::chart("Load minus set-point, shaped", 1_000_000, &slow_curves),
+            text: chart("Load minus set-point, shaped", 1_000_000, &slow_curves),
         },
         Generated {
             path: "docs/vibration.md".into(),
@@ -274,7 +274,7 @@ pub fn pages() -> Vec<Generated> {
         },
         Generated {
             path: "docs/pictures/vibration.svg".into(),
-            text: svg::chart("Load minus set-point", 1_000_000, &curves),
+            text: chart("Load minus set-point", 1_000_000, &curves),
         },
     ]
 }

@@ -269,7 +269,12 @@ fn layers_depend_only_downwards() {
             &["standstill-blocks", "standstill-fb"],
         ),
         ("crates/trace", "standstill-trace", &[]),
-        ("crates/report", "standstill-report", &["standstill-trace"]),
+        ("crates/picture", "standstill-picture", &["standstill-trace"]),
+        (
+            "crates/report",
+            "standstill-report",
+            &["standstill-picture", "standstill-trace"],
+        ),
         (
             "crates/script",
             "standstill-script",
@@ -335,6 +340,7 @@ fn layers_depend_only_downwards() {
                 "standstill-fb",
                 "standstill-live",
                 "standstill-lsp",
+                "standstill-picture",
                 "standstill-planner",
                 "standstill-report",
                 "standstill-script",
@@ -350,6 +356,7 @@ fn layers_depend_only_downwards() {
             "standstill-playground",
             &[
                 "standstill-cli",
+                "standstill-picture",
                 "standstill-planner",
                 "standstill-report",
                 "standstill-script",
@@ -362,6 +369,7 @@ fn layers_depend_only_downwards() {
             &[
                 "standstill-axis",
                 "standstill-cli",
+                "standstill-picture",
                 "standstill-script",
                 "standstill-trace",
             ],
@@ -374,6 +382,7 @@ fn layers_depend_only_downwards() {
                 "standstill-blocks",
                 "standstill-drives",
                 "standstill-fb",
+                "standstill-picture",
                 "standstill-planner",
                 "standstill-script",
                 "standstill-trace",

@@ -4,10 +4,10 @@ use crate::exit::{Failure, complain};
 use crate::plan::methods::Planned;
 use crate::plan::{Files, Plan};
 use crate::report::page_failure;
+use standstill_picture::{self as picture, PLANS_MAX};
 use standstill_planner::Limits;
 use standstill_report::{Source, html};
 use standstill_trace::file::replace;
-use standstill_trace::svg::{self, PLANS_MAX};
 use standstill_trace::{self as trace, Axis, Cell, Header, Trace};
 
 /// Number of moments of a segment that are drawn.
@@ -22,7 +22,7 @@ const AXIS: &str = "plan";
 /// Plans to draw: at most one for each colour.
 #[derive(Debug, Default)]
 pub struct Drawn {
-    plans: Vec<svg::Plan>,
+    plans: Vec<picture::Plan>,
     /// Label and rows of each.
     traces: Vec<(String, Trace)>,
     /// Plans that were not drawn any more.
@@ -52,7 +52,7 @@ impl Drawn {
             self.traces
                 .push((label.clone(), traced(&label, cycle, &limits, planned)?));
         }
-        self.plans.push(svg::Plan {
+        self.plans.push(picture::Plan {
             label,
             course: course(planned),
             limits: [limits.velocity, limits.acceleration, limits.jerk, limits.snap],
@@ -67,7 +67,7 @@ impl Drawn {
             complain(&format!("note: of {all} plans the first {drawn} are drawn"));
         }
         if let Some(path) = files.svg {
-            let picture = svg::plans("Plans", &self.plans);
+            let picture = picture::plans("Plans", &self.plans);
             replace(path, |out| out.write_all(picture.as_bytes()))?;
         }
         if let Some(path) = files.report {

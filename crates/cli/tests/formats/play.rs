@@ -2,11 +2,12 @@
 //! proportion: the caller bounds both.
 
 use standstill_cli::plan::plan;
+use standstill_picture::{plot, report};
 use standstill_script::{format, read_map, read_sweep, read_with_programs};
 use standstill_trace::golden::judge;
 use standstill_trace::machine::compare;
 use standstill_trace::story::story;
-use standstill_trace::{Loaded, Trace, csv, events_text, exact, foreign, jsonl, plot, svg, vcd};
+use standstill_trace::{Loaded, Trace, csv, events_text, exact, foreign, jsonl, vcd};
 use std::fs;
 use std::path::PathBuf;
 
@@ -79,12 +80,12 @@ fn loaded(loaded: Option<Loaded>) {
     let Some(Loaded { trace, .. }) = loaded else {
         return;
     };
-    let text = events_text(&trace) + &plot::plot(&trace, 100) + &standstill_trace::golden::text(&trace);
+    let text = events_text(&trace) + &plot(&trace, 100) + &standstill_trace::golden::text(&trace);
     let hidden = text
         .chars()
         .find(|character| character.is_control() && *character != '\n');
     assert_eq!(hidden, None);
-    let _picture = svg::report(&trace);
+    let _picture = report(&trace);
     let _ = vcd::write(&trace, &mut std::io::sink());
     assert!(story(&trace, &trace).is_none(), "it is equal to itself");
     if trace.columns().is_empty() {

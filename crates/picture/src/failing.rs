@@ -4,11 +4,11 @@
 use super::picture::{CURVE, GAP, GUTTER, Picture, ROW};
 use super::range::{Range, limits, ticks};
 use super::report::{self, draw_claim};
-use crate::column::{Cell, Kind};
-use crate::header::ClaimVerdict;
 use crate::panels::{Curve, Wave, curves};
-use crate::story::story;
-use crate::trace::Trace;
+use standstill_trace::ClaimVerdict;
+use standstill_trace::Trace;
+use standstill_trace::story::story;
+use standstill_trace::{Cell, Kind};
 
 /// The curves of an axis that are drawn.
 const SIGNALS: [&str; 2] = ["Position", "Velocity"];
@@ -139,7 +139,7 @@ fn parting(before: &[Curve<'_>], after: &[Curve<'_>], waves: &[(Wave, Wave)]) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::header::{Axis, Claim, ClaimFailure, Header, Input};
+    use standstill_trace::{Axis, Claim, ClaimFailure, Header, Input};
 
     fn trace(turns: usize) -> Trace {
         let mut trace = Trace::new(Header {

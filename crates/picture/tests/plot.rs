@@ -1,15 +1,41 @@
 //! The terminal plot must show curves that fit their labels and lose no edge.
 
-use crate::common;
+use standstill_picture::plot;
+use standstill_trace::{Axis, Cell, Header, Input, Trace};
 
-use standstill_trace::plot::plot;
-use standstill_trace::{Cell, Header, Input, Trace};
+/// A run of one axis with these positions.
+fn run(positions: impl IntoIterator<Item = f64>) -> Trace {
+    let axis = Axis {
+        name: "X".into(),
+        unit: "mm".into(),
+        ..Axis::default()
+    };
+    let mut trace = Trace::new(Header {
+        cycle_ns: 1_000_000,
+        axes: vec![axis],
+        ..Header::default()
+    });
+    for position in positions {
+        let mut row = vec![Cell::Name("DiscreteMotion")];
+        row.extend([position, 0.0, 0.0, 0.0, 0.0, position].map(Cell::Real));
+        trace.push_row(&row).expect("the row fits");
+    }
+    trace
+}
 
 #[test]
-fn a_move_is_drawn() {
-    let text = plot(&common::run(2000, None), 100);
-    println!("{text}");
-    assert!(text.lines().all(|line| line.chars().count() <= 100));
+fn a_move_is_drawn_from_its_least_to_its_greatest_position() {
+    let text = plot(&run((0..=2000).map(|scan| f64::from(scan) / 100.0)), 100);
+    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    assert!(
+        text.contains("X.Position (mm)") && text.contains("scan 2000"),
+        "{text}"
+    );
+    let labels: Vec<_> = text
+        .lines()
+        .filter_map(|line| line.split_whitespace().next())
+        .collect();
+    assert!(labels.contains(&"20") && labels.contains(&"0"), "{text}");
 }
 
 /// Levels of one Boolean as they are drawn, without the label.
@@ -56,8 +82,11 @@ fn a_pulse_of_one_scan_is_seen_wherever_it_is() {
 #[test]
 fn what_does_not_change_takes_no_room_and_nothing_is_no_harm() {
     assert_eq!(drawn(&[true, true], 20), "");
-    let empty = plot(&Trace::new(common::header()), 100);
+    let empty = plot(&run([]), 100);
     assert_eq!(empty.lines().count(), 1, "{empty}");
-    let hard = plot(&common::hard_values(), 0);
-    assert!(hard.contains('│'), "{hard}");
+    let hard = [f64::NAN, f64::INFINITY, f64::MAX, f64::MIN, -0.0, 5e-324, 1e30];
+    for width in [0, 1, 40] {
+        let text = plot(&run(hard), width);
+        assert!(text.contains("X.Position"), "{text}");
+    }
 }

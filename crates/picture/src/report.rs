@@ -5,12 +5,12 @@ use std::fmt::Write;
 
 use super::picture::{CURVE, GAP, GUTTER, Picture, ROW, wrapped};
 use super::range::{Range, limits, ticks};
-use crate::column::{Cell, Column, Kind, Role};
-use crate::events::same;
-use crate::header::{Claim, ClaimVerdict};
-use crate::number::time_literal;
 use crate::panels::{Curve, Wave, curves};
-use crate::trace::Trace;
+use standstill_trace::Trace;
+use standstill_trace::same;
+use standstill_trace::time_literal;
+use standstill_trace::{Cell, Column, Kind, Role};
+use standstill_trace::{Claim, ClaimVerdict};
 
 /// The curves of an axis, top to bottom.
 const SIGNALS: [&str; 5] = ["Position", "Velocity", "Acceleration", "Jerk", "Snap"];

@@ -3,13 +3,13 @@
 use std::fmt::Write;
 
 use super::range::{Range, limits, path};
-use crate::column::{Cell, Role};
-use crate::events::same;
-use crate::header::Axis;
 use crate::markup::escaped;
-use crate::number::{cell_text, time_literal};
 use crate::panels::{Curve, Wave, compact};
-use crate::trace::Trace;
+use standstill_trace::Axis;
+use standstill_trace::Trace;
+use standstill_trace::same;
+use standstill_trace::{Cell, Role};
+use standstill_trace::{cell_text, time_literal};
 
 /// Width of the picture.
 pub const WIDTH: f64 = 880.0;

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 use std::ops::Range;
 
-use crate::number::time_literal;
 use crate::panels::{Curve, compact, curves, waves};
-use crate::trace::Trace;
+use standstill_trace::Trace;
+use standstill_trace::time_literal;
 
 /// Lines of a curve.
 const HEIGHT: usize = 10;

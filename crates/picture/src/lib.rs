@@ -1,28 +1,38 @@
-//! A run as a picture: curves with limits, axis states, and the Booleans that change as a timing diagram.
+//! Scan traces as pictures: curves with limits, axis states, and the Booleans that change as a timing diagram.
 //!
-//! The picture is drawn in numbers with one decimal, so the same trace gives the same bytes everywhere.
-//! Its colours follow the reader's light or dark theme. It loads nothing.
+//! [`report`] draws a whole run, [`failing`] where one fails, [`svg`] the signals asked for; [`plans()`] and [`cam()`] draw what
+//! `plan` and `cam` of the command line plan. [`plot`] draws in a terminal.
+//!
+//! Pictures are drawn in numbers with one decimal, so the same trace gives the same bytes everywhere.
+//! Their colours follow the reader's light or dark theme. They load nothing.
+
+#![forbid(unsafe_code)]
 
 mod across;
 mod cam;
 mod failing;
+mod markup;
+mod panels;
 mod picture;
 mod plans;
+mod plot;
 mod range;
 mod report;
 
-use crate::panels::{curves, waves};
-use crate::trace::Trace;
 pub use cam::cam;
 pub use failing::failing;
+pub use markup::escaped;
+use panels::{curves, waves};
 use picture::{GAP, Picture};
 pub use picture::{Theme, themed};
 pub use plans::{PLANS_MAX, Plan, plans};
+pub use plot::plot;
 use range::{Range, ticks};
 pub use report::report;
+use standstill_trace::Trace;
 
 /// The picture of a trace. For every axis: its states and the curves of `signals` (names of
-/// [`AXIS_SIGNALS`](crate::AXIS_SIGNALS); limits near a curve are dashed). Then every Boolean that
+/// [`AXIS_SIGNALS`](standstill_trace::AXIS_SIGNALS); limits near a curve are dashed). Then every Boolean that
 /// changes, with inputs and outputs distinct, over scans and time.
 ///
 /// A pulse of one scan stays visible in a run of any length. Work is proportional to rows times columns.
@@ -74,8 +84,8 @@ fn subject(name: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::column::Cell;
-    use crate::header::{Axis, Header, Input, Limits};
+    use standstill_trace::Cell;
+    use standstill_trace::{Axis, Header, Input, Limits};
 
     fn trace(title: &str, scans: usize, pulse: usize) -> Trace {
         let mut trace = Trace::new(Header {

@@ -1,16 +1,16 @@
 //! The contents of pictures of a trace: curves of axes, waves of Booleans.
 
-use crate::column::{Cell, Kind, Role};
-use crate::extremes::axis_title;
-use crate::header::Axis;
-use crate::number::fixed;
-use crate::trace::Trace;
+use standstill_trace::Axis;
+use standstill_trace::Trace;
+use standstill_trace::axis_title;
+use standstill_trace::fixed;
+use standstill_trace::{Cell, Kind, Role};
 
 /// One signal of one axis over all scans.
 pub struct Curve<'a> {
     /// The axis it belongs to.
     pub axis: &'a Axis,
-    /// The signal, of [`crate::AXIS_SIGNALS`].
+    /// The signal, of [`standstill_trace::AXIS_SIGNALS`].
     pub signal: &'a str,
     /// Name and unit.
     pub title: String,
