@@ -31,6 +31,8 @@ pub(crate) struct Fates {
     ended: [Option<(CommandId, Fate)>; FATES_KEPT],
     next: usize,
     newest: CommandId,
+    /// The last superimposed command that ended, and the distance it added (u).
+    covered: Option<(CommandId, f64)>,
 }
 
 impl Default for Fates {
@@ -39,6 +41,7 @@ impl Default for Fates {
             ended: [None; FATES_KEPT],
             next: 0,
             newest: CommandId(0),
+            covered: None,
         }
     }
 }
@@ -61,6 +64,18 @@ impl Fates {
             *slot = Some((id, fate));
         }
         self.next = (self.next + 1) % FATES_KEPT;
+    }
+
+    /// Superimposed command `id` ends; it has added this distance (u).
+    pub(crate) fn cover(&mut self, id: CommandId, distance: f64) {
+        self.covered = Some((id, distance));
+    }
+
+    /// The distance (u) that superimposed command `id` added, if it is the last one that ended.
+    pub(crate) fn covered(&self, id: CommandId) -> Option<f64> {
+        self.covered
+            .filter(|(ended, _)| *ended == id)
+            .map(|(_, distance)| distance)
     }
 
     /// Finds an ended command; bounded by [`FATES_KEPT`] comparisons.

@@ -35,7 +35,7 @@ impl<P: Planner> Axis<P> {
         entry.direction = direction_of(&request.command);
         self.override_entry(&mut entry);
         if let (Command::MoveAdditive { .. }, Work::Position(_)) = (&request.command, work) {
-            entry.from = self.commanded_target().unwrap_or(self.setpoint.position);
+            entry.from = self.commanded_target().unwrap_or(self.mover.setpoint().position);
         }
         match start {
             Start::Wait => {
@@ -45,7 +45,7 @@ impl<P: Planner> Axis<P> {
                 self.start_beside(scope);
             }
             Start::Now => {
-                self.aim(&mut entry, self.setpoint.position);
+                self.aim(&mut entry, self.mover.setpoint().position);
                 let asked = entry.limits;
                 let motion = self
                     .plan_for(&mut entry)
@@ -114,7 +114,7 @@ impl<P: Planner> Axis<P> {
             let start = self.is_on_cam().then_some(Start::Now);
             return start.ok_or(("Slave", ErrorId::NotCoupled));
         }
-        if self.is_shaped() {
+        if self.mover.is_shaped() {
             match request.command {
                 Command::Torque { .. } => return Err(("Axis", ErrorId::Shaped)),
                 Command::GearIn { .. } | Command::CamIn(_) | Command::CombineAxes { .. } => {
@@ -357,7 +357,7 @@ impl<P: Planner> Axis<P> {
         let owner = self.owner.as_ref()?;
         match owner.work.manner().ending {
             Ending::InPosition => owner.end,
-            Ending::AtRest => Some(self.end_of_plan()),
+            Ending::AtRest => Some(self.mover.end_of_plan()),
             _ => None,
         }
     }
@@ -410,8 +410,8 @@ impl<P: Planner> Axis<P> {
         } else {
             self.limits_before(&entry.limits)
         };
-        let motion = self.plan_from(entry, &self.setpoint, &before)?;
-        self.kept_inside(entry, motion, &self.setpoint, &before)
+        let motion = self.plan_from(entry, self.mover.setpoint(), &before)?;
+        self.kept_inside(entry, motion, self.mover.setpoint(), &before)
     }
 
     /// Plans a command from `start`, whose motion was within `before`, as far as it is one motion with what waits behind it: the
@@ -502,7 +502,7 @@ impl<P: Planner> Axis<P> {
         };
         let limit = match error {
             ErrorId::TargetOutsideSoftwareLimits | ErrorId::OutwardFromSoftwareLimit => {
-                let end = entry.end.unwrap_or(self.setpoint.position);
+                let end = entry.end.unwrap_or(self.mover.setpoint().position);
                 self.broken_software_limit(end + self.superimposed_left())
             }
             _ => f64::NAN,
@@ -519,7 +519,7 @@ impl<P: Planner> Axis<P> {
         scope: &mut Scope<'_>,
     ) {
         self.enter(entry.work.manner().start);
-        self.before = before;
+        self.mover.take_over_from(before);
         self.record_slowed(&entry, &mut scope.with(entry.instance));
         self.adopt(entry, motion, scope);
         if matches!(entry.work, Work::Home(_)) {
@@ -527,7 +527,7 @@ impl<P: Planner> Axis<P> {
         }
         if self.moves_itself() {
             // A drive that homes by itself is stopped first.
-            self.motion = Motion::Follow;
+            self.mover.follow();
         }
     }
 }

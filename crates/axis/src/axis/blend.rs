@@ -35,17 +35,20 @@ impl<P: Planner> Axis<P> {
     pub(super) fn arm_owner(&mut self, scope: &mut Scope<'_>) {
         let Some(was) = self.owner else { return };
         let mut owner = was;
-        self.look_through(&mut owner, self.setpoint.position, 0);
+        self.look_through(&mut owner, self.mover.setpoint().position, 0);
         let changed = (owner.passage, owner.run) != (was.passage, was.run);
-        if !changed || owner.end.is_none() || self.is_held_up() || !matches!(self.motion, Motion::Run { .. })
+        if !changed
+            || owner.end.is_none()
+            || self.is_held_up()
+            || !matches!(self.mover.motion(), Motion::Run { .. })
         {
             return;
         }
-        if self.layer.is_some() {
+        if self.mover.layer().is_some() {
             // It goes on as planned below what is superimposed.
             return self.end_run();
         }
-        let (start, before) = (&self.setpoint, &self.before);
+        let (start, before) = (self.mover.setpoint(), self.mover.before());
         let planned = match self.ahead(&mut owner, start, before) {
             // What was to go on as one motion with something that is another one now does not come to rest as planned.
             None if was.run.count > 0 => self.at_rest_ahead(&owner, start, before),
@@ -138,7 +141,7 @@ impl<P: Planner> Axis<P> {
             .ok()
             .filter(|plan| !self.turns(plan, end > start.position));
         let anew = planned.map_or(u64::MAX, |plan| u64::from(plan.scans()));
-        let present = match (&self.motion, &self.owner) {
+        let present = match (self.mover.motion(), &self.owner) {
             (Motion::Run { plan, elapsed, scans }, Some(owner))
                 if owner.id == entry.id
                     && owner.run.count == entry.run.count
@@ -186,10 +189,14 @@ impl<P: Planner> Axis<P> {
     /// the next have to wait for a superimposed motion, so does the owner, with the velocity it has.
     pub(super) fn pass_on(&mut self, scope: &mut Scope<'_>) {
         self.hand_over(self.passed_end(), scope);
-        if self.queue.is_empty() && self.base().velocity != 0.0 && self.goal_reached() && self.passes_on() {
+        if self.queue.is_empty()
+            && self.mover.base().velocity != 0.0
+            && self.goal_reached()
+            && self.passes_on()
+        {
             // What waited was refused: it was too late to come to rest when coordinates moved, a way was barred or its
             // values changed.
-            match self.allowed(self.setpoint.position) {
+            match self.allowed(self.mover.setpoint().position) {
                 Ok(_) => self.halt_behind_end(scope),
                 Err(_) => {
                     self.end_owner(Fate::Done);
@@ -204,8 +211,8 @@ impl<P: Planner> Axis<P> {
         self.goal_reached()
             && !self.is_held_up()
             && self.passes_on()
-            && !self.motion.goes_on()
-            && self.setpoint.velocity != 0.0
+            && !self.mover.motion().goes_on()
+            && self.mover.setpoint().velocity != 0.0
     }
 
     /// What becomes of the owner when another takes over in motion: what has an end has passed it.
@@ -219,7 +226,7 @@ impl<P: Planner> Axis<P> {
 
     /// Whether the owner is to pass its end, and does.
     pub(super) fn passes_in_motion(&self) -> bool {
-        self.passes_on() && self.base().velocity != 0.0
+        self.passes_on() && self.mover.base().velocity != 0.0
     }
 
     fn passes_on(&self) -> bool {
@@ -228,22 +235,19 @@ impl<P: Planner> Axis<P> {
             .is_some_and(|owner| owner.work.manner().blends)
     }
 
-    /// The set-point of the owner alone.
-    pub(super) fn base(&self) -> Setpoint {
-        self.layer.as_ref().map_or(self.setpoint, |layer| layer.base)
-    }
-
     /// Where distances of the next command count from (u): the owner's end if it was passed in this scan, with
     /// what is superimposed there, else the set position (B10).
     pub(super) fn passed_end(&self) -> f64 {
-        let now = self.setpoint.position;
+        let now = self.mover.setpoint().position;
         let end = self.owner.as_ref().and_then(|owner| owner.end);
-        match (&self.motion, end) {
-            (Motion::Run { elapsed, scans, .. }, Some(end)) if elapsed == scans && self.layer.is_none() => {
+        match (self.mover.motion(), end) {
+            (Motion::Run { elapsed, scans, .. }, Some(end))
+                if elapsed == scans && self.mover.layer().is_none() =>
+            {
                 end
             }
             (Motion::Run { elapsed, scans, .. }, Some(end)) if elapsed == scans => {
-                end + (now - self.base().position)
+                end + (now - self.mover.base().position)
             }
             _ => now,
         }
@@ -265,7 +269,7 @@ impl<P: Planner> Axis<P> {
 
     /// The same, with ways of at least `shortest` (u) in one motion.
     pub(super) fn chain(&self, first: &Entry, start: f64, skip: usize, shortest: f64) -> (Passage, Run) {
-        if self.layer.is_some() {
+        if self.mover.layer().is_some() {
             return (REST, Run::NONE);
         }
         const NONE: Option<Leg<'_>> = None;

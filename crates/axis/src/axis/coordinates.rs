@@ -9,8 +9,8 @@
 use super::commands::{Entry, Place, Work};
 use super::{Axis, Motion};
 use crate::{CommandId, ErrorId, Event, ExecutionMode, Fate, QUEUE_MAX, Raw, Scope};
+use standstill_planner::Planner;
 use standstill_planner::turns::split;
-use standstill_planner::{Plan, Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
     /// MC_SetPosition: the actual position becomes `position` (u), or with `relative` grows by it. The
@@ -80,7 +80,7 @@ impl<P: Planner> Axis<P> {
             };
             self.decide(entry.id, fate);
         }
-        self.hand_over(self.setpoint.position, scope);
+        self.hand_over(self.mover.setpoint().position, scope);
     }
 
     /// A number that grows whenever coordinates move (MC_SetPosition, MC_Home), and wraps. Positions
@@ -107,30 +107,27 @@ impl<P: Planner> Axis<P> {
         };
         // If no turns are counted, an axis without lag is exactly at the requested number, however far it
         // was.
-        let at = if !relative && self.modulo.is_none() && self.setpoint.position == self.feedback.position() {
+        let at = if !relative
+            && self.modulo.is_none()
+            && self.mover.setpoint().position == self.feedback.position()
+        {
             position
         } else {
-            self.setpoint.position + by
+            self.mover.setpoint().position + by
         };
         let is_finite = at.is_finite()
             && (self.feedback.position() + by).is_finite()
             && (self.frame.shift() + by).is_finite();
         // If set-points were equal at the old numbers, their difference cannot be recovered at the new
         // ones.
-        let is_resolved =
-            self.setpoint.is_at_rest() || (self.is_resolved(at) && self.is_resolved(self.setpoint.position));
+        let is_resolved = self.mover.setpoint().is_at_rest()
+            || (self.is_resolved(at) && self.is_resolved(self.mover.setpoint().position));
         if !(is_finite && is_resolved) {
             return Err(ErrorId::PositionInvalid);
         }
-        // A rounding error of the plan in progress is permanent.
-        self.coarsest = self.coarsest.max(self.setpoint.position.abs()).max(at.abs());
-        let before = (self.setpoint, self.layer);
-        self.setpoint.position = at;
-        if let Some(layer) = &mut self.layer {
-            layer.base.position += by;
-        }
+        let names = self.mover.call(at, by);
         if let Err(error) = self.move_motion(by, scope) {
-            (self.setpoint, self.layer) = before;
+            self.mover.call_as_before(names);
             return Err(error);
         }
         self.frame.count_move();
@@ -146,9 +143,9 @@ impl<P: Planner> Axis<P> {
         }
         let turn = self.config.modulo;
         self.measured.call(self.feedback.position(), by, turn);
-        let following = matches!(self.motion, Motion::Follow);
+        let following = matches!(self.mover.motion(), Motion::Follow);
         if following {
-            self.setpoint = Setpoint::at_rest(self.feedback.position());
+            self.mover.stand_at(self.feedback.position());
         }
         if self.config.scaling.is_some() {
             self.frame.shift_by(by);
@@ -157,7 +154,8 @@ impl<P: Planner> Axis<P> {
             self.stir();
             self.frame.rename(self.setpoint().position);
         }
-        self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
+        self.mover
+            .watch(self.owner.is_some_and(|owner| self.needs_watching(&owner)));
         self.tell_moved(by, scope);
         self.arm_anew(scope);
         Ok(())
@@ -177,12 +175,12 @@ impl<P: Planner> Axis<P> {
             self.shift_paused(by);
             return Ok(());
         }
-        let Motion::Run { plan, elapsed, scans } = &mut self.motion else {
+        let Motion::Run { elapsed, scans, .. } = self.mover.motion() else {
             return Ok(());
         };
         let absolute = |owner: &Entry| matches!(owner.place(), Some(Place::At(_)));
         let Some(mut owner) = self.owner.filter(absolute).filter(|_| elapsed < scans) else {
-            plan.shift(by);
+            self.mover.shift_plan(by);
             if let Some(owner) = &mut self.owner {
                 owner.end = owner.end.map(|end| end + by);
                 owner.from += by;
@@ -190,11 +188,11 @@ impl<P: Planner> Axis<P> {
             }
             return Ok(());
         };
-        let start = self.aim(&mut owner, self.setpoint.position);
+        let start = self.aim(&mut owner, self.mover.setpoint().position);
         self.look_through(&mut owner, start, 0);
         // With a superimposed motion there may be no room at this time.
         let motion = self.plan_next(&mut owner)?.ok_or(ErrorId::InMotion)?;
-        self.before = self.limits_before(&owner.limits);
+        self.mover.take_over_from(self.limits_before(&owner.limits));
         self.adopt(owner, motion, scope);
         Ok(())
     }
@@ -207,19 +205,19 @@ impl<P: Planner> Axis<P> {
 
     /// The present position has the value `position` (u) from now on (MC_Home).
     pub(super) fn call_set_position(&mut self, position: f64, scope: &mut Scope<'_>) {
-        let by = position - self.setpoint.position;
+        let by = position - self.mover.setpoint().position;
         if by != 0.0 {
             self.tell_moved(by, &mut self.owner_scope(scope));
         }
         self.frame.count_move();
         self.rename_places();
-        self.rename_actual(self.setpoint.position, position);
+        self.rename_actual(self.mover.setpoint().position, position);
         if self.config.scaling.is_some() {
-            self.frame.shift_by(position - self.setpoint.position);
+            self.frame.shift_by(position - self.mover.setpoint().position);
         } else {
             self.stir();
             self.frame.rename(position);
         }
-        self.setpoint = Setpoint::at_rest(position);
+        self.mover.stand_at(position);
     }
 }

@@ -436,7 +436,7 @@ impl<P: Planner> Axis<P> {
         let velocity = if self.is_paused() {
             0.0
         } else {
-            self.planner.coasting(&self.setpoint, &limits)
+            self.planner.coasting(self.mover.setpoint(), &limits)
         };
         (Work::Release(velocity), limits)
     }
@@ -444,19 +444,22 @@ impl<P: Planner> Axis<P> {
     /// A motion that was behind its master until now continues at the velocity that is left once
     /// acceleration and jerk are 0.
     pub(super) fn go_on_alone(&mut self, before: &Limits) {
-        if !matches!(self.motion, Motion::Geared | Motion::Closing { .. }) {
+        if !matches!(self.mover.motion(), Motion::Geared | Motion::Closing { .. }) {
             return;
         }
         let limits = self.slowed(&self.parameters.limits);
-        let velocity = self.planner.coasting(&self.setpoint, &limits);
-        let ramp = self.planner.ramp_to(&self.setpoint, velocity, &limits, before);
-        self.motion = ramp.map_or(Motion::Hold, Motion::along);
+        let velocity = self.planner.coasting(self.mover.setpoint(), &limits);
+        let ramp = self
+            .planner
+            .ramp_to(self.mover.setpoint(), velocity, &limits, before);
+        self.mover.go_on(ramp.map_or(Motion::Hold, Motion::along));
     }
 
     /// Whether MC_GearOut is done: a motion step has passed without the master.
     #[inline]
     pub(super) fn is_released(&self, owner: &Entry) -> bool {
-        matches!(owner.work, Work::Release(_)) && !matches!(self.motion, Motion::Run { elapsed: 0, .. })
+        matches!(owner.work, Work::Release(_))
+            && !matches!(self.mover.motion(), Motion::Run { elapsed: 0, .. })
     }
 
     /// The motion of `entry` until the next motion step finds a better one.

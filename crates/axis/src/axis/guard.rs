@@ -26,19 +26,20 @@ impl<P: Planner> Axis<P> {
     /// The same within the limits in force, which is enough for nearly all set-points.
     #[inline(always)]
     pub(super) fn is_usual_step(&self, next: &Setpoint) -> bool {
-        self.steps_within(next, &self.in_force, 1.0 + ROUNDING, 0.0)
+        let scan = (1.0 + ROUNDING) * self.planner.cycle();
+        steps_within(self.mover.setpoint(), next, self.mover.in_force(), scan, 0.0)
     }
 
     fn is_wider_step(&self, next: &Setpoint) -> bool {
         let layer = self
-            .layer
-            .as_ref()
-            .and_then(|layer| self.excess_of(&layer.motion));
-        let told = [self.excess_of(&self.motion), layer].map(Option::unwrap_or_default);
+            .mover
+            .layer()
+            .and_then(|layer| self.excess_of(layer.motion()));
+        let told = [self.excess_of(self.mover.motion()), layer].map(Option::unwrap_or_default);
         let excess = |part: fn(&Excess) -> f64| told.iter().map(part).fold(0.0, f64::max);
         let wider = [
-            &self.in_force,
-            &self.before,
+            self.mover.in_force(),
+            self.mover.before(),
             &self.config.limits,
             &self.stop_limits(),
         ];
@@ -49,24 +50,29 @@ impl<P: Planner> Axis<P> {
             acceleration: most(|limits| limits.acceleration.max(limits.deceleration))
                 + excess(|told| told.acceleration),
             jerk: most(|limits| limits.jerk) + excess(|told| told.jerk),
-            ..self.in_force
+            ..*self.mover.in_force()
         };
-        let is_last = matches!(&self.motion, Motion::Run { elapsed, scans, .. } if elapsed >= scans);
+        let is_last = matches!(self.mover.motion(), Motion::Run { elapsed, scans, .. } if elapsed >= scans);
         let slack = if is_last { LAST_SCAN } else { ROUNDING };
-        self.steps_within(next, &widest, 1.0 + slack, self.coarsest)
+        let scan = (1.0 + slack) * self.planner.cycle();
+        steps_within(self.mover.setpoint(), next, &widest, scan, self.mover.coarsest())
     }
+}
 
-    /// Whether position, velocity and acceleration change in a scan by no more than `limits` times
-    /// `factor`, and the rounding. The rounding includes that of a position of magnitude `coarsest` (u)
-    /// at which the plan was.
-    #[inline(always)]
-    pub(super) fn steps_within(&self, next: &Setpoint, limits: &Limits, factor: f64, coarsest: f64) -> bool {
-        let last = &self.setpoint;
-        let scan = factor * self.planner.cycle();
-        let resolved = RESOLVED * (last.position.abs() + next.position.abs() + coarsest);
-        let steepest = limits.acceleration.max(limits.deceleration);
-        (next.position - last.position).abs() <= limits.velocity * scan + resolved
-            && (next.velocity - last.velocity).abs() <= steepest * scan
-            && (next.acceleration - last.acceleration).abs() <= limits.jerk * scan
-    }
+/// Whether position, velocity and acceleration change from `last` to `next` in a `scan` (s) by no more than
+/// `limits` allow, and the rounding. The rounding includes that of a position of magnitude `coarsest` (u) at
+/// which the plan was.
+#[inline(always)]
+pub(super) fn steps_within(
+    last: &Setpoint,
+    next: &Setpoint,
+    limits: &Limits,
+    scan: f64,
+    coarsest: f64,
+) -> bool {
+    let resolved = RESOLVED * (last.position.abs() + next.position.abs() + coarsest);
+    let steepest = limits.acceleration.max(limits.deceleration);
+    (next.position - last.position).abs() <= limits.velocity * scan + resolved
+        && (next.velocity - last.velocity).abs() <= steepest * scan
+        && (next.acceleration - last.acceleration).abs() <= limits.jerk * scan
 }

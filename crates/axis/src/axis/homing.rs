@@ -338,11 +338,11 @@ impl<P: Planner> Axis<P> {
             return;
         };
         let slow = block.velocity * self.planner.cycle();
-        let stands = step.abs() < slow && self.commanded().velocity.abs() >= block.velocity;
+        let stands = step.abs() < slow && self.mover.commanded().velocity.abs() >= block.velocity;
         search.still = if stands { search.still.saturating_add(1) } else { 0 };
         self.homing = search;
         if search.still >= block.scans {
-            let back = self.commanded().position - self.following_error();
+            let back = self.mover.commanded().position - self.following_error();
             self.found(self.feedback.position(), Some(back), scope);
         }
     }
@@ -352,13 +352,14 @@ impl<P: Planner> Axis<P> {
         self.homing.reference = reference;
         self.homing.phase = Phase::Found;
         let Some(owner) = self.owner else { return };
-        let (start, limits) = (self.setpoint, &owner.limits);
+        let (start, limits) = (*self.mover.setpoint(), &owner.limits);
         let planned = match to {
             Some(end) => {
                 let profile = self.config.profile;
-                self.planner.move_to(profile, &start, end, limits, &self.in_force)
+                self.planner
+                    .move_to(profile, &start, end, limits, self.mover.in_force())
             }
-            None => self.planner.ramp_to(&start, 0.0, limits, &self.in_force),
+            None => self.planner.ramp_to(&start, 0.0, limits, self.mover.in_force()),
         };
         match planned {
             Ok(plan) => self.adopt(owner, Motion::along(plan), scope),
@@ -379,9 +380,12 @@ impl<P: Planner> Axis<P> {
         self.homing.up = up;
         let Some(owner) = self.owner else { return };
         let velocity = self.velocity_of(&self.homing).unwrap_or(0.0);
-        let planned = self
-            .planner
-            .ramp_to(&self.setpoint, velocity, &owner.limits, &self.in_force);
+        let planned = self.planner.ramp_to(
+            self.mover.setpoint(),
+            velocity,
+            &owner.limits,
+            self.mover.in_force(),
+        );
         match planned {
             Ok(plan) => self.adopt(owner, Motion::along(plan), scope),
             Err(error) => self.trip(refusal(error), 0, Reaction::Ramp, scope),
@@ -391,13 +395,13 @@ impl<P: Planner> Axis<P> {
     /// A homing at its goal: the reference gets its name.
     #[cold]
     pub(super) fn settle_homing(&mut self, position: f64, scope: &mut Scope<'_>) {
-        if self.homing.phase == Phase::Found && matches!(self.motion, Motion::Run { .. }) {
+        if self.homing.phase == Phase::Found && matches!(self.mover.motion(), Motion::Run { .. }) {
             // A drive takes the new name for the set-point it has, so it must get the last set-point of
             // the ramp first.
-            self.motion = Motion::Hold;
+            self.mover.hold();
             return;
         }
-        let here = self.setpoint.position;
+        let here = self.mover.setpoint().position;
         let reference = self.homing.reference;
         let name = match self.homing.phase {
             Phase::Idle => position,

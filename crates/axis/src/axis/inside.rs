@@ -134,7 +134,8 @@ impl<P: Planner> Axis<P> {
     /// The same for a ramp to rest that no command asked for, on an axis with limits `axis`.
     pub(super) fn stopped_inside(&self, plan: P::Plan, limits: &mut Limits, axis: &Limits) -> P::Plan {
         self.least_beyond(plan, limits, axis, |higher| {
-            self.planner.ramp_to(&self.setpoint, 0.0, higher, &self.in_force)
+            self.planner
+                .ramp_to(self.mover.setpoint(), 0.0, higher, self.mover.in_force())
         })
     }
 
@@ -171,7 +172,7 @@ impl<P: Planner> Axis<P> {
             return plan;
         };
         let mut kept = plan;
-        for higher in self.higher(limits, &self.in_force, axis) {
+        for higher in self.higher(limits, self.mover.in_force(), axis) {
             let Ok(plan) = again(&higher) else {
                 continue;
             };

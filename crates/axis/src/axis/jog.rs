@@ -47,7 +47,7 @@ impl<P: Planner> Axis<P> {
             return None;
         }
         let (min, max) = self.parameters.software_limits?;
-        let here = self.setpoint.position;
+        let here = self.mover.setpoint().position;
         let (limit, left) = if forward {
             (max, max - here)
         } else {

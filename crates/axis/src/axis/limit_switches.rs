@@ -33,7 +33,7 @@ impl<P: Planner> Axis<P> {
 
     /// After the latch: ErrorStop if the axis moves onto a switch.
     pub(super) fn mind_limit_switches(&mut self, scope: &mut Scope<'_>) {
-        let velocity = self.setpoint.velocity;
+        let velocity = self.mover.setpoint().velocity;
         let up = velocity > 0.0;
         let minded = self.config.hardware_limits || !self.homing.is_idle();
         if minded && velocity != 0.0 && self.is_on_limit_switch(up) && !self.turns_at_limit_switch(up) {

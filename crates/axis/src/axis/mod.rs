@@ -5,6 +5,7 @@
 //! | part | what it holds |
 //! | --- | --- |
 //! | [`commands`] | a command: its work, the properties of each kind of work, its entry |
+//! | [`mover`] | the set-point, the motion it comes from, what is superimposed and published, and the limits they keep |
 //! | [`queue`] | commands that wait |
 //! | [`stage`] | the power stage: what is requested, and what the drive reports |
 //! | [`failure`] | the error shown, whether its cause persists, the reset under way |
@@ -21,7 +22,6 @@
 //! | [`dynamics`], [`factors`], [`parameters`] | limits from pins, the override, what can be written by number |
 //! | [`step`], [`replan`], [`blend`], [`run`], [`inside`], [`guard`] | the motion step and hand-over, the owner's motion changed while it runs, how fast it passes its end, chains as one motion, take-overs within the limits, no jump |
 //! | [`superimposed`] | a second motion on top |
-//! | [`shaping`] | what is published of a motion so that nothing swings |
 //! | [`coupling`] | behind a master |
 //! | [`profile`], [`torque`], [`jog`], [`homing`] | curves through points, torques, MC_Jog, the search for the reference |
 //! | [`power`], [`permission`], [`limit_switches`], [`software_limits`], [`supervision`] | feedback, power, faults and resets; directions, switches, limits, following error |
@@ -44,6 +44,7 @@ mod jog;
 mod limit_switches;
 mod measured;
 mod modulo;
+mod mover;
 mod outputs;
 mod parameters;
 mod permission;
@@ -56,7 +57,6 @@ mod reading;
 mod replan;
 mod retrigger;
 mod run;
-mod shaping;
 mod software_limits;
 mod stage;
 mod step;
@@ -79,6 +79,7 @@ pub use factors::Factors;
 use feedback::Feedback;
 use frame::Frame;
 use modulo::Modulo;
+use mover::{Motion, Mover};
 pub use outputs::CamTrack;
 pub use permission::Permission;
 pub use probe::TouchProbe;
@@ -86,72 +87,7 @@ pub use profile::{Profile, ProfileRow};
 use queue::Queue;
 pub use reading::{MotionState, Pace, Way};
 use stage::Power;
-use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
-
-/// The source of the set-point.
-#[derive(Clone, Copy, Debug)]
-enum Motion<Plan> {
-    /// The actual position: the axis is not in operation.
-    Follow,
-    /// It stays where it is.
-    Hold,
-    /// A plan, so many scans after its start, and the scans to the goal, which are those it has or, where it goes on for the next
-    /// command, fewer: asked for several times in every scan.
-    Run { plan: Plan, elapsed: u64, scans: u64 },
-    /// The actual position under a torque: the last one ordered, and the ramp of its velocity limit, so many scans after its
-    /// start.
-    Torque { plan: Plan, elapsed: u64, torque: f64 },
-    /// Where its coupling says.
-    Geared,
-    /// The same, plus a plan beside it.
-    Closing { plan: Plan, elapsed: u64, scans: u64 },
-}
-
-impl<P: Plan> Motion<P> {
-    /// Along `plan`, from its start.
-    fn along(plan: P) -> Self {
-        Self::Run {
-            plan,
-            elapsed: 0,
-            scans: u64::from(plan.scans()),
-        }
-    }
-
-    /// Along `plan` beside something that moves, from its start.
-    fn closing(plan: P) -> Self {
-        Self::Closing {
-            plan,
-            elapsed: 0,
-            scans: u64::from(plan.scans()),
-        }
-    }
-
-    /// Its plan goes on behind the goal, for the next command.
-    fn goes_on(&self) -> bool {
-        matches!(self, Self::Run { plan, scans, .. } if *scans < u64::from(plan.scans()))
-    }
-
-    /// Scans from the start of its plan to the goal; 0 without one.
-    fn scans(&self) -> u64 {
-        match self {
-            Self::Run { scans, .. } | Self::Closing { scans, .. } => *scans,
-            Self::Follow | Self::Hold | Self::Torque { .. } | Self::Geared => 0,
-        }
-    }
-
-    /// `None` if the set-point follows the feedback, 0 if it holds, else one more than the scans to the goal.
-    fn scans_left(&self) -> Option<u32> {
-        match self {
-            Self::Follow => None,
-            Self::Hold | Self::Torque { .. } | Self::Geared => Some(0),
-            Self::Run { elapsed, scans, .. } | Self::Closing { elapsed, scans, .. } => {
-                // At least 1, to distinguish a plan at its goal from holding.
-                let left = scans.saturating_sub(*elapsed);
-                Some(u32::try_from(left).unwrap_or(u32::MAX).saturating_add(1))
-            }
-        }
-    }
-}
+use standstill_planner::{Planner, Setpoint, Standard};
 
 /// The values exchanged with a drive beside its motion.
 #[derive(Clone, Copy, Debug, Default)]
@@ -283,10 +219,8 @@ pub struct Axis<P: Planner = Standard> {
     config: AxisConfig,
     planner: P,
     state: AxisState,
-    /// Of the motion; on a modulo axis its position may be some turns away from the one shown.
-    setpoint: Setpoint,
-    /// What is between the motion and what is published.
-    shaping: Option<shaping::Shaping>,
+    /// What moves it.
+    mover: Mover<P::Plan>,
     modulo: Option<Modulo>,
     /// Actual positions.
     feedback: Feedback,
@@ -294,19 +228,6 @@ pub struct Axis<P: Planner = Standard> {
     beside: BesideMotion,
     /// What positions are called.
     frame: Frame,
-    motion: Motion<P::Plan>,
-    /// A second motion on top of it.
-    layer: Option<superimposed::Layer<P::Plan>>,
-    /// The last superimposed command that ended, and the distance it added (u).
-    covered: Option<(CommandId, f64)>,
-    /// Limits of the present motion, for the command that takes over from it.
-    in_force: Limits,
-    /// The largest magnitude (u) that coordinates moved under the plan in progress gave its positions; see [`guard`].
-    coarsest: f64,
-    /// Limits of the motion the owner took over from, for planning the owner anew.
-    before: Limits,
-    /// The last velocity that was not zero (u/s): its sign is mcCurrentDirection.
-    last_velocity: f64,
     owner: Option<Entry>,
     /// How the owner follows a master.
     coupling: Option<coupling::Coupling>,
@@ -333,8 +254,6 @@ pub struct Axis<P: Planner = Standard> {
     homed: bool,
     /// The search of MC_Home.
     homing: homing::Search,
-    /// The owner's motion may leave the software limits, so every set-point is checked.
-    watched: bool,
     /// A queued MC_SetPosition takes effect at the next latch.
     shift_due: bool,
     /// The override.
@@ -359,8 +278,8 @@ impl<P: Planner> Axis<P> {
     /// [`ConfigError`] names the key that is not usable.
     pub fn new(id: AxisId, config: AxisConfig, planner: P) -> Result<Self, ConfigError> {
         config.check()?;
-        let shaping = shaping::Shaping::new(&config.vibration, planner.cycle(), config.position)?;
         let powered = config.start == StartState::Standstill;
+        let mover = Mover::new(&config, planner.cycle(), powered)?;
         Ok(Self {
             id,
             config,
@@ -370,19 +289,11 @@ impl<P: Planner> Axis<P> {
             } else {
                 AxisState::Disabled
             },
-            setpoint: Setpoint::at_rest(config.position),
-            shaping,
+            mover,
             modulo: Modulo::new(&config),
             feedback: Feedback::new(config.position),
             beside: BesideMotion::default(),
             frame: Frame::default(),
-            motion: if powered { Motion::Hold } else { Motion::Follow },
-            layer: None,
-            covered: None,
-            in_force: config.limits,
-            coarsest: 0.0,
-            before: config.limits,
-            last_velocity: 1.0,
             owner: None,
             coupling: None,
             on_cam: None,
@@ -399,7 +310,6 @@ impl<P: Planner> Axis<P> {
             failure: failure::Failure::default(),
             homed: false,
             homing: homing::Search::default(),
-            watched: false,
             shift_due: false,
             factors: Factors::ONE,
             parameters: parameters::Parameters::new(&config),
@@ -429,8 +339,8 @@ impl<P: Planner> Axis<P> {
     #[inline]
     pub fn setpoint(&self) -> Setpoint {
         match &self.modulo {
-            None => self.commanded(),
-            Some(modulo) => modulo.shown(&self.commanded()),
+            None => self.mover.commanded(),
+            Some(modulo) => modulo.shown(&self.mover.commanded()),
         }
     }
 
@@ -457,9 +367,33 @@ impl<P: Planner> Axis<P> {
         self.power.is_unconfirmed().then_some(ErrorId::PowerNotConfirmed)
     }
 
+    /// Set-points of the past that its shaper needs; 0 without one. The host lends so many places of
+    /// [`Scope::history`], the first of which [`Axis::set_history`] tells.
+    pub fn history_needed(&self) -> usize {
+        self.mover.history_needed()
+    }
+
+    /// Its part of [`Scope::history`] begins at this place. Before that, and where less is lent than it needs, the
+    /// axis is not shaped.
+    pub fn set_history(&mut self, first: usize) {
+        self.mover.set_history(first);
+    }
+
+    /// A shaper stands between its motion and its drive.
+    #[inline(always)]
+    pub(crate) fn is_shaped(&self) -> bool {
+        self.mover.is_shaped()
+    }
+
+    /// The end of a motion step: what is published follows the motion.
+    #[inline(always)]
+    pub(crate) fn shape(&mut self, scope: &mut Scope<'_>) {
+        self.mover.shape(scope.history);
+    }
+
     /// Whether the set-point is the actual position and not a planned one: the axis is not in operation.
     pub fn is_following(&self) -> bool {
-        matches!(self.motion, Motion::Follow)
+        matches!(self.mover.motion(), Motion::Follow)
     }
 
     /// MC_Home has been done.
@@ -479,14 +413,7 @@ impl<P: Planner> Axis<P> {
 
     /// The plan in progress and the scans since its start.
     pub fn plan(&self) -> Option<(&P::Plan, u64)> {
-        match &self.motion {
-            Motion::Run { plan, elapsed, .. } => Some((plan, *elapsed)),
-            Motion::Follow
-            | Motion::Hold
-            | Motion::Torque { .. }
-            | Motion::Geared
-            | Motion::Closing { .. } => None,
-        }
+        self.mover.plan()
     }
 
     /// The command that owns the axis; a superimposed one does not.
@@ -568,7 +495,7 @@ impl<P: Planner> Axis<P> {
         }
         Outlook {
             state: self.state,
-            scans_left: self.motion.scans_left(),
+            scans_left: self.mover.motion().scans_left(),
             owner: self
                 .owner
                 .as_ref()
@@ -588,7 +515,7 @@ impl<P: Planner> Axis<P> {
             reset: self.failure.reset(),
             homed: self.homed,
             homing: self.homing.bits(),
-            forward: self.last_velocity > 0.0,
+            forward: self.mover.last_velocity() > 0.0,
             superimposed: self.superimposed_outlook(),
             factors: self.factors.bits(),
             parameters: self.parameters.bits(),
@@ -621,7 +548,7 @@ impl<P: Planner> Axis<P> {
         } else {
             self.frame.take_rename()
         };
-        let (position, velocity) = self.for_drive();
+        let (position, velocity) = self.mover.for_drive();
         DriveCommand {
             request: self.drive_request(),
             position: self.position_at_drive(position),
@@ -643,10 +570,17 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    /// A motion at its goal has come to it for whoever waits: it has come out of the shaper, or hands over in
+    /// motion.
+    #[inline(always)]
+    fn is_goal_published(&self) -> bool {
+        self.mover.is_through() || self.passes_in_motion()
+    }
+
     /// The running plan has reached its goal; a motion without a plan has.
     #[inline]
     fn goal_reached(&self) -> bool {
-        match &self.motion {
+        match self.mover.motion() {
             Motion::Run { elapsed, scans, .. } => elapsed >= scans && self.is_goal_published(),
             Motion::Hold | Motion::Geared => true,
             Motion::Follow | Motion::Closing { .. } => false,

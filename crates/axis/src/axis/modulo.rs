@@ -8,8 +8,8 @@
 //! Source: PLCopen Motion Control Part 1, MC_MoveAbsolute and MC_DIRECTION; B8; the rule for Direction is that of
 //! docs/modulo.md.
 
+use super::Axis;
 use super::commands::{Entry, Place, REST, Run, Work};
-use super::{Axis, Motion};
 use crate::{AxisConfig, Direction, DrivePosition, ErrorId, ModuloTargets, Scaling, Turn};
 use standstill_planner::turns::{split, two_product};
 use standstill_planner::{Plan, Planner, Setpoint};
@@ -168,7 +168,7 @@ impl<P: Planner> Axis<P> {
     /// back.
     #[inline]
     pub(super) fn is_far_round(&self) -> bool {
-        let far = |modulo: &Modulo| is_far(self.setpoint.position, modulo.length);
+        let far = |modulo: &Modulo| is_far(self.mover.setpoint().position, modulo.length);
         self.modulo.as_ref().is_some_and(far)
     }
 
@@ -178,53 +178,36 @@ impl<P: Planner> Axis<P> {
     pub(super) fn bring_back(&mut self) {
         let Some(modulo) = &mut self.modulo else { return };
         // An owner that the override halts may have its end there.
-        if !is_far(self.setpoint.position, modulo.length)
+        if !is_far(self.mover.setpoint().position, modulo.length)
             || self.owner.as_ref().is_some_and(|owner| owner.halted)
         {
             return;
         }
-        if let Motion::Run { plan, elapsed, scans } = &mut self.motion
-            && let Some(turns) = plan.bring_back(*elapsed, modulo.length)
-        {
-            let passed = core::mem::take(elapsed);
-            *scans = u64::from(plan.scans());
-            let start = plan.at(0).position;
+        if let Some(turns) = self.mover.bring_back(modulo.length) {
             modulo.turns = modulo.turns.saturating_add(turns);
             // Its end was left behind, in another frame.
             if let Some(owner) = &mut self.owner {
                 owner.end = None;
                 owner.from = back_by(owner.from, turns, modulo.length);
             }
-            self.setpoint.position = match &mut self.layer {
-                Some(layer) => layer.bring_back(start, passed),
-                None => start,
-            };
         }
     }
 
     /// A plan begins: its start is the present position in the plan's frame.
     #[inline(never)]
     pub(super) fn start_of_plan(&mut self) {
-        let (Some(modulo), Motion::Run { plan, .. }) = (&mut self.modulo, &self.motion) else {
+        let (Some(modulo), Some((plan, _))) = (&mut self.modulo, self.mover.plan()) else {
             return;
         };
         let start = plan.at(0).position;
-        let here = self
-            .layer
-            .as_ref()
-            .map_or(self.setpoint.position, |layer| layer.base.position);
+        let here = self.mover.base().position;
         let turns = (here - start) / modulo.length;
         let nearest = (if turns < 0.0 { turns - 0.5 } else { turns + 0.5 }) as i64;
         modulo.turns = modulo.turns.saturating_add(nearest);
-        let called = modulo.in_turn(self.setpoint.position);
-        self.setpoint.position = match &mut self.layer {
-            Some(layer) => layer.start_at(start),
-            None => start,
-        };
-        modulo.stood = self
-            .setpoint
-            .is_at_rest()
-            .then_some((self.setpoint.position, called));
+        let called = modulo.in_turn(self.mover.setpoint().position);
+        self.mover.call_start(start);
+        let setpoint = self.mover.setpoint();
+        modulo.stood = setpoint.is_at_rest().then_some((setpoint.position, called));
     }
 
     /// Finds the end of `entry`, which becomes active now, and the offset of its frame from the present
@@ -234,8 +217,8 @@ impl<P: Planner> Axis<P> {
     /// Cost: on a modulo axis at most one ramp.
     #[inline]
     pub(super) fn aim(&self, entry: &mut Entry, from: f64) -> f64 {
-        let start = self.setpoint.position;
-        entry.sign = self.last_velocity.signum();
+        let start = self.mover.setpoint().position;
+        entry.sign = self.mover.last_velocity().signum();
         if let Some(Place::By(_)) = entry.place() {
             entry.from = from;
         }
@@ -245,7 +228,7 @@ impl<P: Planner> Axis<P> {
         }
         let here = Setpoint {
             position: start,
-            ..self.base()
+            ..self.mover.base()
         };
         self.aim_from(entry, &here, from)
     }
@@ -287,7 +270,7 @@ impl<P: Planner> Axis<P> {
                     target,
                     from,
                     length,
-                    self.heading(direction, self.last_velocity > 0.0),
+                    self.heading(direction, self.mover.last_velocity() > 0.0),
                 );
                 (self.never_back(entry, start, target, turns, length), Some(target))
             }
@@ -351,7 +334,7 @@ impl<P: Planner> Axis<P> {
     ) -> i64 {
         let heading = entry
             .direction
-            .and_then(|direction| self.heading(direction, self.last_velocity > 0.0));
+            .and_then(|direction| self.heading(direction, self.mover.last_velocity() > 0.0));
         let Some(forward) = heading else { return turns };
         if start.is_at_rest() || self.goes_on_to(entry.id) {
             return turns;

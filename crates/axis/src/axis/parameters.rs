@@ -213,7 +213,7 @@ impl<P: Planner> Axis<P> {
             Parameter::MaxVelocitySystem => ParameterValue::Real(system.velocity),
             Parameter::MaxVelocityAppl => ParameterValue::Real(own.limits.velocity),
             Parameter::ActualVelocity => ParameterValue::Real(self.actual_velocity()?),
-            Parameter::CommandedVelocity => ParameterValue::Real(self.commanded().velocity),
+            Parameter::CommandedVelocity => ParameterValue::Real(self.mover.commanded().velocity),
             Parameter::MaxAccelerationSystem => ParameterValue::Real(system.acceleration),
             Parameter::MaxAccelerationAppl => ParameterValue::Real(own.limits.acceleration),
             Parameter::MaxDecelerationSystem => ParameterValue::Real(system.deceleration),
@@ -425,10 +425,10 @@ impl<P: Planner> Axis<P> {
         if part == 0 && value < least {
             return Err(Unwritten::value(least, ErrorId::ParameterValueInvalid));
         }
-        if !self.has_history_for(&shapers) {
+        if !self.mover.has_history_for(&shapers) {
             return Err(Unwritten::value(f64::NAN, ErrorId::ParameterValueInvalid));
         }
-        if !(self.setpoint.is_at_rest() && self.is_through()) {
+        if !(self.mover.setpoint().is_at_rest() && self.mover.is_through()) {
             return Err(Unwritten::value(f64::NAN, ErrorId::InMotion));
         }
         Ok(modes)
@@ -438,14 +438,15 @@ impl<P: Planner> Axis<P> {
         if self.parameters.modes != parameters.modes
             && let Ok(shapers) = Shapers::new(&parameters.modes, self.planner.cycle())
         {
-            self.set_shapers(shapers);
+            self.mover.set_shapers(shapers);
         }
         let limits_moved = self.parameters.software_limits != parameters.software_limits;
         self.parameters = parameters;
         self.stir();
         if limits_moved {
             // The motion and the commands that wait were checked against the old limits.
-            self.watched = self.owner.is_some() && self.parameters.software_limits.is_some();
+            self.mover
+                .watch(self.owner.is_some() && self.parameters.software_limits.is_some());
             self.arm_anew(scope);
         }
     }

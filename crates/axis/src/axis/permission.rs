@@ -61,11 +61,11 @@ impl<P: Planner> Axis<P> {
         if let Some(error) = self.barred_now() {
             self.pause(error, scope);
         }
-        if let Some(layer) = &mut self.layer {
+        if let Some(layer) = self.mover.layer_mut() {
             layer.try_soon();
         }
         // A slave that still moves in the barred direction would be stopped once more.
-        if !self.follows() || self.way_barred(self.setpoint.velocity).is_none() {
+        if !self.follows() || self.way_barred(self.mover.setpoint().velocity).is_none() {
             self.resume(scope);
         }
     }
@@ -116,19 +116,19 @@ impl<P: Planner> Axis<P> {
     /// The reason why a motion in progress is barred.
     fn barred_now(&self) -> Option<ErrorId> {
         let limits = self.slowed(&self.stop_limits());
-        let owner = match (&self.motion, &self.owner) {
+        let owner = match (self.mover.motion(), &self.owner) {
             (Motion::Run { plan, elapsed, .. } | Motion::Torque { plan, elapsed, .. }, Some(owner))
                 if owner.work.manner().barred && !owner.paused =>
             {
-                self.barred((plan, *elapsed), &limits, &self.in_force)
+                self.barred((plan, *elapsed), &limits, self.mover.in_force())
             }
             (Motion::Geared | Motion::Closing { .. }, Some(owner)) if !owner.paused => {
-                self.way_barred(self.setpoint.velocity)
+                self.way_barred(self.mover.setpoint().velocity)
             }
             _ => None,
         };
         owner.or_else(|| self.barred_behind_the_end()).or_else(|| {
-            let (rest, in_force) = self.layer.as_ref()?.distance_in_progress()?;
+            let (rest, in_force) = self.mover.layer()?.distance_in_progress()?;
             self.barred(rest, &limits, in_force)
         })
     }
@@ -139,7 +139,7 @@ impl<P: Planner> Axis<P> {
             .owner
             .as_ref()
             .filter(|owner| !owner.paused && owner.passage.wanted > 0.0)?;
-        let passage = self.passage(owner, self.setpoint.position, 0);
+        let passage = self.passage(owner, self.mover.setpoint().position, 0);
         self.bars(true, true).filter(|_| passage.wanted <= 0.0)
     }
 
@@ -148,7 +148,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn pause(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
         let scope = &mut self.owner_scope(scope);
         self.record(Event::Paused { error }, scope);
-        if matches!(self.motion, Motion::Hold | Motion::Follow) {
+        if matches!(self.mover.motion(), Motion::Hold | Motion::Follow) {
             return self.brake_superimposed();
         }
         if let Some(mut owner) = self.owner.filter(|owner| owner.work.manner().barred) {
@@ -159,15 +159,16 @@ impl<P: Planner> Axis<P> {
         }
         self.replan_due = false;
         self.leave_law();
-        self.in_force = self.limits_before(&self.in_force);
-        if let Some(layer) = &mut self.layer {
+        self.mover.keep(self.limits_before(self.mover.in_force()));
+        let setpoint = *self.mover.setpoint();
+        if let Some(layer) = self.mover.layer_mut() {
             layer.pass_velocity(Setpoint {
-                position: layer.base.position,
-                ..self.setpoint
+                position: layer.base().position,
+                ..setpoint
             });
         }
-        let (start, limits) = (self.base(), self.slowed(&self.stop_limits()));
-        self.motion = match self.planner.ramp_to(&start, 0.0, &limits, &self.in_force) {
+        let (start, limits) = (self.mover.base(), self.slowed(&self.stop_limits()));
+        let motion = match self.planner.ramp_to(&start, 0.0, &limits, self.mover.in_force()) {
             Ok(plan) if !start.is_at_rest() => {
                 if let Some(excess) = self.beyond_axis(&plan) {
                     self.record(Event::Unavoidable(excess), scope);
@@ -176,9 +177,10 @@ impl<P: Planner> Axis<P> {
             }
             _ => Motion::Hold,
         };
-        self.in_force = limits;
+        self.mover.start(motion, limits);
         self.end_orphan();
-        self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
+        self.mover
+            .watch(self.owner.is_some_and(|owner| self.needs_watching(&owner)));
     }
 
     /// The owner continues from its present state, if all directions it needs are permitted. If it can't
@@ -192,21 +194,21 @@ impl<P: Planner> Axis<P> {
             return;
         }
         if owner.turns == 0 {
-            self.look_through(&mut owner, self.base().position, 0);
-            self.stay_in_direction(&mut owner, &self.base());
+            self.look_through(&mut owner, self.mover.base().position, 0);
+            self.stay_in_direction(&mut owner, &self.mover.base());
         }
         match self.plan_anew(owner, scope) {
             Ok(()) | Err(ErrorId::PositiveBarred | ErrorId::NegativeBarred) => {}
-            Err(error) if self.setpoint.is_at_rest() && self.layer.is_none() => {
+            Err(error) if self.mover.setpoint().is_at_rest() && self.mover.layer().is_none() => {
                 self.refuse_plan(&owner, error, &mut self.owner_scope(scope));
                 self.end_owner(Fate::Failed(error));
-                self.motion = Motion::Hold;
+                self.mover.hold();
                 // No arrow leads from ContinuousMotion to Standstill except through a halt.
                 let is_endless = self.state == AxisState::ContinuousMotion;
                 if !is_endless {
                     self.enter(AxisEvent::MotionDone);
                 }
-                self.hand_over(self.setpoint.position, scope);
+                self.hand_over(self.mover.setpoint().position, scope);
                 if self.owner.is_none() && is_endless {
                     self.halt_after(&owner, scope);
                 }
@@ -220,8 +222,8 @@ impl<P: Planner> Axis<P> {
     /// have passed its end.
     #[cold]
     pub(super) fn settle_paused(&mut self, scope: &mut Scope<'_>) {
-        if self.is_paused() && matches!(self.motion, Motion::Run { .. }) {
-            self.motion = Motion::Hold;
+        if self.is_paused() && matches!(self.mover.motion(), Motion::Run { .. }) {
+            self.mover.hold();
             self.resume(scope);
         }
     }
@@ -230,12 +232,10 @@ impl<P: Planner> Axis<P> {
     /// number.
     #[cold]
     pub(super) fn shift_paused(&mut self, by: f64) {
-        if let Motion::Run { plan, .. } = &mut self.motion {
-            plan.shift(by);
-        }
+        self.mover.shift_plan(by);
         let Some(mut owner) = self.owner else { return };
         if matches!(owner.place(), Some(Place::At(_))) {
-            self.aim(&mut owner, self.setpoint.position);
+            self.aim(&mut owner, self.mover.setpoint().position);
         } else {
             owner.end = owner.end.map(|end| end + by);
             owner.from += by;

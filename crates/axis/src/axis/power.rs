@@ -84,7 +84,8 @@ impl<P: Planner> Axis<P> {
         let is_in_operation = !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
         let is_pending = self.failure.reset().is_some() || self.shift_due || self.frame.is_renaming();
         // An axis that has handed over withdraws its order in the next scan.
-        let is_torque = matches!(self.motion, Motion::Torque { .. }) || self.beside.order.torque.is_some();
+        let is_torque =
+            matches!(self.mover.motion(), Motion::Torque { .. }) || self.beside.order.torque.is_some();
         let is_watched = self.parameters.lag.on || self.is_homing() || is_torque;
         if !(self.power.is_calm()
             && is_in_operation
@@ -93,7 +94,7 @@ impl<P: Planner> Axis<P> {
             && !is_watched)
         {
             Calm::No
-        } else if self.layer.is_some() {
+        } else if self.mover.layer().is_some() {
             Calm::Beside
         } else {
             Calm::Alone
@@ -194,14 +195,14 @@ impl<P: Planner> Axis<P> {
                 self.hold_at_actual();
                 self.enter(AxisEvent::PowerOn);
             }
-            AxisState::ErrorStop if !feedback.enabled => self.motion = Motion::Follow,
-            AxisState::ErrorStop if matches!(self.motion, Motion::Follow) && !self.moves_itself() => {
+            AxisState::ErrorStop if !feedback.enabled => self.mover.follow(),
+            AxisState::ErrorStop if matches!(self.mover.motion(), Motion::Follow) && !self.moves_itself() => {
                 self.hold_at_actual();
             }
             AxisState::Disabled | AxisState::ErrorStop => {}
             _ if self.power.is_going_off() && !feedback.enabled => {
                 self.power.end_going_off();
-                self.motion = Motion::Follow;
+                self.mover.follow();
                 self.enter(AxisEvent::PowerOff);
             }
             _ => {}
@@ -221,9 +222,9 @@ impl<P: Planner> Axis<P> {
 
     /// The set-point takes over where the feedback is: enabling never makes it step.
     pub(super) fn hold_at_actual(&mut self) {
-        self.setpoint = standstill_planner::Setpoint::at_rest(self.feedback.position());
+        self.mover.stand_at(self.feedback.position());
         self.count_actual_turns();
-        self.motion = Motion::Hold;
+        self.mover.hold();
     }
 
     /// MC_Power: requests power or not, and sets the permitted directions. With `false` all commands are
@@ -298,7 +299,7 @@ impl<P: Planner> Axis<P> {
                 );
                 self.ramp_down(stop, &axis, scope);
             }
-            PowerOff::Coast | PowerOff::Drive => self.motion = Motion::Follow,
+            PowerOff::Coast | PowerOff::Drive => self.mover.follow(),
         }
         if self.state != AxisState::Standstill {
             self.enter(AxisEvent::Stop);
@@ -309,13 +310,16 @@ impl<P: Planner> Axis<P> {
     /// inside them otherwise.
     fn ramp_down(&mut self, mut limits: Limits, axis: &Limits, scope: &mut Scope<'_>) {
         // No stop is faster than this.
-        self.watched = false;
+        self.mover.watch(false);
         // Only a plan has a set-point that is not at rest.
-        if self.setpoint.is_at_rest() {
-            self.motion = Motion::Hold;
+        if self.mover.setpoint().is_at_rest() {
+            self.mover.hold();
             return;
         }
-        self.motion = match self.planner.ramp_to(&self.setpoint, 0.0, &limits, &self.in_force) {
+        let motion = match self
+            .planner
+            .ramp_to(self.mover.setpoint(), 0.0, &limits, self.mover.in_force())
+        {
             Ok(plan) => {
                 let plan = self.stopped_inside(plan, &mut limits, axis);
                 if let Some(excess) = self.beyond_axis(&plan) {
@@ -325,7 +329,7 @@ impl<P: Planner> Axis<P> {
             }
             Err(_) => Motion::Hold,
         };
-        self.in_force = limits;
+        self.mover.start(motion, limits);
     }
 
     /// Raises an error of the axis itself, which persists until [`Axis::clear_cause`].
@@ -356,7 +360,7 @@ impl<P: Planner> Axis<P> {
             Reaction::Ramp if self.power.is_on() && !self.moves_itself() => {
                 self.ramp_down(self.stop_limits(), &self.hardest_limits(), scope);
             }
-            Reaction::Ramp | Reaction::Follow => self.motion = Motion::Follow,
+            Reaction::Ramp | Reaction::Follow => self.mover.follow(),
         }
         self.enter(AxisEvent::Fault);
     }
@@ -397,7 +401,7 @@ impl<P: Planner> Axis<P> {
     #[cold]
     fn try_reset(&mut self, id: CommandId) {
         let (reached, moves_itself) = (self.goal_reached(), self.moves_itself());
-        let through = self.is_through();
+        let through = self.mover.is_through();
         if self.state == AxisState::ErrorStop {
             let given_up = self.failure.waits_too_long() && self.power.fault().is_some();
             if given_up || self.cause_known() {
@@ -405,7 +409,8 @@ impl<P: Planner> Axis<P> {
                 self.decide(id, Fate::Failed(ErrorId::CauseStillPresent));
                 return;
             }
-            let moving = moves_itself || !through || (matches!(self.motion, Motion::Run { .. }) && !reached);
+            let moving =
+                moves_itself || !through || (matches!(self.mover.motion(), Motion::Run { .. }) && !reached);
             let unwanted = self.power.is_on() && !self.power.is_wanted();
             if moving || unwanted || self.power.fault().is_some() {
                 return;
@@ -440,7 +445,7 @@ impl<P: Planner> Axis<P> {
         if self.calm.is_any() {
             return DriveRequest::Enable;
         }
-        let ramping = matches!(self.motion, Motion::Run { .. }) || !self.is_through();
+        let ramping = matches!(self.mover.motion(), Motion::Run { .. }) || !self.mover.is_through();
         if self.failure.reset().is_some() && self.is_resetting_drive() {
             DriveRequest::FaultReset
         } else if ramping && self.power.is_on() {

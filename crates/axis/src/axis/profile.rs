@@ -237,7 +237,7 @@ impl<P: Planner> Axis<P> {
                 // The curve starts at the sum.
                 self.end_superimposed(Fate::Aborted);
                 self.enter(owner.work.manner().start);
-                self.before = self.limits_before(&owner.limits);
+                self.mover.take_over_from(self.limits_before(&owner.limits));
                 self.adopt(owner, motion, scope);
             }
             Err(error) => self.drop_profile(error, scope),
@@ -268,7 +268,7 @@ impl<P: Planner> Axis<P> {
                 ..
             },
             Motion::Run { elapsed, scans, .. },
-        ) = (owner.work, &self.motion)
+        ) = (owner.work, self.mover.motion())
         else {
             return Ok(());
         };
@@ -283,7 +283,7 @@ impl<P: Planner> Axis<P> {
         };
         owner.limits = self.slowed(&self.parameters.limits);
         let motion = self.plan_profile(&mut owner, profile, scope)?;
-        self.before = self.limits_before(&owner.limits);
+        self.mover.take_over_from(self.limits_before(&owner.limits));
         self.adopt(owner, motion, scope);
         Ok(())
     }
@@ -292,7 +292,7 @@ impl<P: Planner> Axis<P> {
     /// its predecessor. It waits for a superimposed motion to end. A superimposed command that waits for
     /// room would not find any beside it.
     pub(super) fn begin_due(&mut self, mut next: Entry) {
-        if self.layer.as_ref().is_some_and(|layer| layer.moves()) {
+        if self.mover.layer().is_some_and(|layer| layer.moves()) {
             return;
         }
         let before = self.limits_before(&next.limits);
@@ -300,15 +300,15 @@ impl<P: Planner> Axis<P> {
         self.end_superimposed_command(Fate::Aborted);
         self.queue.pop();
         self.end_owner(self.fate_at_hand_over());
-        let starts_at_rest = self.setpoint.is_at_rest();
+        let starts_at_rest = self.mover.setpoint().is_at_rest();
         if starts_at_rest {
-            self.motion = Motion::Hold;
+            self.mover.hold();
         } else {
             self.go_on_alone(&before);
         }
         next.limits = self.slowed(&self.parameters.limits);
-        self.in_force = before;
-        self.watched = self.needs_watching(&next);
+        self.mover.keep(before);
+        self.mover.watch(self.needs_watching(&next));
         // At rest it may still fail, and no arrow leads from ContinuousMotion to Standstill.
         self.enter(if starts_at_rest {
             AxisEvent::StartDiscrete
@@ -329,11 +329,11 @@ impl<P: Planner> Axis<P> {
     #[cold]
     fn drop_profile(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
         self.end_owner(Fate::Failed(error));
-        if self.setpoint.is_at_rest() {
+        if self.mover.setpoint().is_at_rest() {
             self.come_to_rest();
         }
-        self.hand_over(self.setpoint.position, scope);
-        if self.owner.is_none() && !self.setpoint.is_at_rest() {
+        self.hand_over(self.mover.setpoint().position, scope);
+        if self.owner.is_none() && !self.mover.setpoint().is_at_rest() {
             self.trip(error, 0, Reaction::Ramp, scope);
         }
     }
@@ -396,9 +396,11 @@ impl<P: Planner> Axis<P> {
             // It continues in its present frame.
             entry.turns = 0;
         } else {
-            self.aim(entry, self.setpoint.position);
+            self.aim(entry, self.mover.setpoint().position);
         }
-        let start = self.in_frame_of(entry, &self.setpoint).unwrap_or(self.setpoint);
+        let start = self
+            .in_frame_of(entry, self.mover.setpoint())
+            .unwrap_or(*self.mover.setpoint());
         let range = self.parameters.software_limits;
         let plan = self
             .planner

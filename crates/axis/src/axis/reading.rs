@@ -140,7 +140,7 @@ impl<P: Planner> Axis<P> {
                 pace: Pace::Constant,
                 way: self.commanded_way(),
             }),
-            ValueSource::Set => Ok(planned_state(&self.commanded())),
+            ValueSource::Set => Ok(planned_state(&self.mover.commanded())),
             ValueSource::Actual => {
                 let actual = self.fresh_position()?;
                 Ok(self.measured_state(actual))
@@ -150,7 +150,7 @@ impl<P: Planner> Axis<P> {
 
     fn commanded_way(&self) -> Way {
         let owner = self.owner.as_ref().map(|owner| &owner.work);
-        let left = match (&self.motion, owner) {
+        let left = match (self.mover.motion(), owner) {
             (Motion::Run { plan, .. }, Some(Work::Velocity { .. })) => {
                 return Way::of(plan.at(u64::from(plan.scans())).velocity);
             }
@@ -158,8 +158,7 @@ impl<P: Planner> Axis<P> {
                 return Way::of(plan.at(u64::from(plan.scans())).velocity);
             }
             (Motion::Run { plan, .. }, Some(work)) if work.manner().place.is_some() => {
-                let place = self.layer.as_ref().map_or(&self.setpoint, |layer| &layer.base);
-                plan.at(u64::from(plan.scans())).position - place.position
+                plan.at(u64::from(plan.scans())).position - self.mover.base().position
             }
             (_, Some(_) | None) => 0.0,
         };

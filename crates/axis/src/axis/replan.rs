@@ -24,7 +24,7 @@ impl<P: Planner> Axis<P> {
     /// # Errors
     /// What the planner or the software limits refuse; nothing changes then.
     pub(super) fn replan(&mut self, mut owner: Entry, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
-        let here = self.base();
+        let here = self.mover.base();
         owner.turns = 0;
         self.look_through(&mut owner, here.position, 0);
         self.stay_in_direction(&mut owner, &here);
@@ -50,13 +50,13 @@ impl<P: Planner> Axis<P> {
 
     /// The same for one that may be paused, and goes on with this.
     pub(super) fn plan_anew(&mut self, mut owner: Entry, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
-        let here = self.base();
+        let here = self.mover.base();
         let start = self
             .in_frame_of(&owner, &here)
             .map_or(here.position, |framed| framed.position);
         self.look_through(&mut owner, start, 0);
         let before = self.limits_of_owner().unwrap_or(owner.limits);
-        let motion = match self.layer {
+        let motion = match self.mover.layer().copied() {
             None => {
                 let motion = self.plan_from(&mut owner, &here, &before)?;
                 Some(self.kept_inside(&mut owner, motion, &here, &before)?)
@@ -65,7 +65,7 @@ impl<P: Planner> Axis<P> {
         };
         match motion {
             Some(motion) => {
-                self.before = before;
+                self.mover.take_over_from(before);
                 self.adopt(owner, motion, scope);
             }
             None => {
@@ -87,15 +87,15 @@ impl<P: Planner> Axis<P> {
         before: &Limits,
     ) -> Result<Option<Motion<P::Plan>>, ErrorId> {
         let asked = *owner;
-        let motion = self.plan_from(owner, &layer.base, before)?;
-        let mut motion = self.kept_inside(owner, motion, &layer.base, before)?;
+        let motion = self.plan_from(owner, layer.base(), before)?;
+        let mut motion = self.kept_inside(owner, motion, layer.base(), before)?;
         if let (Motion::Run { plan, .. }, false) = (&motion, owner.is_endless() || owner.halted) {
             self.allowed(layer.end_above(plan.at(u64::from(plan.scans())).position))?;
         }
         if !self.fits_under(&motion, &layer) {
             let sum = Setpoint {
-                position: layer.base.position,
-                ..self.setpoint
+                position: layer.base().position,
+                ..*self.mover.setpoint()
             };
             let both = self.limits_before(&owner.limits).or_larger(before);
             *owner = asked;
@@ -109,7 +109,7 @@ impl<P: Planner> Axis<P> {
         }
         layer.try_soon();
         self.stir();
-        self.layer = Some(layer);
+        self.mover.lay(layer);
         Ok(Some(motion))
     }
 
@@ -146,12 +146,12 @@ impl<P: Planner> Axis<P> {
     /// those it took over from, too. None if it has no motion. Cost: at most one ramp.
     pub(super) fn limits_of_owner(&self) -> Option<Limits> {
         if !matches!(
-            self.motion,
+            self.mover.motion(),
             Motion::Run { .. } | Motion::Geared | Motion::Closing { .. }
         ) {
             return None;
         }
-        Some(self.limits_in_state(&self.base(), &self.in_force, &self.before))
+        Some(self.limits_in_state(&self.mover.base(), self.mover.in_force(), self.mover.before()))
     }
 
     /// `own` limits of a motion in `state`, and those `before` until it is inside, but no more of them than slaves leave if that
@@ -201,13 +201,12 @@ impl<P: Planner> Axis<P> {
         if let Motion::Run { plan, .. } | Motion::Torque { plan, .. } = &motion {
             self.record_plan(&entry, plan, scope);
         }
-        self.in_force = Self::limits_of(&entry.limits, &motion);
         if matches!(motion, Motion::Torque { .. }) {
             // A torque that may go on again, or was given new values, needs care in every scan.
             self.stir();
         }
-        self.motion = motion;
-        self.coarsest = 0.0;
+        self.mover
+            .start_anew(motion, Self::limits_of(&entry.limits, &motion));
         self.arrival = Arrival::default();
         if self.modulo.is_some() {
             self.start_of_plan();
@@ -216,10 +215,10 @@ impl<P: Planner> Axis<P> {
             paused: false,
             ..entry
         };
-        self.watched = self.needs_watching(&entry);
+        self.mover.watch(self.needs_watching(&entry));
         self.own(entry);
         self.replan_due = false;
-        if matches!(self.motion, Motion::Geared) {
+        if matches!(self.mover.motion(), Motion::Geared) {
             self.await_master(&entry, scope);
         }
     }

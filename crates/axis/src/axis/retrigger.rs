@@ -92,11 +92,11 @@ impl<P: Planner> Axis<P> {
     /// active. If there is none, the axis comes to rest, by a motion that no block follows.
     #[cold]
     fn pass_over_due_profile(&mut self, id: CommandId, scope: &mut Scope<'_>) {
-        if self.setpoint.is_at_rest() {
+        if self.mover.setpoint().is_at_rest() {
             self.end_owner(Fate::Aborted);
             self.come_to_rest();
         }
-        self.hand_over(self.setpoint.position, scope);
+        self.hand_over(self.mover.setpoint().position, scope);
         let Some(mut halt) = self.owner.filter(|owner| owner.id == id) else {
             return;
         };
@@ -121,7 +121,7 @@ impl<P: Planner> Axis<P> {
         let id = self.new_id();
         let halt = Entry {
             // For an axis at rest there is nothing to record.
-            orphaned: self.setpoint.is_at_rest(),
+            orphaned: self.mover.setpoint().is_at_rest(),
             ..Entry::new(id, ended.instance, Work::Halt, ended.limits, ended.mode)
         };
         self.halt_alone(halt, scope);

@@ -107,12 +107,12 @@ impl<P: Planner> Axis<P> {
             Some(owner),
             Some(end),
             true,
-        ) = (&self.motion, &self.owner, entry.end, is_braking)
+        ) = (self.mover.motion(), &self.owner, entry.end, is_braking)
         else {
             return true;
         };
         let rest = Setpoint::at_rest(end);
-        let leads_to_rest = !self.motion.goes_on() && present.at(*scans) == rest;
+        let leads_to_rest = !self.mover.motion().goes_on() && present.at(*scans) == rest;
         if owner.id != entry.id || !leads_to_rest {
             return true;
         }
@@ -148,10 +148,10 @@ impl<P: Planner> Axis<P> {
     /// The owner's motion passes its end at which it is now, and command `id` is next on its way.
     pub(super) fn goes_on_to(&self, id: CommandId) -> bool {
         let in_run = |owner: &Entry| owner.run.count > 0;
-        self.motion.goes_on()
+        self.mover.motion().goes_on()
             && self.goal_reached()
             && !self.is_held_up()
-            && self.layer.is_none()
+            && self.mover.layer().is_none()
             && self.owner.as_ref().is_some_and(in_run)
             && self.queue.first().is_some_and(|next| next.id == id)
     }
@@ -173,7 +173,7 @@ impl<P: Planner> Axis<P> {
             return false;
         }
         self.aim(&mut next, from);
-        let here = self.setpoint.position;
+        let here = self.mover.setpoint().position;
         let forward = owner.end.is_some_and(|end| owner.run.end > end);
         next.is_behind = next
             .end
@@ -187,13 +187,14 @@ impl<P: Planner> Axis<P> {
         if next.turns != 0 || self.end_of_run(&next) != Some(owner.run.end) {
             return false;
         }
-        let Motion::Run { plan, elapsed, scans } = &mut self.motion else {
+        let Motion::Run { plan, elapsed, .. } = self.mover.motion() else {
             return false;
         };
-        *scans = match next.end {
+        let goal = match next.end {
             Some(end) if next.run.count > 0 => passing_scan(plan, *elapsed, end, forward),
             _ => u64::from(plan.scans()),
         };
+        self.mover.set_goal(goal);
         if next.run.count == 0 {
             (next.passage, next.run) = (owner.run.passage, Run::NONE);
         }
@@ -202,7 +203,7 @@ impl<P: Planner> Axis<P> {
         self.enter(next.work.manner().start);
         self.record_slowed(&next, &mut scope.with(next.instance));
         self.arrival = Arrival::default();
-        self.before = next.limits;
+        self.mover.take_over_from(next.limits);
         self.own(next);
         true
     }
@@ -212,15 +213,15 @@ impl<P: Planner> Axis<P> {
         let (Some(end), Some(next)) = (owner.end, self.queue.first()) else {
             return false;
         };
-        let beyond = self.setpoint.position - end;
-        let target = self.end_of_leg(next, end, self.last_velocity > 0.0);
+        let beyond = self.mover.setpoint().position - end;
+        let target = self.end_of_leg(next, end, self.mover.last_velocity() > 0.0);
         let is_onward = target.is_some_and(|target| (target - end) * beyond > 0.0);
-        self.layer.is_none() && owner.passage.wanted > 0.0 && next.mode.blends() && is_onward
+        self.mover.layer().is_none() && owner.passage.wanted > 0.0 && next.mode.blends() && is_onward
     }
 
     /// Where the last of what is one motion with `first`, which is at the head of the buffer, ends (u).
     fn end_of_run(&self, first: &Entry) -> Option<f64> {
-        let forward = self.setpoint.velocity > 0.0;
+        let forward = self.mover.setpoint().velocity > 0.0;
         let mut behind = self.queue.iter().skip(1).take(first.run.count);
         behind.try_fold(first.end?, |from, next| {
             let same = next.mode.blends() && next.work.manner().blends && next.limits == first.limits;

@@ -52,16 +52,16 @@ impl<P: Planner> Axis<P> {
         let outside = |rest: f64| rest < min || rest > max;
         match entry.work.manner().watch {
             // It brakes as hard as it would there.
-            _ if entry.paused => outside(self.end_of_plan()),
+            _ if entry.paused => outside(self.mover.end_of_plan()),
             Watch::Always => true,
             // A curve was checked when it was planned, but its places may have other names since.
-            Watch::Curve => outside(self.end_of_plan()) || self.turns_outside(),
-            Watch::Ramp => outside(self.end_of_plan()),
+            Watch::Curve => outside(self.mover.end_of_plan()) || self.turns_outside(),
+            Watch::Ramp => outside(self.mover.end_of_plan()),
             // From rest the way goes straight to the target; from motion it may go past it.
             Watch::Way => {
-                outside(self.end_of_plan())
-                    || (!self.setpoint.is_at_rest()
-                        && (outside(self.rest(&self.setpoint, &entry.limits)) || self.turns_outside()))
+                outside(self.mover.end_of_plan())
+                    || (!self.mover.setpoint().is_at_rest()
+                        && (outside(self.rest(self.mover.setpoint(), &entry.limits)) || self.turns_outside()))
             }
             Watch::Torque | Watch::Never => false,
         }
@@ -71,7 +71,7 @@ impl<P: Planner> Axis<P> {
     /// reference would keep the set-point to publish out of registers, in every scan of every axis.
     #[inline(never)]
     pub(super) fn plan_would_leave(&self) -> bool {
-        match &self.motion {
+        match self.mover.motion() {
             Motion::Run { plan, elapsed, .. } => self.would_leave(&plan.at(*elapsed)),
             Motion::Follow
             | Motion::Hold
@@ -93,8 +93,8 @@ impl<P: Planner> Axis<P> {
         let leaves = |rest: f64| (rest > max && rest > next.position) || (rest < min && rest < next.position);
         // Between two scans it may leave the limits and turn; a stop from there leads inside again.
         let outside = |position: f64| position < min || position > max;
-        let comes_out = outside(next.position) && !outside(self.setpoint.position);
-        let work = match (&self.motion, &self.owner) {
+        let comes_out = outside(next.position) && !outside(self.mover.setpoint().position);
+        let work = match (self.mover.motion(), &self.owner) {
             (Motion::Run { .. } | Motion::Geared | Motion::Closing { .. }, Some(owner)) => {
                 Some(owner.work.manner())
             }
@@ -108,17 +108,17 @@ impl<P: Planner> Axis<P> {
             None => leaves(next.position + self.superimposed_left()),
             Some(Manner { watch, endless, .. }) => match watch {
                 Watch::Always => true,
-                Watch::Ramp | Watch::Torque => leaves(self.end_of_plan() + self.superimposed_left()),
+                Watch::Ramp | Watch::Torque => leaves(self.mover.end_of_plan() + self.superimposed_left()),
                 // The end of an endless motion with something superimposed was not checked.
-                Watch::Way if endless && self.layer.is_some() => {
-                    leaves(self.end_of_plan() + self.superimposed_left())
+                Watch::Way if endless && self.mover.layer().is_some() => {
+                    leaves(self.mover.end_of_plan() + self.superimposed_left())
                 }
                 // With something superimposed, ends and turns were checked when it was planned.
-                Watch::Curve | Watch::Way if !self.watched => return false,
-                Watch::Curve => leaves(self.end_of_plan()) || self.turns_outside(),
+                Watch::Curve | Watch::Way if !self.mover.is_watched() => return false,
+                Watch::Curve => leaves(self.mover.end_of_plan()) || self.turns_outside(),
                 // It turns back where it stops, or its end has another name since it began.
                 Watch::Way => {
-                    leaves(self.end_of_plan())
+                    leaves(self.mover.end_of_plan())
                         || self
                             .owner
                             .is_some_and(|owner| leaves(self.rest(next, &owner.limits)))
@@ -157,7 +157,7 @@ impl<P: Planner> Axis<P> {
 
     /// Where a ramp to rest from `state` within `limits` ends (u).
     fn rest(&self, state: &Setpoint, limits: &Limits) -> f64 {
-        match self.planner.ramp_to(state, 0.0, limits, &self.in_force) {
+        match self.planner.ramp_to(state, 0.0, limits, self.mover.in_force()) {
             Ok(ramp) => ramp.at(u64::from(ramp.scans())).position,
             Err(_) => state.position,
         }
@@ -168,7 +168,7 @@ impl<P: Planner> Axis<P> {
     #[inline(never)]
     fn turns_outside(&self) -> bool {
         let (Motion::Run { plan, elapsed, .. }, Some(range)) =
-            (&self.motion, self.parameters.software_limits)
+            (self.mover.motion(), self.parameters.software_limits)
         else {
             return false;
         };
@@ -181,17 +181,5 @@ impl<P: Planner> Axis<P> {
                 .planner
                 .fits((plan, *elapsed), (&hold, 0), &Limits::NONE, Some(range))
         })
-    }
-
-    /// Where the running plan has its goal (u).
-    pub(super) fn end_of_plan(&self) -> f64 {
-        match &self.motion {
-            Motion::Run { plan, .. } => plan.at(u64::from(plan.scans())).position,
-            Motion::Follow
-            | Motion::Hold
-            | Motion::Torque { .. }
-            | Motion::Geared
-            | Motion::Closing { .. } => self.setpoint.position,
-        }
     }
 }

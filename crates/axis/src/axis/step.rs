@@ -16,7 +16,7 @@ impl<P: Planner> Axis<P> {
     #[inline(always)]
     pub(crate) fn advance(&mut self, scope: &mut Scope<'_>) {
         // Short of the goal a plan needs a step and nothing else, and so does an endless motion nobody waits for.
-        if self.calm == Calm::Alone && (self.is_short_of_goal() || self.is_cruising()) {
+        if self.calm == Calm::Alone && (self.mover.is_short_of_goal() || self.is_cruising()) {
             self.step_along_plan(scope);
             if self.is_far_round() {
                 self.bring_back();
@@ -31,18 +31,12 @@ impl<P: Planner> Axis<P> {
     fn advance_with_care(&mut self, scope: &mut Scope<'_>) {
         self.apply_power(scope);
         self.follow_torque_order();
-        if self.layer.is_none() && self.is_short_of_goal() {
+        if self.mover.layer().is_none() && self.mover.is_short_of_goal() {
             self.step_along_plan(scope);
         } else {
             self.step_at_goal(scope);
         }
         self.finish_reset();
-    }
-
-    /// The next set-point is not the last of the plan.
-    #[inline]
-    fn is_short_of_goal(&self) -> bool {
-        matches!(&self.motion, Motion::Run { elapsed, scans, .. } if elapsed.wrapping_add(1) < *scans)
     }
 
     /// An endless motion has come to its velocity, or is about to, and nobody waits for that.
@@ -53,18 +47,14 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The next set-point of the plan, if it may be published.
-    // Inlined for the same reason as `publish`.
+    // Inlined for the same reason as `Mover::publish`.
     #[inline(always)]
     fn step_along_plan(&mut self, scope: &mut Scope<'_>) {
-        let Motion::Run { plan, elapsed, .. } = &self.motion else {
-            return;
-        };
-        let scan_of_plan = elapsed.wrapping_add(1);
         // Two questions and a copy of the rest of the step for each: where both kinds of plan met again, the compiler
         // took the set-point apart and put it together, which cost a scan a fifth.
-        if let Some(next) = plan.brief(scan_of_plan) {
+        if let Some(next) = self.mover.next_brief() {
             self.step_to(next, scope);
-        } else if let Some(next) = plan.usual(scan_of_plan) {
+        } else if let Some(next) = self.mover.next_usual() {
             self.step_to(next, scope);
         } else {
             self.step_by_call(scope);
@@ -74,8 +64,7 @@ impl<P: Planner> Axis<P> {
     /// The same where it takes a call to tell, as where a piece of a plan begins.
     #[inline(never)]
     fn step_by_call(&mut self, scope: &mut Scope<'_>) {
-        if let Motion::Run { plan, elapsed, .. } = &mut self.motion {
-            let next = plan.next(elapsed.wrapping_add(1));
+        if let Some(next) = self.mover.next() {
             self.step_to(next, scope);
         }
     }
@@ -83,18 +72,15 @@ impl<P: Planner> Axis<P> {
     /// The plan goes on by a scan, to `next`.
     #[inline(always)]
     fn step_to(&mut self, next: Setpoint, scope: &mut Scope<'_>) {
-        if let Motion::Run { elapsed, .. } = &mut self.motion {
-            // Scans of 1 ms wrap after 10^8 years.
-            *elapsed = elapsed.wrapping_add(1);
-        }
+        self.mover.count_scan();
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scope);
         } else if !self.is_usual_step(&next) {
             self.step_widely(scope);
-        } else if self.watched && self.plan_would_leave() {
+        } else if self.mover.is_watched() && self.plan_would_leave() {
             self.fail(ErrorId::SoftwareLimitReached, scope);
         } else {
-            self.publish(next);
+            self.mover.publish(next);
         }
     }
 
@@ -103,16 +89,16 @@ impl<P: Planner> Axis<P> {
     #[cold]
     #[inline(never)]
     fn step_widely(&mut self, scope: &mut Scope<'_>) {
-        let Motion::Run { plan, elapsed, .. } = &self.motion else {
+        let Some((plan, elapsed)) = self.mover.plan() else {
             return;
         };
-        let next = plan.at(*elapsed);
+        let next = plan.at(elapsed);
         if !self.is_step(&next) {
             self.fail(ErrorId::SetpointStep, scope);
-        } else if self.watched && self.would_leave(&next) {
+        } else if self.mover.is_watched() && self.would_leave(&next) {
             self.fail(ErrorId::SoftwareLimitReached, scope);
         } else {
-            self.publish(next);
+            self.mover.publish(next);
         }
     }
 
@@ -123,20 +109,21 @@ impl<P: Planner> Axis<P> {
         if self.owner.is_none() && self.goal_reached() {
             // A ramp nobody commanded ended in the scan before; until then power stays on, so that the drive
             // gets the last set-point.
-            self.motion = Motion::Hold;
+            self.mover.hold();
         }
-        if self.layer.is_some() {
+        if self.mover.layer().is_some() {
             self.advance_both(scope);
             return;
         }
-        match &mut self.motion {
+        match self.mover.motion() {
             Motion::Follow => {
-                self.publish(Setpoint::at_rest(self.feedback.position()));
+                self.mover.publish(Setpoint::at_rest(self.feedback.position()));
                 self.count_actual_turns();
             }
             // What is behind a master has its own step; without its master it stays.
             Motion::Hold | Motion::Geared | Motion::Closing { .. } => {
-                self.publish(Setpoint::at_rest(self.setpoint.position));
+                self.mover
+                    .publish(Setpoint::at_rest(self.mover.setpoint().position));
             }
             Motion::Run { .. } => self.step_along_plan(scope),
             Motion::Torque { .. } => self.step_torque(),
@@ -149,43 +136,21 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    // Inlined, so that a set-point goes from registers to its place and is not copied through memory, which
-    // takes longer than computing it.
-    #[inline(always)]
-    pub(super) fn publish(&mut self, next: Setpoint) {
-        if self.is_shaped() {
-            self.pass_to_shaper(&next);
-        }
-        self.setpoint = next;
-        if next.velocity != 0.0 {
-            self.last_velocity = next.velocity;
-        }
-    }
-
     /// Enters ErrorStop and publishes the first set-point of the ramp, which starts at the last one published.
     #[cold]
     pub(super) fn fail(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
         if self.state == AxisState::ErrorStop {
             // The ramp itself is at fault, so nothing is left that could be trusted to move the axis.
-            self.motion = Motion::Hold;
+            self.mover.hold();
         }
         self.trip(error, 0, Reaction::Ramp, scope);
-        let ramp = match &mut self.motion {
-            Motion::Run { plan, elapsed, .. } => {
-                *elapsed = 1;
-                Some(plan.at(1))
-            }
-            Motion::Follow
-            | Motion::Hold
-            | Motion::Torque { .. }
-            | Motion::Geared
-            | Motion::Closing { .. } => None,
-        };
+        let ramp = self.mover.begin_plan();
         let next = ramp.filter(|next| next.is_finite() && self.is_step(next));
         if next.is_none() && ramp.is_some() {
-            self.motion = Motion::Hold;
+            self.mover.hold();
         }
-        self.publish(next.unwrap_or(Setpoint::at_rest(self.setpoint.position)));
+        self.mover
+            .publish(next.unwrap_or(Setpoint::at_rest(self.mover.setpoint().position)));
     }
 
     /// Completion and hand-over, at the goal.
@@ -195,7 +160,7 @@ impl<P: Planner> Axis<P> {
                 && !self.queue.is_empty()
             {
                 // MC_Stop released the axis in this scan (note 6), or a command waits for a superimposed motion.
-                self.hand_over(self.setpoint.position, scope);
+                self.hand_over(self.mover.setpoint().position, scope);
             }
             return;
         };
@@ -207,18 +172,18 @@ impl<P: Planner> Axis<P> {
             Ending::AtRest => self.complete(scope),
             Ending::Names(position) => self.settle_homing(position, scope),
             Ending::Locks if owner.held => {
-                self.motion = Motion::Hold;
+                self.mover.hold();
                 self.stop_held = true;
             }
             Ending::Locks => {
-                self.motion = Motion::Hold;
+                self.mover.hold();
                 self.end_owner(Fate::Done);
                 self.enter(AxisEvent::StopReleased);
-                self.hand_over(self.setpoint.position, scope);
+                self.hand_over(self.mover.setpoint().position, scope);
             }
             // An endless motion gives way when it has reached its velocity.
             Ending::Holds => self.hand_over(self.passed_end(), scope),
-            Ending::RunsOn => self.hand_over(self.setpoint.position, scope),
+            Ending::RunsOn => self.hand_over(self.mover.setpoint().position, scope),
             // Decided with its master.
             Ending::Follows | Ending::Due | Ending::Never => {}
         }
@@ -226,7 +191,7 @@ impl<P: Planner> Axis<P> {
 
     /// A move has completed once the axis is in position; one that passes its end does not wait for that.
     fn complete_move(&mut self, scope: &mut Scope<'_>) {
-        if self.base().velocity != 0.0 || self.has_arrived() {
+        if self.mover.base().velocity != 0.0 || self.has_arrived() {
             self.complete(scope);
         }
     }
@@ -234,17 +199,17 @@ impl<P: Planner> Axis<P> {
     /// The owner has completed, at rest or passing its end on to a blended successor.
     #[cold]
     pub(super) fn complete(&mut self, scope: &mut Scope<'_>) {
-        if self.base().velocity != 0.0 {
+        if self.mover.base().velocity != 0.0 {
             return self.pass_on(scope);
         }
         self.end_owner(Fate::Done);
         self.come_to_rest();
-        self.hand_over(self.setpoint.position, scope);
+        self.hand_over(self.mover.setpoint().position, scope);
     }
 
     /// The owner has ended at rest. The motion is not over while something is superimposed (V14).
     pub(super) fn come_to_rest(&mut self) {
-        self.motion = Motion::Hold;
+        self.mover.hold();
         if !self.is_superimposing() {
             self.enter(AxisEvent::MotionDone);
         }

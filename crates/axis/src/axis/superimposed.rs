@@ -90,13 +90,13 @@ impl Added {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layer<Plan> {
     /// Set-point of the owner alone.
-    pub base: Setpoint,
+    base: Setpoint,
     /// The added motion; its position counts from the start of the layer.
-    pub added: Setpoint,
+    added: Setpoint,
     /// The part of `added.position` that the positions of `base` already contain (u).
     taken: f64,
     /// The motion of `added`; never [`Motion::Follow`].
-    pub(super) motion: Motion<Plan>,
+    motion: Motion<Plan>,
     /// Limits of that motion.
     in_force: Limits,
     /// Limits of the one it took over from.
@@ -118,6 +118,36 @@ impl<P: Plan> Layer<P> {
             command: None,
             retry: 0,
         }
+    }
+
+    /// Set-point of the owner alone.
+    pub fn base(&self) -> &Setpoint {
+        &self.base
+    }
+
+    /// The added motion; its position counts from the start of the layer.
+    pub fn added(&self) -> &Setpoint {
+        &self.added
+    }
+
+    /// What the added motion comes from.
+    pub fn motion(&self) -> &Motion<P> {
+        &self.motion
+    }
+
+    /// The owner is at `base` at the end of this scan, and the added motion goes on. Returns their sum.
+    pub fn step(&mut self, base: Setpoint) -> Setpoint {
+        self.base = base;
+        if let Motion::Run { plan, elapsed, .. } = &mut self.motion {
+            *elapsed = elapsed.saturating_add(1);
+            self.added = plan.next(*elapsed);
+        }
+        self.sum()
+    }
+
+    /// Coordinates move by `by` (u).
+    pub fn shift(&mut self, by: f64) {
+        self.base.position += by;
     }
 
     pub fn moves(&self) -> bool {
@@ -224,8 +254,10 @@ impl<P: Planner> Axis<P> {
         self.admit_superimposed()
             .map_err(|error| self.refuse("", f64::NAN, f64::NAN, error, scope))?;
         let layer = self
-            .layer
-            .unwrap_or_else(|| Layer::on(self.setpoint, &self.config.limits));
+            .mover
+            .layer()
+            .copied()
+            .unwrap_or_else(|| Layer::on(*self.mover.setpoint(), &self.config.limits));
         let id = self.new_id();
         let command = self.added(id, layer.added.position, &layer, request, scope)?;
         let refuse = |error| self.refuse("Distance", request.distance, f64::NAN, error, scope);
@@ -241,7 +273,7 @@ impl<P: Planner> Axis<P> {
         }
         self.end_superimposed_command(Fate::Aborted);
         self.stir();
-        let layer = self.layer.get_or_insert(layer);
+        let layer = self.mover.layer_or(layer);
         layer.command = Some(command);
         self.add(proposed, scope);
         self.rest_before_outside(scope);
@@ -253,7 +285,7 @@ impl<P: Planner> Axis<P> {
     /// is refused there.
     fn rest_before_outside(&mut self, scope: &mut Scope<'_>) {
         let blends = |owner: &Entry| owner.passage != REST;
-        let (Some(owner), Some(layer)) = (self.owner.filter(blends), &self.layer) else {
+        let (Some(owner), Some(layer)) = (self.owner.filter(blends), self.mover.layer()) else {
             return;
         };
         let (Some(end), Some(next)) = (owner.end, self.queue.first()) else {
@@ -278,7 +310,11 @@ impl<P: Planner> Axis<P> {
     ) -> Result<CommandId, ErrorId> {
         let asked = self.resolve(dynamics, scope)?;
         let limits = self.slowed(&asked);
-        let layer = self.layer.unwrap_or_else(|| Layer::on(self.setpoint, &limits));
+        let layer = self
+            .mover
+            .layer()
+            .copied()
+            .unwrap_or_else(|| Layer::on(*self.mover.setpoint(), &limits));
         let command = Added {
             id: self.new_id(),
             instance: scope.instance,
@@ -306,7 +342,7 @@ impl<P: Planner> Axis<P> {
         };
         self.end_superimposed_command(Fate::Aborted);
         self.stir();
-        self.layer.get_or_insert(layer).command = Some(command);
+        self.mover.layer_or(layer).command = Some(command);
         if !command.runs() {
             self.add(proposed, scope);
         }
@@ -315,7 +351,7 @@ impl<P: Planner> Axis<P> {
 
     /// The distance superimposed command `id` has added so far (u); kept for the last one that ended.
     pub fn covered_distance(&self, id: CommandId) -> Option<f64> {
-        if let Some(layer) = &self.layer
+        if let Some(layer) = self.mover.layer()
             && let Some(command) = &layer.command
             && command.id == id
         {
@@ -324,14 +360,12 @@ impl<P: Planner> Axis<P> {
                 Adds::Halt => 0.0,
             });
         }
-        self.covered
-            .filter(|(ended, _)| *ended == id)
-            .map(|(_, covered)| covered)
+        self.fates.covered(id)
     }
 
     /// The state of superimposed command `id`, if it is the present one.
     pub(super) fn superimposed_fate(&self, id: CommandId) -> Option<Fate> {
-        let command = self.layer.as_ref()?.command.as_ref()?;
+        let command = self.mover.layer()?.command.as_ref()?;
         (command.id == id).then_some(if command.runs() {
             Fate::Active { reached: false }
         } else {
@@ -341,12 +375,12 @@ impl<P: Planner> Axis<P> {
 
     /// Whether something is yet to be superimposed.
     pub(super) fn is_superimposing(&self) -> bool {
-        self.layer.as_ref().is_some_and(Layer::is_busy)
+        self.mover.layer().is_some_and(Layer::is_busy)
     }
 
     /// The distance that is still to be superimposed (u).
     pub(super) fn superimposed_left(&self) -> f64 {
-        self.layer.as_ref().map_or(0.0, Layer::left)
+        self.mover.layer().map_or(0.0, Layer::left)
     }
 
     /// The states it may start in (R64, S9).
@@ -359,7 +393,7 @@ impl<P: Planner> Axis<P> {
             AxisState::ErrorStop => Err(ErrorId::InErrorStop),
             AxisState::Stopping => Err(ErrorId::InStopping),
             AxisState::Homing => Err(ErrorId::InHoming),
-            _ if matches!(self.motion, Motion::Torque { .. }) => Err(ErrorId::TorqueControls),
+            _ if matches!(self.mover.motion(), Motion::Torque { .. }) => Err(ErrorId::TorqueControls),
             _ if self.has_lost_master() => Err(ErrorId::MasterLost),
             AxisState::Standstill
             | AxisState::DiscreteMotion
@@ -370,7 +404,7 @@ impl<P: Planner> Axis<P> {
 
     /// The place where the owner will come to rest (u); NaN if it does not by itself.
     fn base_end(&self, layer: &Layer<P::Plan>) -> f64 {
-        match (&self.motion, self.owner.as_ref().map(|owner| owner.work)) {
+        match (self.mover.motion(), self.owner.as_ref().map(|owner| owner.work)) {
             (Motion::Run { .. }, Some(Work::Velocity { .. } | Work::Through { .. })) => f64::NAN,
             // Halted, its plan ends elsewhere.
             (Motion::Run { .. }, Some(work)) if work.manner().blends => self
@@ -387,18 +421,20 @@ impl<P: Planner> Axis<P> {
 
     /// Ends the superimposed command, if there is one; the caller handles its motion.
     pub(super) fn end_superimposed_command(&mut self, fate: Fate) {
-        let Some(layer) = &mut self.layer else { return };
+        let Some(layer) = self.mover.layer_mut() else {
+            return;
+        };
         let moves = layer.moves();
         let Some(command) = layer.command.take() else {
             return;
         };
         let fate = match command.adds {
             Adds::Distance { distance, .. } if fate == Fate::Done => {
-                self.covered = Some((command.id, distance));
+                self.fates.cover(command.id, distance);
                 fate
             }
             Adds::Distance { origin, .. } => {
-                self.covered = Some((command.id, layer.added.position - origin));
+                self.fates.cover(command.id, layer.added.position - origin);
                 fate
             }
             // It has nothing left to do.
@@ -411,7 +447,7 @@ impl<P: Planner> Axis<P> {
     /// Superimposed command `id` waits for room, or is held up, and its instance gives another one: its
     /// motion comes to rest. Returns whether this was so.
     pub(super) fn withdraw_superimposed(&mut self, id: CommandId) -> bool {
-        let Some(layer) = &mut self.layer else {
+        let Some(layer) = self.mover.layer_mut() else {
             return false;
         };
         let waits = |command: &&mut Added| command.id == id && (!command.runs() || command.halting);
@@ -428,7 +464,7 @@ impl<P: Planner> Axis<P> {
 
     /// No block follows superimposed command `id` any more; `false` if it has ended.
     pub(super) fn orphan_superimposed(&mut self, id: CommandId) -> bool {
-        let command = self.layer.as_mut().and_then(|layer| layer.command.as_mut());
+        let command = self.mover.layer_mut().and_then(|layer| layer.command.as_mut());
         let command = command.filter(|command| command.id == id);
         command.is_some_and(|command| {
             command.orphaned = true;
@@ -438,43 +474,28 @@ impl<P: Planner> Axis<P> {
 
     /// Ends everything superimposed (R65): from now on there is one motion, that of the sum.
     pub(super) fn end_superimposed(&mut self, fate: Fate) {
-        if self.layer.is_some() {
+        if self.mover.layer().is_some() {
             self.drop_superimposed(fate);
         }
     }
 
     #[cold]
     fn drop_superimposed(&mut self, fate: Fate) {
-        self.in_force = self.limits_before(&self.in_force);
+        self.mover.keep(self.limits_before(self.mover.in_force()));
         self.end_superimposed_command(fate);
-        self.layer = None;
+        self.mover.drop_layer();
         self.stir();
     }
 
     /// The motion step with something superimposed: both motions advance, their sum is published.
     #[inline(never)]
     pub(super) fn advance_both(&mut self, scope: &mut Scope<'_>) {
-        if matches!(self.motion, Motion::Torque { .. }) {
+        if matches!(self.mover.motion(), Motion::Torque { .. }) {
             return self.advance_torque_below(scope);
         }
-        let Some(layer) = &mut self.layer else { return };
-        layer.base = match &mut self.motion {
-            Motion::Follow => Setpoint::at_rest(self.feedback.position()),
-            // A motion superimposed on a law is added in the step behind the master; under a torque
-            // nothing is added.
-            Motion::Hold | Motion::Torque { .. } | Motion::Geared | Motion::Closing { .. } => {
-                Setpoint::at_rest(layer.base.position)
-            }
-            Motion::Run { plan, elapsed, .. } => {
-                *elapsed = elapsed.saturating_add(1);
-                plan.next(*elapsed)
-            }
+        let Some(next) = self.mover.step_both(self.feedback.position()) else {
+            return;
         };
-        if let Motion::Run { plan, elapsed, .. } = &mut layer.motion {
-            *elapsed = elapsed.saturating_add(1);
-            layer.added = plan.next(*elapsed);
-        }
-        let next = layer.sum();
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scope);
         } else if !self.is_following() && !self.is_step(&next) {
@@ -483,7 +504,7 @@ impl<P: Planner> Axis<P> {
         } else if self.parameters.software_limits.is_some() && self.would_leave(&next) {
             self.fail(ErrorId::SoftwareLimitReached, scope);
         } else {
-            self.publish(next);
+            self.mover.publish(next);
         }
         if self.modulo.is_some() {
             self.bring_back();
@@ -502,8 +523,8 @@ impl<P: Planner> Axis<P> {
     #[cold]
     fn advance_torque_below(&mut self, scope: &mut Scope<'_>) {
         self.step_torque();
-        let setpoint = self.setpoint;
-        if let Some(layer) = &mut self.layer {
+        let setpoint = *self.mover.setpoint();
+        if let Some(layer) = self.mover.layer_mut() {
             layer.base = setpoint;
         }
         self.settle_superimposed(scope);
@@ -511,8 +532,10 @@ impl<P: Planner> Axis<P> {
 
     /// Completes the superimposed motion, and tries a command again that waits or was lowered.
     fn settle_superimposed(&mut self, scope: &mut Scope<'_>) {
-        let delay = self.shaping_delay();
-        let Some(layer) = &mut self.layer else { return };
+        let delay = self.mover.shaping_delay();
+        let Some(layer) = self.mover.layer_mut() else {
+            return;
+        };
         let reached = match &layer.motion {
             Motion::Run { elapsed, scans, .. } => *elapsed >= scans.saturating_add(delay),
             _ => true,
@@ -531,13 +554,13 @@ impl<P: Planner> Axis<P> {
             }
         }
         self.try_again(scope);
-        let still = !matches!(self.motion, Motion::Run { .. });
-        if still && self.layer.as_ref().is_some_and(|layer| layer.command.is_none()) {
-            self.layer = None;
+        let still = !matches!(self.mover.motion(), Motion::Run { .. });
+        if still && self.mover.layer().is_some_and(|layer| layer.command.is_none()) {
+            self.mover.drop_layer();
             self.stir();
             if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
                 self.enter(AxisEvent::MotionDone);
-                self.hand_over(self.setpoint.position, scope);
+                self.hand_over(self.mover.setpoint().position, scope);
             }
             self.resume(scope);
         }
@@ -546,7 +569,7 @@ impl<P: Planner> Axis<P> {
     /// A command given while only a superimposed motion moves starts beside that at once.
     pub(super) fn start_beside(&mut self, scope: &mut Scope<'_>) {
         if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
-            self.hand_over(self.setpoint.position, scope);
+            self.hand_over(self.mover.setpoint().position, scope);
         }
     }
 
@@ -554,7 +577,9 @@ impl<P: Planner> Axis<P> {
     #[cold]
     pub(super) fn brake_superimposed(&mut self) {
         let limits = self.slowed(&self.stop_limits());
-        let Some(layer) = &mut self.layer else { return };
+        let Some(layer) = self.mover.layer_mut() else {
+            return;
+        };
         let planned = self.planner.ramp_to(&layer.added, 0.0, &limits, &layer.in_force);
         if let (Ok(plan), Some(command)) = (planned, &mut layer.command) {
             layer.motion = Motion::along(plan);
@@ -566,7 +591,7 @@ impl<P: Planner> Axis<P> {
     /// For [`crate::Outlook`]: the command, the scans left as for the owner, whether it waits for room,
     /// and the positions of both motions as bits.
     pub(super) fn superimposed_outlook(&self) -> Option<super::Beside> {
-        self.layer.as_ref().map(|layer| super::Beside {
+        self.mover.layer().map(|layer| super::Beside {
             command: layer.command.as_ref().map(|command| {
                 let kind = match command.adds {
                     Adds::Distance { .. } => WorkKind::Distance,
@@ -575,7 +600,7 @@ impl<P: Planner> Axis<P> {
                 (command.id, kind, command.runs())
             }),
             scans_left: layer.motion.scans_left().unwrap_or(0),
-            tried_in: match (&layer.command, &self.motion) {
+            tried_in: match (&layer.command, self.mover.motion()) {
                 (Some(command), Motion::Run { elapsed, .. }) if command.lacks_room() => {
                     u32::try_from(layer.retry.saturating_sub(*elapsed)).unwrap_or(u32::MAX)
                 }

@@ -60,7 +60,7 @@ impl Arrival {
 impl<P: Planner> Axis<P> {
     /// The set position last published less the actual position (u), on a modulo axis the shorter way round.
     pub(super) fn following_error(&self) -> f64 {
-        let error = self.commanded().position - self.feedback.position();
+        let error = self.mover.commanded().position - self.feedback.position();
         match &self.modulo {
             None => error,
             Some(modulo) => nearest(error, 0.0, modulo.length),
@@ -70,7 +70,8 @@ impl<P: Planner> Axis<P> {
     /// Whether the following error is too large, or not a number.
     pub(super) fn lags(&self) -> bool {
         let lag = &self.parameters.lag;
-        let is_led = self.power.is_on() && !matches!(self.motion, Motion::Follow | Motion::Torque { .. });
+        let is_led =
+            self.power.is_on() && !matches!(self.mover.motion(), Motion::Follow | Motion::Torque { .. });
         lag.on && is_led && !(self.following_error().abs() <= lag.most)
     }
 
@@ -78,7 +79,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn supervise(&mut self, scope: &mut Scope<'_>) {
         if self.lags() {
             self.trip(ErrorId::FollowingErrorTooLarge, 0, Reaction::Ramp, scope);
-        } else if matches!(self.motion, Motion::Torque { .. }) && self.torque_would_leave() {
+        } else if matches!(self.mover.motion(), Motion::Torque { .. }) && self.torque_would_leave() {
             self.trip(ErrorId::SoftwareLimitReached, 0, Reaction::Ramp, scope);
         }
     }

@@ -10,7 +10,7 @@
 use super::commands::{Entry, Work};
 use super::{Axis, Motion};
 use crate::{Direction, Dynamics, ErrorId, Raw, Scope, TorqueOrder, TorqueReport};
-use standstill_planner::{Limits, Plan, Planner, Setpoint};
+use standstill_planner::{Limits, Plan, Planner};
 
 impl<P: Planner> Axis<P> {
     /// The actual torque, in the unit of the drive; positive towards larger positions.
@@ -83,7 +83,7 @@ impl<P: Planner> Axis<P> {
     /// The motion under a torque, starting from the present torque as far as the drive can hold it.
     /// `plan` is the ramp of the velocity limit.
     pub(super) fn under_torque(&self, plan: P::Plan) -> Motion<P::Plan> {
-        let torque = match (&self.motion, &self.beside.report.torque) {
+        let torque = match (self.mover.motion(), &self.beside.report.torque) {
             (Motion::Torque { torque, .. }, _) => *torque,
             (_, Some(report)) => report.actual,
             (_, None) => 0.0,
@@ -103,11 +103,8 @@ impl<P: Planner> Axis<P> {
 
     /// After the latch: under a torque the set-point is the actual state.
     pub(super) fn follow_actual(&mut self) {
-        if let (Motion::Torque { .. }, Ok(velocity)) = (&self.motion, self.actual_velocity()) {
-            self.setpoint = Setpoint {
-                velocity,
-                ..Setpoint::at_rest(self.feedback.position())
-            };
+        if let (Motion::Torque { .. }, Ok(velocity)) = (self.mover.motion(), self.actual_velocity()) {
+            self.mover.take_actual(self.feedback.position(), velocity);
             self.count_actual_turns();
         }
     }
@@ -125,12 +122,12 @@ impl<P: Planner> Axis<P> {
                 elapsed,
                 torque,
             },
-        ) = (owner.work, &mut self.motion)
+        ) = (owner.work, self.mover.motion())
         else {
             return;
         };
-        *elapsed = elapsed.saturating_add(1);
-        let (goal, limit) = (torque_of(&owner), plan.at(*elapsed).velocity);
+        let limit = plan.at(elapsed.saturating_add(1)).velocity;
+        let goal = torque_of(&owner);
         let step = if ramp > 0.0 { ramp * cycle } else { f64::INFINITY };
         let left = goal - *torque;
         let next = if left.abs() <= step {
@@ -139,7 +136,7 @@ impl<P: Planner> Axis<P> {
             *torque + step.copysign(left)
         };
         // The largest torque of the drive may have become smaller.
-        *torque = within(next, most_torque);
+        let torque = within(next, most_torque);
         let most = owner.limits.velocity;
         let velocity = if goal > 0.0 {
             (limit.min(-most), limit)
@@ -148,17 +145,15 @@ impl<P: Planner> Axis<P> {
         } else {
             (-most, most)
         };
-        self.beside.order.torque = Some(TorqueOrder {
-            torque: *torque,
-            velocity,
-        });
-        self.publish(self.setpoint);
+        self.mover.step_torque(torque);
+        self.beside.order.torque = Some(TorqueOrder { torque, velocity });
+        self.mover.publish(*self.mover.setpoint());
     }
 
     /// Withdraws the torque order when the motion is another one.
     #[inline]
     pub(super) fn follow_torque_order(&mut self) {
-        if self.beside.order.torque.is_some() && !matches!(self.motion, Motion::Torque { .. }) {
+        if self.beside.order.torque.is_some() && !matches!(self.mover.motion(), Motion::Torque { .. }) {
             self.beside.order.torque = None;
         }
     }

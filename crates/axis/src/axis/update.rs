@@ -119,7 +119,7 @@ impl<P: Planner> Axis<P> {
 
     /// The end of the owner, seen from its present place.
     fn aim_anew(&self, owner: &mut Entry) {
-        let base = self.base();
+        let base = self.mover.base();
         let from = match owner.place() {
             // The way round a modulo axis starts here.
             Some(Place::At(_)) | None => base.position,
@@ -143,10 +143,10 @@ impl<P: Planner> Axis<P> {
         let Some(owner) = self.owner.filter(blends) else {
             return false;
         };
-        if self.passage(&owner, self.base().position, 0) != REST {
+        if self.passage(&owner, self.mover.base().position, 0) != REST {
             return false;
         }
-        if matches!(self.motion, Motion::Run { .. }) && self.replan(owner, scope).is_err() {
+        if matches!(self.mover.motion(), Motion::Run { .. }) && self.replan(owner, scope).is_err() {
             // If it would take too long to rest from here, it continues as planned.
             self.end_run();
         }

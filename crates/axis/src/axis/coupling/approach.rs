@@ -125,9 +125,9 @@ impl<P: Planner> Axis<P> {
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
         Setpoint {
             position: off(self.place(), place, length),
-            velocity: self.setpoint.velocity - law.velocity,
-            acceleration: self.setpoint.acceleration - law.acceleration,
-            jerk: self.setpoint.jerk - law.jerk,
+            velocity: self.mover.setpoint().velocity - law.velocity,
+            acceleration: self.mover.setpoint().acceleration - law.acceleration,
+            jerk: self.mover.setpoint().jerk - law.jerk,
             snap: 0.0,
         }
     }
@@ -194,7 +194,7 @@ impl<P: Planner> Axis<P> {
     /// acceleration is 0. Cost: one ramp.
     fn gets_too_fast(&self, limits: &Limits, before: &Limits) -> bool {
         let most = self.parameters.limits.velocity * (1.0 + ROUNDING);
-        let stop = self.planner.ramp_to(&self.setpoint, 0.0, limits, before);
+        let stop = self.planner.ramp_to(self.mover.setpoint(), 0.0, limits, before);
         let peaks = stop.ok().and_then(|stop| self.planner.peaks((&stop, 0)));
         peaks.is_some_and(|peaks| peaks.velocity > most)
     }
@@ -307,7 +307,7 @@ impl<P: Planner> Axis<P> {
         } else {
             // A slave as fast as the line can wait for it, but cannot catch up.
             let ahead = self.stop_ahead(&self.beside_stretch(stretch), stretch.velocity, limits);
-            let resolved = RESOLVED * 4.0 * (stretch.now.abs() + self.setpoint.position.abs());
+            let resolved = RESOLVED * 4.0 * (stretch.now.abs() + self.mover.setpoint().position.abs());
             ahead.is_some_and(|ahead| ahead < -resolved)
         };
         if too_fast {
@@ -321,8 +321,8 @@ impl<P: Planner> Axis<P> {
     fn beside_stretch(&self, stretch: &Stretch) -> Setpoint {
         Setpoint {
             position: self.place().position - stretch.now,
-            velocity: self.setpoint.velocity - stretch.velocity,
-            ..self.setpoint
+            velocity: self.mover.setpoint().velocity - stretch.velocity,
+            ..*self.mover.setpoint()
         }
     }
 
@@ -336,7 +336,7 @@ impl<P: Planner> Axis<P> {
         let target = (law.turns.wrapping_sub(here.turns)) as f64 * length + law.position;
         let start = Setpoint {
             position: here.position,
-            ..self.setpoint
+            ..*self.mover.setpoint()
         };
         let (plan, limits) = self.moved_inside(&start, target, *limits, before).ok()?;
         let lock = u64::from(plan.scans());
@@ -496,7 +496,7 @@ impl<P: Planner> Axis<P> {
                 };
                 let both = Some((&plan, 0));
                 self.planner
-                    .fits_behind(&line, &self.setpoint, both, axis)
+                    .fits_behind(&line, self.mover.setpoint(), both, axis)
                     .then_some((plan, limits))
             })
     }
@@ -525,8 +525,8 @@ impl<P: Planner> Axis<P> {
         let turns = |beside: &P::Plan| {
             let found = self.planner.velocities_behind(&leads, (beside, 0));
             let (against, start) = match found {
-                Some((lowest, _)) if line > 0.0 => (-lowest, -self.setpoint.velocity),
-                Some((_, highest)) if line < 0.0 => (highest, self.setpoint.velocity),
+                Some((lowest, _)) if line > 0.0 => (-lowest, -self.mover.setpoint().velocity),
+                Some((_, highest)) if line < 0.0 => (highest, self.mover.setpoint().velocity),
                 _ => return found.is_none(),
             };
             against > start.max(0.0) + ROUNDING * limits.velocity
@@ -540,7 +540,8 @@ impl<P: Planner> Axis<P> {
             };
             let planned = planned.ok().filter(|beside| {
                 let beside = Some((beside, 0));
-                self.planner.fits_behind(&leads, &self.setpoint, beside, limits)
+                self.planner
+                    .fits_behind(&leads, self.mover.setpoint(), beside, limits)
             });
             planned.filter(|beside| !(is_syncing && turns(beside)))
         };
@@ -692,8 +693,8 @@ impl<P: Planner> Axis<P> {
             ..*owner
         };
         let before = self.limits_before(&limits);
-        let motion = self.plan_from(&mut entry, &self.setpoint, &before)?;
-        let motion = self.kept_inside(&mut entry, motion, &self.setpoint, &before)?;
+        let motion = self.plan_from(&mut entry, self.mover.setpoint(), &before)?;
+        let motion = self.kept_inside(&mut entry, motion, self.mover.setpoint(), &before)?;
         let limits = Self::limits_of(&entry.limits, &motion);
         Ok((motion, limits))
     }
@@ -701,16 +702,16 @@ impl<P: Planner> Axis<P> {
     /// Takes `way` from now on; the motion before was within `before`.
     fn take_way(&mut self, way: Way<P::Plan>, before: Limits, scope: &mut Scope<'_>) {
         let scans = way.motion.scans();
-        self.before = before;
+        self.mover.take_over_from(before);
         let limits = way.limits;
-        self.in_force = limits;
-        self.motion = way.motion;
+        self.mover.start(way.motion, limits);
         self.arrival = Arrival::default();
         self.replan_due = false;
         if self.modulo.is_some() {
             self.start_of_plan();
         }
-        self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
+        self.mover
+            .watch(self.owner.is_some_and(|owner| self.needs_watching(&owner)));
         let told = Some((way.name, way.velocity));
         let mut is_told = false;
         if let Some(coupling) = &mut self.coupling {

@@ -147,8 +147,8 @@ impl<P: Planner> Axis<P> {
     /// Whether its motion was planned within what its slaves leave. It was not if planned before there
     /// were any, or after a fault.
     pub(super) fn keeps_bound(&self) -> bool {
-        let own = Some(&self.in_force).filter(|_| !matches!(self.motion, Motion::Hold));
-        let added = self.layer.as_ref().and_then(|layer| layer.limits_in_motion());
+        let own = Some(self.mover.in_force()).filter(|_| !matches!(self.mover.motion(), Motion::Hold));
+        let added = self.mover.layer().and_then(|layer| layer.limits_in_motion());
         let mut all = own.into_iter().chain(added);
         self.is_slowed() && all.all(|limits| self.slowed(limits) == *limits)
     }
@@ -213,7 +213,8 @@ impl<P: Planner> Axis<P> {
         }
         let is_over = self.is_at_goal() && !owner.is_endless();
         if is_over || self.goes_on_within(&was, &owner) {
-            self.in_force = Self::limits_of(&owner.limits, &self.motion);
+            self.mover
+                .keep(Self::limits_of(&owner.limits, self.mover.motion()));
             self.own(owner);
             return;
         }
@@ -233,7 +234,7 @@ impl<P: Planner> Axis<P> {
 
     /// It has no motion, or one that is at its goal.
     fn is_at_goal(&self) -> bool {
-        match &self.motion {
+        match self.mover.motion() {
             Motion::Run { elapsed, scans, .. } => elapsed >= scans,
             _ => true,
         }
@@ -243,16 +244,19 @@ impl<P: Planner> Axis<P> {
     /// to the same end.
     fn goes_on_within(&self, was: &Entry, owner: &Entry) -> bool {
         let is_lower = owner.limits == owner.limits.or_smaller(&was.limits);
-        let Motion::Run { plan, elapsed, .. } = &self.motion else {
+        let Motion::Run { plan, elapsed, .. } = self.mover.motion() else {
             return false;
         };
-        let is_alone = self.layer.is_none() && owner.passage == REST && !self.replan_due;
+        let is_alone = self.mover.layer().is_none() && owner.passage == REST && !self.replan_due;
         is_lower
             && is_alone
             && owner.work == was.work
-            && self
-                .planner
-                .fits_behind(&[None; 2], &self.setpoint, Some((plan, *elapsed)), &owner.limits)
+            && self.planner.fits_behind(
+                &[None; 2],
+                self.mover.setpoint(),
+                Some((plan, *elapsed)),
+                &owner.limits,
+            )
     }
 
     /// Whether the limits of `work` are its own, so that slaves can lower them.

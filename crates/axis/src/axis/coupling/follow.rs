@@ -1,7 +1,7 @@
 //! The motion step of a slave, after that of its master.
 
 use super::super::commands::ROUNDING;
-use super::super::guard::LAST_SCAN;
+use super::super::guard::{LAST_SCAN, steps_within};
 use super::super::modulo::is_far;
 use super::super::power::Reaction;
 use super::super::{Axis, Motion};
@@ -92,7 +92,7 @@ impl<P: Planner> Axis<P> {
         }
         self.note_own_part();
         if self.is_in_gear() && !self.queue.is_empty() {
-            self.hand_over(self.setpoint.position, scope);
+            self.hand_over(self.mover.setpoint().position, scope);
         }
         self.finish_reset();
         self.note_steady();
@@ -178,7 +178,7 @@ impl<P: Planner> Axis<P> {
             return;
         }
         let own = if slave_moved { own } else { 0.0 };
-        let added = self.layer.as_ref().map_or(0.0, |layer| layer.added.position);
+        let added = self.mover.layer().map_or(0.0, |layer| layer.added().position);
         let shift = |anchor: &mut Anchor| {
             anchor.master.position += now[0].moved;
             anchor.second.position += now[1].moved;
@@ -213,7 +213,7 @@ impl<P: Planner> Axis<P> {
     }
 
     fn step_behind(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
-        match (&self.motion, self.rung()) {
+        match (self.mover.motion(), self.rung()) {
             (Motion::Geared, Some(Rung::Locked)) => self.step_in_gear(view, scope),
             (Motion::Closing { .. }, Some(_)) => self.step_beside(view, scope),
             _ => {
@@ -253,8 +253,7 @@ impl<P: Planner> Axis<P> {
             }
             return;
         }
-        self.in_force = limits;
-        self.before = limits;
+        self.mover.keep_only(limits);
         self.publish_behind(place, next, scope);
         if let (true, Some(added), Some(coupling)) = (self.is_on_law(), added, &mut self.coupling) {
             coupling.anchor = Some(anchor);
@@ -264,7 +263,7 @@ impl<P: Planner> Axis<P> {
 
     /// In gear, so that the next set-point is the law.
     pub(in crate::axis) fn is_on_law(&self) -> bool {
-        (self.is_locked() || self.is_locked_on_cam()) && matches!(self.motion, Motion::Geared)
+        (self.is_locked() || self.is_locked_on_cam()) && matches!(self.mover.motion(), Motion::Geared)
     }
 
     /// Whether the masters have not moved in this scan, and will not move as far as is known.
@@ -306,19 +305,17 @@ impl<P: Planner> Axis<P> {
     fn step_beside(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let here = self.place();
         let cycle = self.planner.cycle();
-        let Motion::Closing { plan, elapsed, scans } = &mut self.motion else {
+        let (Some(step), Motion::Closing { plan, .. }) = (self.mover.step_beside(), self.mover.motion())
+        else {
             return;
         };
-        *elapsed = elapsed.wrapping_add(1);
-        let (elapsed, scans) = (*elapsed, *scans);
-        let is_over = elapsed >= scans;
-        let beside = plan.next(elapsed);
-        let goal = plan.at(scans).position;
+        let (beside, elapsed, is_over) = (step.beside, step.elapsed, step.is_over());
+        let goal = plan.at(step.scans).position;
         let Some(coupling) = &self.coupling else { return };
         let (rung, known) = (coupling.rung, coupling.anchor);
         let anchor = match (rung, known) {
             (Rung::BesideLaw(anchor) | Rung::BesideMeasured { anchor, .. }, _) | (_, Some(anchor)) => anchor,
-            (_, None) => return self.publish_behind(here, self.setpoint, scope),
+            (_, None) => return self.publish_behind(here, *self.mover.setpoint(), scope),
         };
         let (law_place, law) = coupling.law(&anchor, &view.seen());
         let (frame_place, frame, arrives) = match rung {
@@ -346,7 +343,7 @@ impl<P: Planner> Axis<P> {
                 position: next.position,
                 ..frame_place
             };
-            let in_force = &self.in_force;
+            let in_force = self.mover.in_force();
             let leaves_room = self.leaves_room(&anchor, view, &room, &next);
             if !leaves_room || self.beyond(Some(place), &next, in_force, Some(false)).is_some() {
                 self.approach(view, false, scope);
@@ -410,14 +407,15 @@ impl<P: Planner> Axis<P> {
     /// before, and can stay.
     fn lock_at_velocity(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let Some(coupling) = &self.coupling else { return };
-        let is_at_goal = matches!(&self.motion, Motion::Run { elapsed, scans, .. } if elapsed >= scans);
+        let is_at_goal =
+            matches!(self.mover.motion(), Motion::Run { elapsed, scans, .. } if elapsed >= scans);
         if coupling.anchor.is_some() || coupling.rung != Rung::Own || !is_at_goal || self.is_paused() {
             return;
         }
         let anchor = anchor_at(&view.seen(), self.place());
         let (_, law) = coupling.law(&anchor, &view.seen());
         let is_even = law.acceleration == 0.0 && law.jerk == 0.0;
-        if is_even && self.law_is_near(&self.setpoint, &law) && self.law_fits(view, true) {
+        if is_even && self.law_is_near(self.mover.setpoint(), &law) && self.law_fits(view, true) {
             self.lock(anchor, view, scope);
         }
     }
@@ -472,7 +470,7 @@ impl<P: Planner> Axis<P> {
         let (_, to) = coupling.law(anchor, &view.seen());
         let peaks = Piece::between(&from, &to, self.planner.cycle()).peaks();
         // A superimposed motion may use its limits at any time.
-        let most = self.layer.as_ref().and_then(|layer| layer.limits_in_motion());
+        let most = self.mover.layer().and_then(|layer| layer.limits_in_motion());
         let added = |of: fn(&Limits) -> f64| most.map_or(0.0, of);
         let steepest = |limits: &Limits| limits.acceleration.max(limits.deceleration);
         let told = [
@@ -499,13 +497,13 @@ impl<P: Planner> Axis<P> {
         let Some(coupling) = &self.coupling else {
             return false;
         };
-        let (limits, cycle) = (&self.in_force, self.planner.cycle());
+        let (limits, cycle) = (self.mover.in_force(), self.planner.cycle());
         let (_, from) = coupling.law(anchor, &coupling.was);
         let (_, to) = coupling.law(anchor, &view.seen());
         let peaks = Piece::between(&from, &to, cycle).peaks();
         let rate = limits.lower_acceleration();
         // Between two velocities one scan apart.
-        let fastest = 0.5 * (self.setpoint.velocity + next.velocity).abs() + 0.5 * rate * cycle;
+        let fastest = 0.5 * (self.mover.setpoint().velocity + next.velocity).abs() + 0.5 * rate * cycle;
         fastest <= limits.velocity
             && peaks.acceleration + room.acceleration <= rate
             && peaks.jerk + room.jerk <= limits.jerk
@@ -518,7 +516,7 @@ impl<P: Planner> Axis<P> {
         let Some(coupling) = self.coupling.as_ref().filter(|_| self.follows_actual()) else {
             return true;
         };
-        let numbers = coupling.size_of_masters(&view.seen()) + self.setpoint.position.abs();
+        let numbers = coupling.size_of_masters(&view.seen()) + self.mover.setpoint().position.abs();
         let rounded = 8.0 * f64::EPSILON * numbers;
         rounded <= LAST_SCAN * self.parameters.limits.velocity * self.planner.cycle()
     }
@@ -557,10 +555,9 @@ impl<P: Planner> Axis<P> {
             coupling.left = u64::MAX;
             coupling.told = None;
             coupling.deviation = 0.0;
-            self.in_force = coupling.limits;
-            self.before = coupling.limits;
+            self.mover.keep_only(coupling.limits);
         }
-        self.motion = Motion::Geared;
+        self.mover.gear();
         self.stir();
         self.record_in_gear(scope);
         self.note_sync(view, scope);
@@ -599,7 +596,7 @@ impl<P: Planner> Axis<P> {
             |coupling| coupling.size_of_masters(&coupling.was),
         );
         let step = Step {
-            last: &self.setpoint,
+            last: self.mover.setpoint(),
             next,
             way: place.map(|place| off(place, self.place(), length)),
             coarsest: length + masters,
@@ -647,7 +644,7 @@ impl<P: Planner> Axis<P> {
 
     /// Publishes `next`, whose whole turns are those of `place`, if it may follow the last set-point.
     pub(super) fn publish_behind(&mut self, place: Place, mut next: Setpoint, scope: &mut Scope<'_>) {
-        let before = self.setpoint.position;
+        let mut last = *self.mover.setpoint();
         let mut turns = place.turns;
         if let Some(modulo) = &self.modulo {
             let (further, position) = standstill_planner::turns::split(next.position, modulo.length);
@@ -655,19 +652,17 @@ impl<P: Planner> Axis<P> {
             turns = turns.saturating_add(further);
             let was = self.place();
             // Its last place, as a position in its present turn.
-            self.setpoint.position = was.position + (was.turns.wrapping_sub(turns)) as f64 * modulo.length;
+            last.position = was.position + (was.turns.wrapping_sub(turns)) as f64 * modulo.length;
         }
         if !next.is_finite() {
-            self.setpoint.position = before;
             return self.fail(ErrorId::SetpointBroken, scope);
         }
-        let is_step = self.is_step_behind(&next);
-        let is_barred = self.bars_any() && self.way_barred(next.velocity).is_some();
-        self.setpoint.position = before;
-        if !is_step {
+        if !self.is_step_behind(&last, &next) {
             return self.fail(ErrorId::SetpointStep, scope);
         }
-        if let (true, Some(error)) = (is_barred, self.way_barred(next.velocity)) {
+        if self.bars_any()
+            && let Some(error) = self.way_barred(next.velocity)
+        {
             self.pause(error, scope);
             return self.advance(scope);
         }
@@ -677,14 +672,20 @@ impl<P: Planner> Axis<P> {
         if let Some(modulo) = &mut self.modulo {
             modulo.put(turns);
         }
-        self.publish(next);
+        self.mover.publish(next);
     }
 
-    /// Whether `next` is no further from the last set-point than the axis may go in a scan.
-    fn is_step_behind(&self, next: &Setpoint) -> bool {
-        let steps_within = |limits: &Limits| self.steps_within(next, limits, LONGEST, 0.0);
+    /// Whether `next` is no further from the `last` set-point than the axis may go in a scan.
+    fn is_step_behind(&self, last: &Setpoint, next: &Setpoint) -> bool {
+        let scan = LONGEST * self.planner.cycle();
+        let fits = |limits: &Limits| steps_within(last, next, limits, scan, 0.0);
         let limits = &self.config.limits;
-        steps_within(limits) || steps_within(&limits.or_larger(&self.before).or_larger(&self.stop_limits()))
+        fits(limits)
+            || fits(
+                &limits
+                    .or_larger(self.mover.before())
+                    .or_larger(&self.stop_limits()),
+            )
     }
 
     /// The master went out of operation: comes to rest and searches no way onto the law.

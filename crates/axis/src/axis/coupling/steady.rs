@@ -137,9 +137,9 @@ impl<P: Planner> Axis<P> {
             || on_cam.is_some_and(|on_cam| on_cam.may_go_on(&limits, moves));
         is_locked
             && self.calm == Calm::Alone
-            && matches!(self.motion, Motion::Geared)
-            && self.in_force == limits
-            && self.before == limits
+            && matches!(self.mover.motion(), Motion::Geared)
+            && *self.mover.in_force() == limits
+            && *self.mover.before() == limits
             && self.config.following.on_limit != OnLimit::Error
             && self.parameters.software_limits.is_none()
             && self.queue.is_empty()
@@ -154,7 +154,7 @@ impl<P: Planner> Axis<P> {
         self.steady.is_settled = self.may_go_on();
         if self.steady.is_settled {
             let is_straight = self.coupling.as_ref().is_some_and(Coupling::is_straight);
-            let (limits, widest) = (&self.in_force, &self.config.limits);
+            let (limits, widest) = (self.mover.in_force(), &self.config.limits);
             self.steady.room = Some(Room::new(limits, widest, self.planner.cycle(), is_straight));
         }
     }
@@ -191,7 +191,7 @@ impl<P: Planner> Axis<P> {
             return;
         }
         if self.modulo.is_none() {
-            self.steady.was.at = self.setpoint;
+            self.steady.was.at = *self.mover.setpoint();
             self.steady.was.moved = self.coordinates_moved(scan);
         } else {
             self.note_before_round(scan);
@@ -231,7 +231,7 @@ impl<P: Planner> Axis<P> {
     /// since the start of that plan.
     #[inline(always)]
     fn went_on(&self) -> Option<(usize, u64)> {
-        match &self.motion {
+        match self.mover.motion() {
             // If something was new for it or for a master of it, its slaves check the step in full.
             Motion::Geared if self.steady.has_gone_on => {
                 let coupling = self.coupling.as_ref().filter(|_| self.steady.is_settled)?;
@@ -269,7 +269,7 @@ impl<P: Planner> Axis<P> {
         if !known.goes_on(plan) {
             return false;
         }
-        let at = &master.setpoint;
+        let at = master.mover.setpoint();
         let (turns, position) = if room.is_straight
             && let Some(position) = gear.slave_straight(anchor, at.position)
         {
@@ -304,13 +304,13 @@ impl<P: Planner> Axis<P> {
     #[inline(always)]
     pub(super) fn publish_steadily(&mut self, place: Place, next: Setpoint, scope: &mut Scope<'_>) {
         self.steady.has_gone_on = true;
-        let positions = [self.setpoint.position, next.position];
+        let positions = [self.mover.setpoint().position, next.position];
         let stays = |modulo: &Modulo| modulo.stays_in(place.turns, positions);
         if let Some(room) = &self.steady.room
             && self.modulo.as_ref().is_none_or(stays)
-            && room.holds_step(&self.setpoint, &next)
+            && room.holds_step(self.mover.setpoint(), &next)
         {
-            self.publish(next);
+            self.mover.publish(next);
         } else {
             self.publish_behind(place, next, scope);
         }

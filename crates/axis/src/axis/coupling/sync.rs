@@ -406,7 +406,8 @@ impl<P: Planner> Axis<P> {
         };
         let master = f64::from(coupling.gearing.first.master.number());
         let not_at_all = |error| ("Master", master, f64::NAN, error);
-        self.gear_motion(entry, &self.setpoint).map_err(not_at_all)?;
+        self.gear_motion(entry, self.mover.setpoint())
+            .map_err(not_at_all)?;
         let difference = self.difference(coupling, &anchor);
         if difference.is_at_rest() && difference.position == 0.0 {
             return Ok(());
@@ -521,7 +522,7 @@ impl<P: Planner> Axis<P> {
         let scans = self.scans_of_master(view, self.way_to_sync(view, anchor));
         let (kept, wanted) = match scans {
             Some(scans) => {
-                let way = self.setpoint.velocity * (scans as f64 * cycle);
+                let way = self.mover.setpoint().velocity * (scans as f64 * cycle);
                 (here.position + way, anchor.slave)
             }
             None => {

@@ -311,7 +311,7 @@ impl<P: Planner> Axis<P> {
     pub(crate) fn place(&self) -> Place {
         match &self.modulo {
             None => Place {
-                position: self.setpoint.position,
+                position: self.mover.setpoint().position,
                 ..Place::default()
             },
             Some(modulo) => self.place_round(modulo),
@@ -320,8 +320,8 @@ impl<P: Planner> Axis<P> {
 
     #[inline(never)]
     fn place_round(&self, modulo: &Modulo) -> Place {
-        let shown = modulo.in_turn(self.setpoint.position);
-        let further = (self.setpoint.position - shown) / modulo.length;
+        let shown = modulo.in_turn(self.mover.setpoint().position);
+        let further = (self.mover.setpoint().position - shown) / modulo.length;
         let nearest = if further < 0.0 {
             further - 0.5
         } else {
@@ -341,7 +341,7 @@ impl<P: Planner> Axis<P> {
             place,
             at: Setpoint {
                 position: place.position,
-                ..self.setpoint
+                ..*self.mover.setpoint()
             },
             moved: self.coordinates_moved(scan),
             ..Seen::default()
@@ -360,13 +360,13 @@ impl<P: Planner> Axis<P> {
 
     /// Whether its set-point is the result of a plan, and not the feedback.
     pub(crate) fn is_operating(&self) -> bool {
-        !matches!(self.motion, Motion::Follow | Motion::Torque { .. })
+        !matches!(self.mover.motion(), Motion::Follow | Motion::Torque { .. })
     }
 
     /// Its next motion, if that is its own plan.
     pub(crate) fn course(&self) -> Course<'_, P::Plan> {
-        match &self.motion {
-            _ if self.layer.is_some() => Course::Unknown,
+        match self.mover.motion() {
+            _ if self.mover.layer().is_some() => Course::Unknown,
             Motion::Hold => Course::Still,
             // The motion along a curve through points ahead is not known.
             Motion::Run { plan, elapsed, .. } if self.planner.is_curve((plan, *elapsed)) => Course::Unknown,
@@ -413,7 +413,7 @@ impl<P: Planner> Axis<P> {
     pub(crate) fn factor_in_gear(&self) -> Option<f64> {
         let coupling = self.coupling.as_ref().filter(|_| !self.follows_actual())?;
         let follows_one = coupling.gearing.second.is_none() && !self.is_phasing() && !self.adds_motion();
-        (coupling.rung.is_locked() && matches!(self.motion, Motion::Geared) && follows_one)
+        (coupling.rung.is_locked() && matches!(self.mover.motion(), Motion::Geared) && follows_one)
             .then(|| coupling.gearing.first.gear.derivative(1.0))
     }
 

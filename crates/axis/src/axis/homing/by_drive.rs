@@ -9,7 +9,7 @@ use super::super::power::Reaction;
 use super::super::{Axis, Motion};
 use super::Phase;
 use crate::{AxisState, DriveHoming, DrivePosition, ErrorId, Scope};
-use standstill_planner::{Planner, Setpoint};
+use standstill_planner::Planner;
 
 impl<P: Planner> Axis<P> {
     /// Whether the drive moves by itself.
@@ -27,7 +27,7 @@ impl<P: Planner> Axis<P> {
         let in_operation = matches!(self.state, AxisState::Homing | AxisState::Stopping)
             && self.power.is_on()
             && !self.power.is_going_off();
-        in_operation && matches!(self.motion, Motion::Follow) && !self.moves_itself()
+        in_operation && matches!(self.mover.motion(), Motion::Follow) && !self.moves_itself()
     }
 
     /// The drive homes by itself, or has not returned to the command yet.
@@ -51,12 +51,12 @@ impl<P: Planner> Axis<P> {
                 self.trip(ErrorId::DriveHomingFailed, code, Reaction::Follow, scope);
             }
             DriveHoming::Done(_) if homes => {
-                self.motion = Motion::Follow;
+                self.mover.follow();
                 self.homing.phase = Phase::Return;
                 self.beside.order.homing = false;
             }
             DriveHoming::Busy | DriveHoming::Attained(_) | DriveHoming::Done(_) | DriveHoming::Failed(_) => {
-                self.motion = Motion::Follow;
+                self.mover.follow();
             }
         }
         let limit = self.config.homing.time_limit;
@@ -78,12 +78,12 @@ impl<P: Planner> Axis<P> {
         let by = position - self.place_of(reference);
         self.frame.shift_by(by);
         let actual = self.shown_place(self.feedback.position() + by);
-        let step = actual - self.setpoint.position;
+        let step = actual - self.mover.setpoint().position;
         self.tell_moved(step, &mut self.owner_scope(scope));
         self.frame.count_move();
         self.feedback = Feedback::new(actual);
         self.measured.rename();
-        self.setpoint = Setpoint::at_rest(actual);
-        self.motion = Motion::Follow;
+        self.mover.stand_at(actual);
+        self.mover.follow();
     }
 }

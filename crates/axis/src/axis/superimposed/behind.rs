@@ -20,7 +20,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn await_room(&mut self, mut layer: Layer<P::Plan>, command: Added) {
         layer.command = Some(command);
         layer.try_soon();
-        self.layer = Some(layer);
+        self.mover.lay(layer);
         self.stir();
     }
 
@@ -38,7 +38,7 @@ impl<P: Planner> Axis<P> {
 
     /// Something is being superimposed, and moves.
     pub(in crate::axis) fn adds_motion(&self) -> bool {
-        self.layer.as_ref().is_some_and(Layer::moves)
+        self.mover.layer().is_some_and(Layer::moves)
     }
 
     /// A halt of a superimposed motion that finds nothing in motion is done.
@@ -46,7 +46,7 @@ impl<P: Planner> Axis<P> {
         let idle = |layer: &Layer<P::Plan>| {
             !layer.moves() && layer.command.is_none_or(|command| command.adds == Adds::Halt)
         };
-        if self.layer.as_ref().is_some_and(idle) {
+        if self.mover.layer().is_some_and(idle) {
             self.end_superimposed(Fate::Done);
         }
     }
@@ -54,8 +54,8 @@ impl<P: Planner> Axis<P> {
     /// The slave is not on its law: it takes the velocity of the added motion, and the rest of the
     /// distance waits.
     pub(in crate::axis) fn rest_superimposed(&mut self) {
-        let setpoint = self.setpoint;
-        if let Some(layer) = self.layer.as_mut().filter(|layer| layer.moves()) {
+        let setpoint = *self.mover.setpoint();
+        if let Some(layer) = self.mover.layer_mut().filter(|layer| layer.moves()) {
             layer.pass_velocity(setpoint);
             layer.taken = layer.added.position;
             layer.try_soon();
@@ -74,7 +74,7 @@ impl<P: Planner> Axis<P> {
         may_lose: bool,
         scope: &mut Scope<'_>,
     ) {
-        if self.layer.is_none() {
+        if self.mover.layer().is_none() {
             return;
         }
         if !self.is_on_law() {
@@ -92,7 +92,7 @@ impl<P: Planner> Axis<P> {
 
     /// Records once that a command waits.
     fn tell_waiting(&mut self, scope: &mut Scope<'_>) {
-        let Some(layer) = self.layer.as_mut().filter(|layer| layer.retry == 0) else {
+        let Some(layer) = self.mover.layer_mut().filter(|layer| layer.retry == 0) else {
             return;
         };
         layer.retry = 1;
@@ -117,7 +117,9 @@ impl<P: Planner> Axis<P> {
     /// The motion beside the law adapts to the master's new motion: it becomes slower, or comes to rest.
     /// If there is no room for that either, the gear is lost.
     fn give_way(&mut self, view: &View<'_, P::Plan>, may_lose: bool, scope: &mut Scope<'_>) {
-        let Some(layer) = &mut self.layer else { return };
+        let Some(layer) = self.mover.layer_mut() else {
+            return;
+        };
         layer.retry = layer.retry.min(1);
         let motion = layer.motion;
         let Motion::Run { plan, elapsed, .. } = &motion else {
@@ -130,7 +132,7 @@ impl<P: Planner> Axis<P> {
         {
             return;
         }
-        if let Some(command) = self.layer.as_mut().and_then(|layer| layer.command.as_mut()) {
+        if let Some(command) = self.mover.layer_mut().and_then(|layer| layer.command.as_mut()) {
             command.progress = Progress::Waits;
         }
         if self.take_proposal(view, scope) || self.brake_behind(view, scope) || !may_lose {
@@ -148,7 +150,7 @@ impl<P: Planner> Axis<P> {
 
     /// A command that waits or was lowered begins, or goes faster, if there is room beside the law now.
     fn begin_behind(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
-        let Some(layer) = &self.layer else { return };
+        let Some(layer) = self.mover.layer() else { return };
         let Some(command) = layer.command else { return };
         let is_due = match self.first_lead(view) {
             Some(lead) => lead.elapsed.saturating_add(1) >= layer.retry,
@@ -168,7 +170,9 @@ impl<P: Planner> Axis<P> {
 
     /// Starts a motion that fits beside the law from now on. Returns whether there is one.
     fn take_proposal(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) -> bool {
-        let Some(layer) = &self.layer else { return false };
+        let Some(layer) = self.mover.layer() else {
+            return false;
+        };
         let Some(command) = &layer.command else {
             return false;
         };
@@ -190,7 +194,7 @@ impl<P: Planner> Axis<P> {
         self.add(proposed, scope);
         self.stir();
         let next = self.next_switch_of_law(view);
-        if let Some(layer) = &mut self.layer {
+        if let Some(layer) = self.mover.layer_mut() {
             layer.retry = match next {
                 Some((switch, now)) if switch > now => switch,
                 // Nothing changes until the master does.
@@ -203,7 +207,9 @@ impl<P: Planner> Axis<P> {
     /// The superimposed motion comes to rest with the stop dynamics, or more slowly, if there is room for
     /// that.
     fn brake_behind(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) -> bool {
-        let Some(layer) = &self.layer else { return false };
+        let Some(layer) = self.mover.layer() else {
+            return false;
+        };
         let Some(command) = layer.command else {
             return false;
         };
@@ -215,7 +221,8 @@ impl<P: Planner> Axis<P> {
         let room = || self.room_of_law(view, &scope.cams);
         let fits = |plan: &P::Plan| self.fits_law(view, (plan, 0), &scope.cams);
         let proposed = self.propose_within(layer, &stop, room, fits);
-        let (Ok(Some(Proposal { plan, limits, .. })), Some(layer)) = (proposed, &mut self.layer) else {
+        let (Ok(Some(Proposal { plan, limits, .. })), Some(layer)) = (proposed, self.mover.layer_mut())
+        else {
             return false;
         };
         layer.before = layer.in_force;
@@ -289,7 +296,9 @@ impl<P: Planner> Axis<P> {
             return false;
         };
         let limits = &self.slowed(&self.parameters.limits);
-        let Some(layer) = &self.layer else { return true };
+        let Some(layer) = self.mover.layer() else {
+            return true;
+        };
         match self.leads_of_law(view) {
             Some(leads) => {
                 let late = u64::from(view.future.is_late());
@@ -322,11 +331,11 @@ impl<P: Planner> Axis<P> {
         if self.is_on_cam() {
             // The end of a cam's motion is not checked.
             let stands = self.law_stands(view);
-            return stands.then(|| self.setpoint.position + layer.left());
+            return stands.then(|| self.mover.setpoint().position + layer.left());
         }
         let leads = self.leads_of_law(view);
         let way = leads.map_or(Some(0.0), |leads| way_to_rest(&leads, 0))?;
-        Some(self.setpoint.position + way + layer.left())
+        Some(self.mover.setpoint().position + way + layer.left())
     }
 
     /// Refuses a distance with which the slave would come to rest outside its software limits.
@@ -335,7 +344,7 @@ impl<P: Planner> Axis<P> {
         let Adds::Distance { distance, .. } = command.adds else {
             return;
         };
-        let end = self.layer.as_ref().and_then(|layer| self.end_behind(view, layer));
+        let end = self.mover.layer().and_then(|layer| self.end_behind(view, layer));
         let limit = end.map_or(f64::NAN, |end| self.broken_software_limit(end));
         let error = ErrorId::TargetOutsideSoftwareLimits;
         self.refuse(
@@ -350,7 +359,7 @@ impl<P: Planner> Axis<P> {
 
     /// The set-point of the superimposed motion for the end of this scan, if it moves.
     pub(in crate::axis) fn next_added(&mut self) -> Option<Setpoint> {
-        match &mut self.layer.as_mut()?.motion {
+        match &mut self.mover.layer_mut()?.motion {
             Motion::Run { plan, elapsed, .. } => Some(plan.next(elapsed.saturating_add(1))),
             _ => None,
         }
@@ -358,7 +367,9 @@ impl<P: Planner> Axis<P> {
 
     /// Notes that `added` was published on top of the law.
     pub(in crate::axis) fn note_added(&mut self, added: Setpoint) {
-        let Some(layer) = &mut self.layer else { return };
+        let Some(layer) = self.mover.layer_mut() else {
+            return;
+        };
         layer.added = added;
         let Motion::Run { elapsed, scans, .. } = &mut layer.motion else {
             return;
@@ -379,8 +390,11 @@ impl<P: Planner> Axis<P> {
 
     /// After the step of a slave: its own part of the set-point is the part that is not added.
     pub(in crate::axis) fn note_own_part(&mut self) {
-        let Some(layer) = &mut self.layer else { return };
-        let (all, added) = (&self.setpoint, &layer.added);
+        let all = *self.mover.setpoint();
+        let Some(layer) = self.mover.layer_mut() else {
+            return;
+        };
+        let added = &layer.added;
         layer.taken = added.position;
         layer.base = Setpoint {
             position: all.position,

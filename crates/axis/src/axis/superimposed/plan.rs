@@ -90,14 +90,6 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The owner's plan as far as it is not over.
-    fn rest_of_base(&self) -> Option<(&P::Plan, u64)> {
-        match &self.motion {
-            Motion::Run { plan, elapsed, .. } => Some((plan, *elapsed)),
-            _ => None,
-        }
-    }
-
     /// The software limits in the sum of the plans' own positions.
     fn range(&self, taken: f64) -> Option<(f64, f64)> {
         self.parameters
@@ -116,7 +108,7 @@ impl<P: Planner> Axis<P> {
         command: &Added,
     ) -> Result<Option<Proposal<P::Plan>>, ErrorId> {
         let axis = &self.slowed(&self.config.limits);
-        let base = self.rest_of_base();
+        let base = self.mover.plan();
         let room = || Room {
             limits: base.map_or(*axis, |rest| self.planner.room(rest, axis)),
             endless: base.is_some_and(|(plan, _)| plan.at(u64::from(plan.scans())).velocity != 0.0),
@@ -210,11 +202,14 @@ impl<P: Planner> Axis<P> {
     /// proposal is not faster.
     pub(super) fn add(&mut self, proposed: Option<Proposal<P::Plan>>, scope: &mut Scope<'_>) {
         let next_switch = self
-            .rest_of_base()
+            .mover
+            .plan()
             .map(|rest| (self.planner.next_switch(rest), rest.1));
-        let Some(layer) = &self.layer else { return };
+        let Some(layer) = self.mover.layer() else { return };
         let before = self.limits_in_state(&layer.added, &layer.in_force, &layer.before);
-        let Some(layer) = &mut self.layer else { return };
+        let Some(layer) = self.mover.layer_mut() else {
+            return;
+        };
         let moves = layer.moves();
         let Some(command) = &mut layer.command else { return };
         let first = layer.retry == 0;
@@ -279,7 +274,9 @@ impl<P: Planner> Axis<P> {
 
     /// The override has changed: a superimposed move takes its new limits, comes to rest, or continues.
     pub(in crate::axis) fn override_superimposed(&mut self, scope: &mut Scope<'_>) {
-        let Some(mut layer) = self.layer else { return };
+        let Some(mut layer) = self.mover.layer().copied() else {
+            return;
+        };
         let Some(command) = layer
             .command
             .as_mut()
@@ -295,19 +292,19 @@ impl<P: Planner> Axis<P> {
         command.progress = Progress::Waits;
         layer.try_soon();
         self.stir();
-        self.layer = Some(layer);
+        self.mover.lay(layer);
         self.try_again(scope);
     }
 
     /// A command that waits or was lowered is tried again when the owner's motion has changed.
     pub(super) fn try_again(&mut self, scope: &mut Scope<'_>) {
-        let Some(layer) = &self.layer else { return };
+        let Some(layer) = self.mover.layer() else { return };
         let Some(command) = &layer.command else { return };
         if self.follows() {
             // Its own motion step decides.
             return;
         }
-        let due = match &self.motion {
+        let due = match self.mover.motion() {
             Motion::Run { elapsed, .. } => *elapsed >= layer.retry,
             _ => true,
         };
@@ -326,7 +323,7 @@ impl<P: Planner> Axis<P> {
     pub(in crate::axis) fn limits_before(&self, own: &Limits) -> Limits {
         let base = self.limits_of_owner();
         let base = base.as_ref();
-        let Some(layer) = self.layer.as_ref().filter(|layer| layer.moves()) else {
+        let Some(layer) = self.mover.layer().filter(|layer| layer.moves()) else {
             return *base.unwrap_or(own);
         };
         let (axis, added) = (&self.slowed(&self.config.limits), &layer.in_force);
@@ -360,8 +357,10 @@ impl<P: Planner> Axis<P> {
                 return Err(ErrorId::InMotion);
             }
         }
-        if matches!(entry.work, Work::Torque { .. } | Work::Gear(_) | Work::Cam(_)) && self.layer.is_some() {
-            if self.layer.as_ref().is_some_and(Layer::moves) {
+        if matches!(entry.work, Work::Torque { .. } | Work::Gear(_) | Work::Cam(_))
+            && self.mover.layer().is_some()
+        {
+            if self.mover.layer().is_some_and(Layer::moves) {
                 return Ok(None);
             }
             // Only now: if this command is refused, the added motion stays with the owner.
@@ -369,7 +368,7 @@ impl<P: Planner> Axis<P> {
             self.end_superimposed(Fate::Aborted);
             return Ok(Some(motion));
         }
-        match self.layer {
+        match self.mover.layer().copied() {
             None => self.plan_for(entry).map(Some),
             Some(layer) => self.plan_under(layer, entry),
         }
@@ -382,11 +381,11 @@ impl<P: Planner> Axis<P> {
         entry: &mut Entry,
     ) -> Result<Option<Motion<P::Plan>>, ErrorId> {
         let start = Setpoint {
-            position: self.setpoint.position,
+            position: self.mover.setpoint().position,
             ..layer.base
         };
-        let in_force = if matches!(self.motion, Motion::Run { .. } | Motion::Geared) {
-            self.in_force
+        let in_force = if matches!(self.mover.motion(), Motion::Run { .. } | Motion::Geared) {
+            *self.mover.in_force()
         } else {
             entry.limits
         };
@@ -400,16 +399,16 @@ impl<P: Planner> Axis<P> {
         layer.base = start;
         layer.taken = layer.added.position;
         if !self.fits_under(&motion, &layer) {
-            motion = self.plan_from(entry, &self.setpoint, &self.limits_before(&entry.limits))?;
+            motion = self.plan_from(entry, self.mover.setpoint(), &self.limits_before(&entry.limits))?;
             if self.exceeds(&motion) {
                 // It cannot take over this velocity either; soon the velocity is lower.
                 return Ok(None);
             }
-            layer.pass_velocity(self.setpoint);
+            layer.pass_velocity(*self.mover.setpoint());
         }
         layer.try_soon();
         self.stir();
-        self.layer = Some(layer);
+        self.mover.lay(layer);
         Ok(Some(motion))
     }
 

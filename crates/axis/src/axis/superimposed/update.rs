@@ -20,7 +20,7 @@ impl<P: Planner> Axis<P> {
         request: &Superimpose,
         scope: &mut Scope<'_>,
     ) -> Result<(), ErrorId> {
-        let Some(mut layer) = self.layer else {
+        let Some(mut layer) = self.mover.layer().copied() else {
             return Ok(());
         };
         let Some(Added {
@@ -41,7 +41,7 @@ impl<P: Planner> Axis<P> {
         layer.command = Some(command);
         layer.try_soon();
         self.stir();
-        self.layer = Some(layer);
+        self.mover.lay(layer);
         self.add(proposed, scope);
         Ok(())
     }

@@ -78,7 +78,7 @@ impl<P: Planner> Axis<P> {
         }
         let before = self.values_on_cam();
         let was = self.on_cam.map(|on_cam| (on_cam.was, on_cam.known));
-        self.hand_over(self.setpoint.position, scope);
+        self.hand_over(self.mover.setpoint().position, scope);
         let goes_on = before == self.values_on_cam() && self.is_now_due();
         if let (true, Some(ended), Some((was, known))) = (goes_on, ended, was) {
             if let Some(on_cam) = &mut self.on_cam {
@@ -95,7 +95,7 @@ impl<P: Planner> Axis<P> {
         if self.is_locked_on_cam() || self.is_coming_to_corner() {
             return;
         }
-        if !self.setpoint.is_at_rest() {
+        if !self.mover.setpoint().is_at_rest() {
             return self.fail(ErrorId::DeviationTooLarge, scope);
         }
         if let Some(on_cam) = &mut self.on_cam {
@@ -132,7 +132,7 @@ impl<P: Planner> Axis<P> {
         };
         on_cam.at = curve.at(shadow.place, &shadow.at, 0);
         if self.goes_on_at(
-            &(self.place(), self.setpoint),
+            &(self.place(), *self.mover.setpoint()),
             &(on_cam.at.place, on_cam.at.state),
         ) {
             on_cam.shadow = Some(*shadow);
@@ -152,7 +152,7 @@ impl<P: Planner> Axis<P> {
             at: view.now.at,
         };
         let before = self.values_on_cam();
-        self.hand_over(self.setpoint.position, scope);
+        self.hand_over(self.mover.setpoint().position, scope);
         if !(before == self.values_on_cam() && self.is_now_due()) {
             return false;
         }
@@ -181,7 +181,7 @@ impl<P: Planner> Axis<P> {
         };
         let own = self.on_cam?;
         let is_same_master = Some((camming.master, camming.source)) == self.values_on_cam();
-        if !is_same_master || self.layer.is_some() || own.ends.is_over() {
+        if !is_same_master || self.mover.layer().is_some() || own.ends.is_over() {
             return None;
         }
         let curve = own.curve(scope.cams.cam(own.camming.cam)?)?;

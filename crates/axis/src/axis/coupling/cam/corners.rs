@@ -188,7 +188,8 @@ impl<P: Planner> Axis<P> {
 
     /// It is on its way to rest at a corner.
     pub(super) fn is_coming_to_corner(&self) -> bool {
-        let is_under_way = matches!(&self.motion, Motion::Closing { elapsed, scans, .. } if elapsed < scans);
+        let is_under_way =
+            matches!(self.mover.motion(), Motion::Closing { elapsed, scans, .. } if elapsed < scans);
         is_under_way && matches!(self.cam_rung(), Some(Rung::Corner { .. }))
     }
 

@@ -9,7 +9,7 @@ use super::super::needs::RESOLVED;
 use super::super::view::{Kind, View};
 use super::{Curve, OnCam, Rung, Shadow};
 use crate::{ErrorId, Event, OnLimit, Scope};
-use standstill_planner::{CamAt, Lead, Place, Plan, Planner, Setpoint};
+use standstill_planner::{CamAt, Lead, Place, Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
     /// [`Axis::advance`] of an axis on a cam, with a look at its master.
@@ -111,8 +111,8 @@ impl<P: Planner> Axis<P> {
             | Rung::Waiting
             | Rung::Lost => {}
         }
-        if let (Motion::Closing { plan, .. }, Rung::Moving { .. }) = (&mut self.motion, on_cam.rung) {
-            plan.shift(own);
+        if let Rung::Moving { .. } = on_cam.rung {
+            self.mover.shift_beside(own);
         }
     }
 
@@ -186,7 +186,7 @@ impl<P: Planner> Axis<P> {
     }
 
     pub(super) fn step_on_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
-        match (&self.motion, self.cam_rung()) {
+        match (self.mover.motion(), self.cam_rung()) {
             (Motion::Geared, Some(Rung::Locked)) => self.step_in_sync(view, scope),
             (Motion::Closing { .. }, Some(Rung::Moving { turns, to })) => {
                 self.step_to_cam(turns, to, view, scope);
@@ -260,8 +260,7 @@ impl<P: Planner> Axis<P> {
             }
             return;
         }
-        self.in_force = limits;
-        self.before = limits;
+        self.mover.keep_only(limits);
         let shadow = Shadow {
             place: view.now.place,
             at: view.now.at,
@@ -284,12 +283,10 @@ impl<P: Planner> Axis<P> {
     /// Along the curve by a plan for the place of a master of its own.
     fn step_along_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let cycle = self.planner.cycle();
-        let Motion::Closing { plan, elapsed, scans } = &mut self.motion else {
+        let Some(step) = self.mover.step_beside() else {
             return;
         };
-        *elapsed = elapsed.wrapping_add(1);
-        let (elapsed, is_over) = (*elapsed, *elapsed >= *scans);
-        let beside = plan.next(elapsed);
+        let (beside, elapsed, is_over) = (step.beside, step.elapsed, step.is_over());
         let now = &view.now;
         let (frame_place, frame, arrives) = match self.cam_rung() {
             Some(Rung::BesideLine {
@@ -366,12 +363,10 @@ impl<P: Planner> Axis<P> {
         view: &View<'_, P::Plan>,
         scope: &mut Scope<'_>,
     ) {
-        let Motion::Closing { plan, elapsed, scans } = &mut self.motion else {
+        let Some(step) = self.mover.step_beside() else {
             return;
         };
-        *elapsed = elapsed.wrapping_add(1);
-        let is_over = *elapsed >= *scans;
-        let next = plan.next(*elapsed);
+        let (next, is_over) = (step.beside, step.is_over());
         let place = Place {
             turns,
             position: next.position,
@@ -382,7 +377,7 @@ impl<P: Planner> Axis<P> {
             return;
         }
         let Some(to) = to else {
-            self.motion = Motion::Hold;
+            self.mover.hold();
             return self.leave_cam();
         };
         let shadow = Shadow {
@@ -409,11 +404,10 @@ impl<P: Planner> Axis<P> {
             on_cam.left = u64::MAX;
             on_cam.deviation = 0.0;
             on_cam.was_in_sync = true;
-            self.in_force = on_cam.limits;
-            self.before = on_cam.limits;
+            self.mover.keep_only(on_cam.limits);
         }
         self.bound_master_on_cam(&scope.cams);
-        self.motion = Motion::Geared;
+        self.mover.gear();
         self.stir();
         self.record(Event::InSync, &mut self.owner_scope(scope));
         if !was_in_sync {

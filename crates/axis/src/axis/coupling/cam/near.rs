@@ -54,7 +54,7 @@ impl<P: Planner> Axis<P> {
         else {
             return;
         };
-        let Motion::Closing { elapsed, .. } = &self.motion else {
+        let Motion::Closing { elapsed, .. } = self.mover.motion() else {
             return;
         };
         let line = velocity * (*elapsed as f64 * self.planner.cycle());
@@ -76,7 +76,7 @@ impl<P: Planner> Axis<P> {
             Some(way) => {
                 on_cam.shadow = Some(shadow);
                 on_cam.rung = way.rung;
-                self.motion = way.motion;
+                self.mover.go_on(way.motion);
             }
             None => on_cam.left = 0,
         }

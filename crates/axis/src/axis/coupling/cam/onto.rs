@@ -181,7 +181,7 @@ impl<P: Planner> Axis<P> {
         let here = self.place();
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
         let limits = self.slowed(&self.parameters.limits);
-        let last = self.setpoint;
+        let last = *self.mover.setpoint();
         let Some(on_cam) = &mut self.on_cam else { return };
         if on_cam.shadow.is_some() {
             return;
@@ -270,7 +270,7 @@ impl<P: Planner> Axis<P> {
         let is_there = is_there
             || (difference.position == 0.0 && {
                 let at = curve.at(was.place, &was.at, on_cam.at.piece);
-                goes_on(&self.setpoint, &at.state, &on_cam.limits)
+                goes_on(self.mover.setpoint(), &at.state, &on_cam.limits)
             });
         if is_there && may_lock {
             return Choice::Lock;
@@ -488,7 +488,7 @@ impl<P: Planner> Axis<P> {
         self.allowed(target)?;
         let start = Setpoint {
             position: here.position,
-            ..self.setpoint
+            ..*self.mover.setpoint()
         };
         let limits = self.limits_of_approach(owner);
         let before = self.limits_before(&limits);
@@ -532,13 +532,13 @@ impl<P: Planner> Axis<P> {
     /// From now on along `way`.
     pub(super) fn take_way_on_cam(&mut self, way: Way<P::Plan>, scope: &mut Scope<'_>) {
         let limits = self.slowed(&self.parameters.limits);
-        self.before = self.limits_before(&limits);
-        self.in_force = limits;
+        self.mover.take_over_from(self.limits_before(&limits));
         let scans = way.motion.scans();
-        self.motion = way.motion;
+        self.mover.start(way.motion, limits);
         self.arrival = Default::default();
         self.replan_due = false;
-        self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
+        self.mover
+            .watch(self.owner.is_some_and(|owner| self.needs_watching(&owner)));
         if let Some(on_cam) = &mut self.on_cam {
             on_cam.rung = way.rung;
             on_cam.is_timed = false;
@@ -563,7 +563,7 @@ impl<P: Planner> Axis<P> {
         let here = self.place();
         let start = Setpoint {
             position: here.position,
-            ..self.setpoint
+            ..*self.mover.setpoint()
         };
         let limits = self.slowed(&self.parameters.limits);
         let before = self.limits_before(&limits);
@@ -587,7 +587,7 @@ impl<P: Planner> Axis<P> {
 
     /// There is no way now: it stays where it is, or comes to rest.
     pub(super) fn wait_on_cam(&mut self, left: u64, scope: &mut Scope<'_>) {
-        if !self.setpoint.is_at_rest() {
+        if !self.mover.setpoint().is_at_rest() {
             return match self.braking(left) {
                 Some(way) => self.take_way_on_cam(way, scope),
                 None => self.fail(ErrorId::DeviationTooLarge, scope),
@@ -597,7 +597,7 @@ impl<P: Planner> Axis<P> {
             on_cam.rung = Rung::Waiting;
             on_cam.left = left;
         }
-        self.motion = Motion::Hold;
+        self.mover.hold();
     }
 
     /// The owner can't come onto its cam.

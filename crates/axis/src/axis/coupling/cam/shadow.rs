@@ -211,7 +211,8 @@ impl<P: Planner> Axis<P> {
 
     /// It comes down to a velocity that it may have anywhere on the cam.
     fn is_slowing_down(&self) -> bool {
-        let is_under_way = matches!(&self.motion, Motion::Closing { elapsed, scans, .. } if elapsed < scans);
+        let is_under_way =
+            matches!(self.mover.motion(), Motion::Closing { elapsed, scans, .. } if elapsed < scans);
         is_under_way && self.on_cam.as_ref().is_some_and(|on_cam| on_cam.slows)
     }
 

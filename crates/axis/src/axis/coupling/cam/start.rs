@@ -67,7 +67,8 @@ impl<P: Planner> Axis<P> {
     ) -> Result<(), NotInTime> {
         let master = self.master_on_cam().map_or(0, AxisId::number);
         let not_at_all = |error| ("Master", f64::from(master), f64::NAN, error);
-        self.gear_motion(entry, &self.setpoint).map_err(not_at_all)?;
+        self.gear_motion(entry, self.mover.setpoint())
+            .map_err(not_at_all)?;
         let cam = self.on_cam.as_ref().map(|on_cam| on_cam.camming.cam);
         let cam = cam.and_then(|id| scope.cams.cam(id));
         let Some(curve) = cam.and_then(|cam| self.lay_cam(cam)) else {

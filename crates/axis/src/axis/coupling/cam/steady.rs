@@ -45,7 +45,7 @@ impl<P: Planner> Axis<P> {
         let place = master.place();
         let moving = Setpoint {
             position: place.position,
-            ..master.setpoint
+            ..*master.mover.setpoint()
         };
         let law = &on_cam.camming.law;
         let at = law.at(&cam, anchor, place, &moving, on_cam.at.piece);

@@ -1,17 +1,17 @@
 //! Moves without swing: what is published is a mean of the set-points of the motion, present and past.
 //!
-//! The motion is planned, held within limits and changed as on any axis; all of that is [`Axis::setpoint`] before it is shaped, the field
-//! `setpoint`. Published is that and its lag. So whatever takes over, what is still in the shaper comes out first, and everything
+//! The motion is planned, held within limits and changed as on any axis; all of that is the set-point of the [`Mover`] before it is
+//! shaped. Published is that and its lag. So whatever takes over, what is still in the shaper comes out first, and everything
 //! that is within a limit stays within it. A command has come to its end when nothing is left in the shaper.
 //!
-//! The past is kept in memory that the host lends with every [`Scope`]: [`Axis::history_needed`] places of it for this axis alone.
+//! The past is kept in memory that the host lends with every [`Scope`](crate::Scope): [`Mover::history_needed`] places of it for this axis alone.
 //!
 //! Derivation: docs/planner.md, section 15.
 
-use super::{Axis, Motion};
-use crate::{ConfigError, Scope};
+use super::{Motion, Mover};
+use crate::ConfigError;
 use standstill_planner::shaper::{LONGEST_PERIOD, MODES};
-use standstill_planner::{Planner, Setpoint, Shaper, Shapers, VibrationMode};
+use standstill_planner::{Plan, Setpoint, Shaper, Shapers, VibrationMode};
 
 /// The shaper of an axis and its state.
 #[derive(Clone, Copy, Debug)]
@@ -174,14 +174,13 @@ impl Shaping {
     }
 }
 
-impl<P: Planner> Axis<P> {
-    /// Set-points of the past that its shaper needs; 0 without one. The host lends so many places of [`Scope::history`], the first
-    /// of which [`Axis::set_history`] tells.
+impl<P: Plan> Mover<P> {
+    /// Set-points of the past that its shaper needs; 0 without one.
     pub fn history_needed(&self) -> usize {
         self.shaping.as_ref().map_or(0, Shaping::places)
     }
 
-    /// Its part of [`Scope::history`] begins at this place. Before that, and where less is lent than it needs, the axis is not shaped.
+    /// Its part of the past that is lent begins at this place.
     pub fn set_history(&mut self, first: usize) {
         if let Some(shaping) = &mut self.shaping {
             shaping.first = first;
@@ -190,14 +189,14 @@ impl<P: Planner> Axis<P> {
 
     /// A shaper stands between its motion and its drive.
     #[inline(always)]
-    pub(crate) fn is_shaped(&self) -> bool {
+    pub fn is_shaped(&self) -> bool {
         self.shaping.is_some()
     }
 
     /// Nothing of the motion is left in the shaper: it rests, or has a constant velocity.
     // What axes without a shaper have to do with one is a look at a tag, in line; all else is out of it.
     #[inline(always)]
-    pub(super) fn is_through(&self) -> bool {
+    pub fn is_through(&self) -> bool {
         self.shaping.is_none() || self.has_come_out()
     }
 
@@ -207,15 +206,9 @@ impl<P: Planner> Axis<P> {
         self.shaping.as_ref().is_none_or(Shaping::is_through)
     }
 
-    /// A motion at its goal has come to it for whoever waits: it has come out of the shaper, or hands over in motion.
-    #[inline(always)]
-    pub(super) fn is_goal_published(&self) -> bool {
-        self.shaping.is_none() || self.has_come_out() || self.passes_in_motion()
-    }
-
     /// Scans after which a set-point of the motion has come out whole.
     #[inline]
-    pub(super) fn shaping_delay(&self) -> u64 {
+    pub fn shaping_delay(&self) -> u64 {
         self.shaping
             .as_ref()
             .map_or(0, |shaping| shaping.shapers.delay().into())
@@ -223,7 +216,7 @@ impl<P: Planner> Axis<P> {
 
     /// The set-point for the drive, in the frame of the motion.
     #[inline(always)]
-    pub(super) fn commanded(&self) -> Setpoint {
+    pub fn commanded(&self) -> Setpoint {
         if self.shaping.is_none() {
             return self.setpoint;
         }
@@ -232,7 +225,7 @@ impl<P: Planner> Axis<P> {
 
     /// Position and velocity of that: what a drive is told.
     #[inline(always)]
-    pub(super) fn for_drive(&self) -> (f64, f64) {
+    pub fn for_drive(&self) -> (f64, f64) {
         if self.shaping.is_none() {
             return (self.setpoint.position, self.setpoint.velocity);
         }
@@ -259,36 +252,36 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The end of a motion step: what is published follows the motion.
+    /// The end of a motion step: what is published follows the motion. The past is kept in `history`.
     #[inline(always)]
-    pub(crate) fn shape(&mut self, scope: &mut Scope<'_>) {
+    pub fn shape(&mut self, history: &mut [Setpoint]) {
         if self.shaping.is_some() {
-            self.shape_setpoint(scope);
+            self.shape_setpoint(history);
         }
     }
 
     #[inline(never)]
-    fn shape_setpoint(&mut self, scope: &mut Scope<'_>) {
+    fn shape_setpoint(&mut self, history: &mut [Setpoint]) {
         let now = self.setpoint;
         let is_led = !matches!(self.motion, Motion::Follow);
         let Some(shaping) = &mut self.shaping else { return };
         let rests = now.is_at_rest() && shaping.even > shaping.shapers.delay();
         if is_led && !rests {
-            shaping.shape(scope.history, now);
+            shaping.shape(history, now);
         } else {
             shaping.rest(now.position);
         }
     }
 
     /// The shaper for other modes, of an axis that rests. Past set-points are kept where they were.
-    pub(super) fn set_shapers(&mut self, shapers: Shapers) {
+    pub fn set_shapers(&mut self, shapers: Shapers) {
         if let Some(shaping) = &mut self.shaping {
             shaping.shapers = shapers;
         }
     }
 
     /// Whether the memory for the past suffices for these shapers.
-    pub(super) fn has_history_for(&self, shapers: &Shapers) -> bool {
+    pub fn has_history_for(&self, shapers: &Shapers) -> bool {
         let rings = self.shaping.iter().flat_map(|shaping| &shaping.rings);
         let fits = |(ring, shaper): (&Ring, &Shaper)| (shaper.delay() as usize) < ring.places;
         rings.zip(shapers.iter()).all(fits)

@@ -1,0 +1,68 @@
+//! What a set-point comes from.
+
+use standstill_planner::Plan;
+
+/// The source of the set-point.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::axis) enum Motion<Plan> {
+    /// The actual position: the axis is not in operation.
+    Follow,
+    /// It stays where it is.
+    Hold,
+    /// A plan, so many scans after its start, and the scans to the goal, which are those it has or, where it goes on for the next
+    /// command, fewer: asked for several times in every scan.
+    Run { plan: Plan, elapsed: u64, scans: u64 },
+    /// The actual position under a torque: the last one ordered, and the ramp of its velocity limit, so many scans after its
+    /// start.
+    Torque { plan: Plan, elapsed: u64, torque: f64 },
+    /// Where its coupling says.
+    Geared,
+    /// The same, plus a plan beside it.
+    Closing { plan: Plan, elapsed: u64, scans: u64 },
+}
+
+impl<P: Plan> Motion<P> {
+    /// Along `plan`, from its start.
+    pub fn along(plan: P) -> Self {
+        Self::Run {
+            plan,
+            elapsed: 0,
+            scans: u64::from(plan.scans()),
+        }
+    }
+
+    /// Along `plan` beside something that moves, from its start.
+    pub fn closing(plan: P) -> Self {
+        Self::Closing {
+            plan,
+            elapsed: 0,
+            scans: u64::from(plan.scans()),
+        }
+    }
+
+    /// Its plan goes on behind the goal, for the next command.
+    pub fn goes_on(&self) -> bool {
+        matches!(self, Self::Run { plan, scans, .. } if *scans < u64::from(plan.scans()))
+    }
+
+    /// Scans from the start of its plan to the goal; 0 without one.
+    pub fn scans(&self) -> u64 {
+        match self {
+            Self::Run { scans, .. } | Self::Closing { scans, .. } => *scans,
+            Self::Follow | Self::Hold | Self::Torque { .. } | Self::Geared => 0,
+        }
+    }
+
+    /// `None` if the set-point follows the feedback, 0 if it holds, else one more than the scans to the goal.
+    pub fn scans_left(&self) -> Option<u32> {
+        match self {
+            Self::Follow => None,
+            Self::Hold | Self::Torque { .. } | Self::Geared => Some(0),
+            Self::Run { elapsed, scans, .. } | Self::Closing { elapsed, scans, .. } => {
+                // At least 1, to distinguish a plan at its goal from holding.
+                let left = scans.saturating_sub(*elapsed);
+                Some(u32::try_from(left).unwrap_or(u32::MAX).saturating_add(1))
+            }
+        }
+    }
+}
