@@ -51,15 +51,9 @@ impl<P: Planner> Axis<P> {
                     .plan_for(&mut entry)
                     .map_err(|error| self.refuse_plan(&entry, error, scope))?;
                 let before = self.limits_before(&entry.limits);
-                let kept = self.coupling_kept(&entry);
-                let phasing = self.lend_phasing(&entry);
-                // A command that must not interrupt the motion starts beside a command that waits for its
-                // start point.
-                let awaited = self.awaited.take_if(|_| mode != BufferMode::Aborting);
+                let kept = self.lend_following(&entry, mode);
                 self.end_all(Fate::Aborted, Fate::Aborted);
-                self.coupling = kept;
-                self.phasing = phasing;
-                self.awaited = awaited;
+                self.keep_following(kept);
                 self.begin(entry, motion, before, scope);
                 self.record_raised(&asked, &entry.limits, scope);
             }

@@ -38,17 +38,17 @@ mod view;
 use super::commands::{Entry, Gearing, Leg, Sync, Work};
 use super::{Axis, Motion};
 use crate::{
-    Approach, AxisId, CombineMode, ErrorId, Event, Followed, QUEUE_MAX, Raw, Scope, SyncMode, SyncPoint,
-    ValueSource,
+    Approach, AxisId, BufferMode, CombineMode, CommandId, ErrorId, Event, Followed, QUEUE_MAX, Raw, Scope,
+    SyncMode, SyncPoint, ValueSource,
 };
-pub(super) use bound::Bound;
-pub(super) use cam::OnCam;
+use bound::Bound;
+use cam::OnCam;
 pub use cam::{CamFit, CamLaid};
 pub(crate) use links::{Links, Turn};
-pub(super) use phasing::Phasing;
-use standstill_planner::{Anchor, Gear, Limits, Place, Planner, Setpoint};
-pub(super) use steady::Steady;
-pub(super) use sync::Awaited;
+use phasing::Phasing;
+use standstill_planner::{Anchor, Gear, Limits, Place, Plan, Planner, Setpoint};
+use steady::Steady;
+use sync::Awaited;
 pub(super) use view::Kind;
 use view::SeenBoth;
 pub(crate) use view::{Future, Part, Seen, View};
@@ -103,6 +103,50 @@ pub struct Coupled {
     pub shadow: Option<f64>,
 }
 
+/// How an axis follows others, and is followed.
+#[derive(Clone, Debug)]
+pub(super) struct Follower<Plan> {
+    /// How the owner follows a master.
+    coupling: Option<Coupling>,
+    /// The same on a cam.
+    on_cam: Option<OnCam>,
+    /// The number of cam ends reached.
+    cam_ends: u32,
+    /// The phase shift between it and its master.
+    phasing: Phasing<Plan>,
+    /// The command that waits for a place of a master.
+    awaited: Option<Awaited>,
+    /// The part of its limits that its slaves leave.
+    bound: Bound,
+    /// Its place among axes that follow each other.
+    links: Links,
+    /// Whether anything is new, where some axis may follow another.
+    steady: Steady,
+}
+
+impl<P: Plan> Default for Follower<P> {
+    fn default() -> Self {
+        Self {
+            coupling: None,
+            on_cam: None,
+            cam_ends: 0,
+            phasing: Phasing::default(),
+            awaited: None,
+            bound: Bound::default(),
+            links: Links::default(),
+            steady: Steady::default(),
+        }
+    }
+}
+
+/// What a command continues of the way in which the owner before it followed.
+#[derive(Clone, Debug)]
+pub(super) struct Kept<Plan> {
+    coupling: Option<Coupling>,
+    phasing: Phasing<Plan>,
+    awaited: Option<Awaited>,
+}
+
 /// The names of the pins for one master.
 struct LegPins {
     master: &'static str,
@@ -135,7 +179,7 @@ const COMBINED_PINS: [LegPins; 2] = [
 
 /// How the owner follows its master, or its two masters.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Coupling {
+struct Coupling {
     gearing: Gearing,
     /// The place of the law: where the slave was in gear first, or as given.
     anchor: Option<Anchor>,
@@ -257,21 +301,21 @@ impl<P: Planner> Axis<P> {
     /// The owner follows a master.
     #[inline]
     pub(super) fn is_coupled(&self) -> bool {
-        self.coupling.is_some()
+        self.follower.coupling.is_some()
     }
 
     /// Whether the set-point published last is that of the law, and the slave stays in gear.
     #[inline]
     pub fn is_in_gear(&self) -> bool {
         let is_locked = |coupling: &Coupling| coupling.rung.is_locked();
-        let is_locked = self.coupling.as_ref().is_some_and(is_locked);
+        let is_locked = self.follower.coupling.as_ref().is_some_and(is_locked);
         (is_locked || self.is_in_sync_on_cam()) && !self.is_paused()
     }
 
     /// How the owner follows its master; `None` while it follows none.
     pub fn coupled(&self) -> Option<Coupled> {
         let on_cam = self.coupled_on_cam();
-        let gear = self.coupling.as_ref().map(|coupling| Coupled {
+        let gear = self.follower.coupling.as_ref().map(|coupling| Coupled {
             master: coupling.gearing.first.master,
             deviation: coupling.deviation,
             phase: self.phases()[0],
@@ -292,7 +336,7 @@ impl<P: Planner> Axis<P> {
 
     /// The masters the owner follows.
     pub fn followed(&self) -> [Option<AxisId>; 2] {
-        let coupling = self.coupling.as_ref();
+        let coupling = self.follower.coupling.as_ref();
         coupling.map_or([self.master_on_cam(), None], |coupling| {
             coupling.gearing.masters()
         })
@@ -300,7 +344,7 @@ impl<P: Planner> Axis<P> {
 
     /// The masters the owner follows, and which values of each.
     pub(crate) fn followed_values(&self) -> [Option<Values>; 2] {
-        let coupling = self.coupling.as_ref();
+        let coupling = self.follower.coupling.as_ref();
         let on_cam = [self.values_on_cam(), None];
         coupling.map_or(on_cam, |coupling| coupling.gearing.values())
     }
@@ -315,7 +359,7 @@ impl<P: Planner> Axis<P> {
     /// The masters the owner follows, each with its ratio. The numerator is negative also if the way of
     /// the master is subtracted.
     pub fn gears(&self) -> [Option<(AxisId, i32, u16)>; 2] {
-        let Some(coupling) = &self.coupling else {
+        let Some(coupling) = &self.follower.coupling else {
             return [None; 2];
         };
         let ratio = |leg: Leg| {
@@ -332,14 +376,15 @@ impl<P: Planner> Axis<P> {
 
     /// Whether it is on the way to the given sync point.
     pub fn is_syncing(&self) -> bool {
-        self.coupling.as_ref().is_some_and(Coupling::is_syncing)
+        self.follower.coupling.as_ref().is_some_and(Coupling::is_syncing)
     }
 
     /// The distance of a slave from the law of its gear (u). It is 0 in gear, before it was in gear
     /// without a sync point, and for any other axis.
     pub fn deviation(&self) -> f64 {
         let on_cam = self.deviation_on_cam();
-        self.coupling
+        self.follower
+            .coupling
             .as_ref()
             .map_or(on_cam, |coupling| coupling.deviation)
     }
@@ -475,8 +520,8 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The present coupling, if `entry` continues it: the same gear to the same master, in gear.
-    pub(super) fn coupling_kept(&self, entry: &Entry) -> Option<Coupling> {
-        let kept = self.coupling.filter(|coupling| {
+    fn coupling_kept(&self, entry: &Entry) -> Option<Coupling> {
+        let kept = self.follower.coupling.filter(|coupling| {
             let is_in_gear = coupling.rung.is_locked() || coupling.is_kept;
             is_in_gear && Work::Gear(coupling.gearing) == entry.work && !self.is_paused()
         });
@@ -487,14 +532,54 @@ impl<P: Planner> Axis<P> {
         })
     }
 
+    /// What `entry`, which takes over now, continues of the present owner's way to follow. A command that must not
+    /// interrupt the motion starts beside a command that waits for its start point.
+    pub(super) fn lend_following(&mut self, entry: &Entry, mode: BufferMode) -> Kept<P::Plan> {
+        Kept {
+            coupling: self.coupling_kept(entry),
+            phasing: self.lend_phasing(entry),
+            awaited: self.follower.awaited.take_if(|_| mode != BufferMode::Aborting),
+        }
+    }
+
+    /// The owner before has ended; this goes on.
+    pub(super) fn keep_following(&mut self, kept: Kept<P::Plan>) {
+        self.follower.coupling = kept.coupling;
+        self.follower.phasing = kept.phasing;
+        self.follower.awaited = kept.awaited;
+    }
+
+    /// The axis follows no master any more.
+    pub(super) fn end_coupling(&mut self) {
+        let was_behind_gear = self.follower.coupling.take().is_some();
+        if self.follower.on_cam.take().is_some() || was_behind_gear {
+            self.end_phasing();
+        }
+    }
+
+    /// A motion is added from the place (u) `added` of its layer on: the law counts from there.
+    pub(super) fn lay_layer_on_law(&mut self, added: f64) {
+        if let Some(coupling) = &mut self.follower.coupling {
+            coupling.lay_layer(added);
+        }
+        self.lay_layer_on_cam(added);
+    }
+
+    /// The command that waits for a place of its master while another one owns the axis (MC_GearInPos
+    /// before its start point).
+    pub fn awaited_command(&self) -> Option<CommandId> {
+        let awaited = self.follower.awaited.as_ref();
+        awaited.map(|awaited| awaited.entry.id)
+    }
+
     /// Says that `entry` follows a master from the next motion step on, or has new values for it.
     pub(super) fn await_master(&mut self, entry: &Entry, scope: &mut Scope<'_>) {
         if let Work::Cam(camming) = entry.work {
             return self.await_master_on_cam(camming, entry, scope);
         }
         let Work::Gear(gearing) = entry.work else { return };
-        self.links.set_bound(true);
-        let known = self.coupling.as_ref().map(|coupling| coupling.gearing);
+        self.follower.links.set_bound(true);
+        let known = self.follower.coupling.as_ref().map(|coupling| coupling.gearing);
         if known != Some(gearing) {
             for leg in gearing.legs().into_iter().flatten() {
                 let (numerator, denominator) = leg.gear.ratio();
@@ -508,6 +593,7 @@ impl<P: Planner> Axis<P> {
         }
         let (limits, moves) = (self.slowed(&self.parameters.limits), self.frame.moves());
         let coupling = self
+            .follower
             .coupling
             .get_or_insert_with(|| Coupling::new(gearing, limits, moves));
         let is_new = coupling.gearing != gearing;
@@ -527,7 +613,7 @@ impl<P: Planner> Axis<P> {
 
     /// The motion is not on the law for a while. The way onto it is searched when it may continue.
     pub(super) fn leave_law(&mut self) {
-        if let Some(coupling) = &mut self.coupling {
+        if let Some(coupling) = &mut self.follower.coupling {
             coupling.rung = Rung::Due;
             coupling.told = None;
         }
@@ -537,11 +623,11 @@ impl<P: Planner> Axis<P> {
     /// Its place among axes that follow each other.
     #[inline]
     pub(crate) fn links(&self) -> &Links {
-        &self.links
+        &self.follower.links
     }
 
     pub(crate) fn links_mut(&mut self) -> &mut Links {
-        &mut self.links
+        &mut self.follower.links
     }
 
     /// The masters it follows, and those whose place a command of it waits for.
@@ -554,7 +640,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn note_bound(&mut self, entry: &Entry) {
         self.unsettle();
         if matches!(entry.work, Work::Gear(_) | Work::Cam(_)) {
-            self.links.set_bound(true);
+            self.follower.links.set_bound(true);
         }
     }
 
@@ -563,8 +649,8 @@ impl<P: Planner> Axis<P> {
     pub(crate) fn renew_bound(&mut self) -> bool {
         let couples = |entry: &Entry| matches!(entry.work, Work::Gear(_) | Work::Cam(_));
         let waits = !self.queue.is_empty() && self.queue.iter().any(couples);
-        let is_bound = self.is_coupled() || self.is_on_cam() || self.awaited.is_some() || waits;
-        self.links.set_bound(is_bound);
+        let is_bound = self.is_coupled() || self.is_on_cam() || self.follower.awaited.is_some() || waits;
+        self.follower.links.set_bound(is_bound);
         waits
     }
 

@@ -13,6 +13,7 @@
 //! | [`frame`] | the names of positions, at the axis and at the drive |
 //! | [`modulo`] | turns, and the shorter way round |
 //! | [`measured`] | actual positions as slaves see them: filtered |
+//! | [`coupling`] | how it follows others and is followed, which only that folder writes |
 //!
 //! The decisions are in one file for each subject:
 //!
@@ -229,22 +230,8 @@ pub struct Axis<P: Planner = Standard> {
     /// What positions are called.
     frame: Frame,
     owner: Option<Entry>,
-    /// How the owner follows a master.
-    coupling: Option<coupling::Coupling>,
-    /// The same on a cam.
-    on_cam: Option<coupling::OnCam>,
-    /// The number of cam ends reached.
-    cam_ends: u32,
-    /// The phase shift between it and its master.
-    phasing: coupling::Phasing<P::Plan>,
-    /// The command that waits for a place of a master.
-    awaited: Option<coupling::Awaited>,
-    /// The part of its limits that its slaves leave.
-    bound: coupling::Bound,
-    /// Its place among axes that follow each other.
-    links: coupling::Links,
-    /// Whether anything is new, where some axis may follow another.
-    steady: coupling::Steady,
+    /// How it follows others, and is followed.
+    follower: coupling::Follower<P::Plan>,
     /// The owner is MC_Stop, at rest, and held by its Execute.
     stop_held: bool,
     queue: Queue,
@@ -295,14 +282,7 @@ impl<P: Planner> Axis<P> {
             beside: BesideMotion::default(),
             frame: Frame::default(),
             owner: None,
-            coupling: None,
-            on_cam: None,
-            cam_ends: 0,
-            phasing: coupling::Phasing::default(),
-            awaited: None,
-            bound: coupling::Bound::default(),
-            links: coupling::Links::default(),
-            steady: coupling::Steady::default(),
+            follower: coupling::Follower::default(),
             stop_held: false,
             queue: Queue::default(),
             fates: Fates::default(),
@@ -419,12 +399,6 @@ impl<P: Planner> Axis<P> {
     /// The command that owns the axis; a superimposed one does not.
     pub fn active_command(&self) -> Option<CommandId> {
         self.owner.as_ref().map(|owner| owner.id)
-    }
-
-    /// The command that waits for a place of its master while another one owns the axis (MC_GearInPos
-    /// before its start point).
-    pub fn awaited_command(&self) -> Option<CommandId> {
-        self.awaited.as_ref().map(|awaited| awaited.entry.id)
     }
 
     /// The number of the command accepted last.
@@ -649,14 +623,6 @@ impl<P: Planner> Axis<P> {
         self.stop_held = false;
         self.replan_due = false;
         self.end_coupling();
-    }
-
-    /// The axis follows no master any more.
-    fn end_coupling(&mut self) {
-        let was_behind_gear = self.coupling.take().is_some();
-        if self.on_cam.take().is_some() || was_behind_gear {
-            self.end_phasing();
-        }
     }
 
     fn record(&self, event: Event, scope: &mut Scope<'_>) {

@@ -249,7 +249,7 @@ impl<P: Planner> Axis<P> {
                     let blended = self.passes_its_end();
                     let phasing = self.lend_phasing(&next);
                     self.end_owner(self.fate_at_hand_over());
-                    self.phasing = phasing;
+                    self.keep_phasing(phasing);
                     let before = if blended { next.limits } else { before };
                     self.begin(next, motion, before, scope);
                     self.record_raised(&asked, &next.limits, &mut self.owner_scope(scope));

@@ -72,7 +72,7 @@ impl<P: Planner> Axis<P> {
     /// Finds the way onto the law, from the state at the end of the last scan. It is in gear at once only
     /// if it `may_lock`.
     pub(super) fn approach(&mut self, view: &View<'_, P::Plan>, may_lock: bool, scope: &mut Scope<'_>) {
-        let (Some(coupling), Some(owner)) = (&self.coupling, self.owner) else {
+        let (Some(coupling), Some(owner)) = (&self.follower.coupling, self.owner) else {
             return;
         };
         let was_locked = coupling.rung.is_locked();
@@ -106,7 +106,11 @@ impl<P: Planner> Axis<P> {
                 if view.future.is_late() {
                     way.left = 0;
                 }
-                let told = self.coupling.as_mut().and_then(|coupling| coupling.told.as_mut());
+                let told = self
+                    .follower
+                    .coupling
+                    .as_mut()
+                    .and_then(|coupling| coupling.told.as_mut());
                 if let (Some((name, velocity)), Some(_)) = (told, view.future.measured())
                     && *name == way.name
                 {
@@ -144,7 +148,7 @@ impl<P: Planner> Axis<P> {
         anchor: Anchor,
         difference: &Setpoint,
     ) -> Result<Way<P::Plan>, ErrorId> {
-        let Some(coupling) = &self.coupling else {
+        let Some(coupling) = &self.follower.coupling else {
             return Err(ErrorId::PlanRefused);
         };
         let here = self.place();
@@ -204,7 +208,7 @@ impl<P: Planner> Axis<P> {
         let (asked, axis) = (&owner.limits, &self.slowed(&self.parameters.limits));
         // The Velocity of MC_GearInPos limits the way to its sync point.
         let is_synced = |coupling: &Coupling| coupling.gearing.sync.is_some() && coupling.was_in_gear;
-        let velocity = if self.coupling.as_ref().is_some_and(is_synced) {
+        let velocity = if self.follower.coupling.as_ref().is_some_and(is_synced) {
             axis.velocity
         } else {
             asked.velocity.min(axis.velocity)
@@ -221,7 +225,7 @@ impl<P: Planner> Axis<P> {
     /// The stretch of the law that the slave is led onto. The law was at `on_law` (u), in the slave's
     /// turn, and has moved by `step` (u) in this scan.
     fn next_stretch(&self, view: &View<'_, P::Plan>, on_law: f64, step: f64) -> Option<Stretch> {
-        let coupling = self.coupling.as_ref()?;
+        let coupling = self.follower.coupling.as_ref()?;
         let cycle = self.planner.cycle();
         if coupling.stands(&view.future) || view.future.kind() == Kind::Still {
             return Some(Stretch {
@@ -328,7 +332,7 @@ impl<P: Planner> Axis<P> {
 
     /// Onto a law at rest, planned like MC_MoveAbsolute to the place of the law.
     fn onto_rest(&self, view: &View<'_, P::Plan>, limits: &Limits, before: &Limits) -> Option<Way<P::Plan>> {
-        let coupling = self.coupling.as_ref()?;
+        let coupling = self.follower.coupling.as_ref()?;
         let anchor = coupling.anchor?;
         let here = self.place();
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
@@ -370,7 +374,7 @@ impl<P: Planner> Axis<P> {
         if stretch.velocity.abs() > limits.velocity {
             return None;
         }
-        let coupling = self.coupling.as_ref()?;
+        let coupling = self.follower.coupling.as_ref()?;
         let is_syncing = coupling.is_syncing();
         if is_syncing && view.future.kind() == Kind::Still {
             return self.onto_rest(view, limits, before);
@@ -516,7 +520,7 @@ impl<P: Planner> Axis<P> {
         if view.future.measured().is_some() {
             return self.beside_measured(view, anchor, difference, line, limits);
         }
-        let coupling = self.coupling.as_ref()?;
+        let coupling = self.follower.coupling.as_ref()?;
         // The step of a plan that ended in this scan can no longer be checked.
         let leads = coupling.leads(&view.future).filter(|_| !view.future.is_late())?;
         let to_place = coupling.anchor.is_some();
@@ -572,7 +576,7 @@ impl<P: Planner> Axis<P> {
         line: f64,
         limits: &Limits,
     ) -> Option<Way<P::Plan>> {
-        let coupling = self.coupling.as_ref()?;
+        let coupling = self.follower.coupling.as_ref()?;
         if matches!(coupling.rung, Rung::BesideMeasured { .. }) || !self.is_told_finely(view) {
             return None;
         }
@@ -606,7 +610,7 @@ impl<P: Planner> Axis<P> {
 
     /// Half of the limits that the law leaves of `limits` in this scan; none if it leaves nothing.
     pub(in crate::axis) fn room_now(&self, view: &View<'_, P::Plan>, limits: &Limits) -> Option<Limits> {
-        let coupling = self.coupling.as_ref()?;
+        let coupling = self.follower.coupling.as_ref()?;
         let (_, law) = coupling.law(&coupling.anchor.unwrap_or_default(), &view.seen());
         let half = |limit: f64, used: f64| 0.5 * (limit - used.abs());
         let rate = half(limits.lower_acceleration(), law.acceleration);
@@ -651,7 +655,7 @@ impl<P: Planner> Axis<P> {
         let most = self.limits_of_approach(owner).velocity;
         let goal = if velocity < 0.0 { -most } else { most };
         let (motion, limits) = self.to_velocity(owner, goal)?;
-        let coupling = self.coupling.as_ref();
+        let coupling = self.follower.coupling.as_ref();
         let left = match coupling.and_then(|coupling| coupling.leads(&view.future)) {
             Some(leads) => {
                 let late = u64::from(view.future.is_late());
@@ -714,7 +718,7 @@ impl<P: Planner> Axis<P> {
             .watch(self.owner.is_some_and(|owner| self.needs_watching(&owner)));
         let told = Some((way.name, way.velocity));
         let mut is_told = false;
-        if let Some(coupling) = &mut self.coupling {
+        if let Some(coupling) = &mut self.follower.coupling {
             coupling.rung = way.rung;
             coupling.left = way.left;
             is_told = coupling.told == told;
@@ -738,7 +742,7 @@ impl<P: Planner> Axis<P> {
 
     /// There is no way on. A way that MC_Power or a limit switch bars waits for permission.
     fn stay_back(&mut self, error: ErrorId, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
-        if let Some(coupling) = &mut self.coupling {
+        if let Some(coupling) = &mut self.follower.coupling {
             coupling.rung = Rung::Due;
             coupling.left = u64::MAX;
         }
@@ -784,7 +788,7 @@ impl<P: Planner> Axis<P> {
         view: &View<'_, P::Plan>,
         beside: &Setpoint,
     ) -> Option<Beyond> {
-        let coupling = self.coupling.as_ref()?;
+        let coupling = self.follower.coupling.as_ref()?;
         let mut peaks = Setpoint::default();
         for lead in coupling.leads(&view.future)?.iter().flatten() {
             let own = self.planner.peaks((lead.plan, lead.elapsed))?;

@@ -43,7 +43,7 @@ impl Default for Bound {
 impl<P: Planner> Axis<P> {
     /// `limits` lowered to what slaves leave.
     pub(in crate::axis) fn slowed(&self, limits: &Limits) -> Limits {
-        limits.or_smaller(&self.bound.now)
+        limits.or_smaller(&self.follower.bound.now)
     }
 
     /// Lowers the limits of `entry` to what slaves leave. Commands behind a master, commands that keep
@@ -53,7 +53,7 @@ impl<P: Planner> Axis<P> {
             return;
         }
         entry.limits = self.slowed(&entry.limits);
-        let (velocity, most) = (entry.work.manner().velocity, self.bound.now.velocity);
+        let (velocity, most) = (entry.work.manner().velocity, self.follower.bound.now.velocity);
         if velocity.abs() > most {
             entry.work = entry.work.with_velocity(most.copysign(velocity));
         }
@@ -109,18 +109,18 @@ impl<P: Planner> Axis<P> {
 
     /// Every velocity limit is finite, so there is a bound if the bound's velocity is finite.
     pub(in crate::axis) fn is_slowed(&self) -> bool {
-        self.bound.now.velocity.is_finite()
+        self.follower.bound.now.velocity.is_finite()
     }
 
     /// Called before bounds are collected: resets the bound, and notes whether its master keeps its
     /// limits.
     pub(crate) fn begin_bound(&mut self) {
-        self.bound.next = Limits::NONE;
+        self.follower.bound.next = Limits::NONE;
         if self.config.following.on_limit != OnLimit::SlowMaster {
             return;
         }
         self.begin_bound_on_cam();
-        let Some(coupling) = &mut self.coupling else {
+        let Some(coupling) = &mut self.follower.coupling else {
             return;
         };
         match coupling.rung {
@@ -136,12 +136,16 @@ impl<P: Planner> Axis<P> {
 
     /// Lowers the bound to `bound`, which a slave leaves.
     pub(crate) fn lower_bound(&mut self, bound: &Limits) {
-        self.bound.next = self.bound.next.or_smaller(bound);
+        self.follower.bound.next = self.follower.bound.next.or_smaller(bound);
     }
 
     /// Its master keeps its limits.
     pub(super) fn slows_master(&self) -> bool {
-        self.coupling.as_ref().is_some_and(|coupling| coupling.slows) || self.bound_on_cam().is_some()
+        self.follower
+            .coupling
+            .as_ref()
+            .is_some_and(|coupling| coupling.slows)
+            || self.bound_on_cam().is_some()
     }
 
     /// Whether its motion was planned within what its slaves leave. It was not if planned before there
@@ -156,7 +160,7 @@ impl<P: Planner> Axis<P> {
     /// The limits that it leaves to each of its masters: its own limits and what its own slaves leave,
     /// converted by the gear. Each of two masters gets half. A moving shift takes its part of them.
     pub(crate) fn bounds_of_masters(&self) -> impl Iterator<Item = (AxisId, Limits)> + use<P> {
-        let coupling = self.coupling.as_ref().filter(|coupling| coupling.slows);
+        let coupling = self.follower.coupling.as_ref().filter(|coupling| coupling.slows);
         let bounds = coupling.map_or([None; 2], |coupling| {
             let gearing = &coupling.gearing;
             let part = if gearing.second.is_some() { 0.5 } else { 1.0 };
@@ -190,10 +194,10 @@ impl<P: Planner> Axis<P> {
 
     /// Applies the bound found in this motion step from now on.
     pub(crate) fn take_bound(&mut self, scope: &mut Scope<'_>) {
-        if self.bound.next == self.bound.now {
+        if self.follower.bound.next == self.follower.bound.now {
             return;
         }
-        self.bound.now = self.bound.next;
+        self.follower.bound.now = self.follower.bound.next;
         self.unsettle();
         self.override_queue();
         self.bound_owner(scope);

@@ -253,7 +253,7 @@ impl<P: Planner> Axis<P> {
     /// The owner is on a cam.
     #[inline]
     pub(crate) fn is_on_cam(&self) -> bool {
-        self.on_cam.is_some()
+        self.follower.on_cam.is_some()
     }
 
     /// The owner follows a master on a cam.
@@ -265,16 +265,21 @@ impl<P: Planner> Axis<P> {
     pub fn uses_cam(&self, id: CamId) -> bool {
         let is_of = |entry: &Entry| matches!(entry.work, super::super::commands::Work::Cam(camming) if camming.cam == id);
         let runs = self
+            .follower
             .on_cam
             .as_ref()
             .is_some_and(|on_cam| on_cam.camming.cam == id);
-        let awaits = self.awaited.as_ref().is_some_and(|awaited| is_of(&awaited.entry));
+        let awaits = self
+            .follower
+            .awaited
+            .as_ref()
+            .is_some_and(|awaited| is_of(&awaited.entry));
         runs || awaits || self.owner.as_ref().is_some_and(is_of) || self.queue.iter().any(is_of)
     }
 
     /// The number of cam ends that this axis has reached. It only grows, until it wraps.
     pub fn cam_ends(&self) -> u32 {
-        self.cam_ends
+        self.follower.cam_ends
     }
 
     /// How this axis can go along a complete cam, without scalings.
@@ -393,32 +398,36 @@ impl<P: Planner> Axis<P> {
     }
 
     pub(in crate::axis) fn master_on_cam(&self) -> Option<AxisId> {
-        self.on_cam.as_ref().map(|on_cam| on_cam.camming.master)
+        self.follower.on_cam.as_ref().map(|on_cam| on_cam.camming.master)
     }
 
     pub(super) fn values_on_cam(&self) -> Option<Values> {
-        let on_cam = self.on_cam.as_ref()?;
+        let on_cam = self.follower.on_cam.as_ref()?;
         Some((on_cam.camming.master, on_cam.camming.source))
     }
 
     pub(super) fn has_lost_master_on_cam(&self) -> bool {
-        self.on_cam
+        self.follower
+            .on_cam
             .as_ref()
             .is_some_and(|on_cam| on_cam.rung == Rung::Lost)
     }
 
     pub(super) fn deviation_on_cam(&self) -> f64 {
-        self.on_cam.as_ref().map_or(0.0, |on_cam| on_cam.deviation)
+        self.follower
+            .on_cam
+            .as_ref()
+            .map_or(0.0, |on_cam| on_cam.deviation)
     }
 
     /// In sync. Before the cam has begun this is not reported.
     pub(super) fn is_in_sync_on_cam(&self) -> bool {
         let is_in_sync = |on_cam: &OnCam| on_cam.rung.is_locked() && on_cam.ends.has_begun();
-        self.on_cam.as_ref().is_some_and(is_in_sync)
+        self.follower.on_cam.as_ref().is_some_and(is_in_sync)
     }
 
     pub(super) fn coupled_on_cam(&self) -> Option<Coupled> {
-        let on_cam = self.on_cam.as_ref()?;
+        let on_cam = self.follower.on_cam.as_ref()?;
         let place = on_cam.shadow.map(|shadow| shadow.place);
         let turn = on_cam.camming.law.master_turn;
         let shadow = place.map(|place| match turn {
@@ -439,26 +448,27 @@ impl<P: Planner> Axis<P> {
 
     /// The master of its cam at the end of the scan before.
     pub(super) fn master_of_cam_was(&self) -> Option<&Seen> {
-        self.on_cam.as_ref().map(|on_cam| &on_cam.was)
+        self.follower.on_cam.as_ref().map(|on_cam| &on_cam.was)
     }
 
     /// How large (u of the slave) the places of its master are that the cam is looked up at.
     pub(super) fn size_of_master_on_cam(&self) -> f64 {
-        self.on_cam
+        self.follower
+            .on_cam
             .as_ref()
             .map_or(0.0, |on_cam| on_cam.camming.steepest * on_cam.was.size())
     }
 
     /// Before any axis has moved in this scan: its master is there.
     pub(super) fn note_master_on_cam(&mut self, seen: Seen) {
-        if let Some(on_cam) = &mut self.on_cam {
+        if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.was = seen;
         }
     }
 
     /// The motion is not on the curve for a while.
     pub(super) fn leave_cam(&mut self) {
-        if let Some(on_cam) = &mut self.on_cam {
+        if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.rung = Rung::Due;
             on_cam.shadow = None;
         }
@@ -566,8 +576,8 @@ impl<P: Planner> Axis<P> {
 
     /// `entry` moves onto a cam from the next motion step on, or has new values for it.
     pub(super) fn await_master_on_cam(&mut self, camming: Camming, entry: &Entry, scope: &mut Scope<'_>) {
-        self.links.set_bound(true);
-        let known = self.on_cam.as_ref().map(|on_cam| on_cam.camming);
+        self.follower.links.set_bound(true);
+        let known = self.follower.on_cam.as_ref().map(|on_cam| on_cam.camming);
         if known != Some(camming) {
             let event = Event::OnCam {
                 master: camming.master,
@@ -577,6 +587,7 @@ impl<P: Planner> Axis<P> {
         }
         let (limits, moves) = (self.slowed(&self.parameters.limits), self.frame.moves());
         let on_cam = self
+            .follower
             .on_cam
             .get_or_insert_with(|| OnCam::new(camming, limits, moves));
         let is_lost = on_cam.rung == Rung::Lost;

@@ -78,7 +78,7 @@ impl<P: Planner> Axis<P> {
         if (is_new && !stays) || self.rung() == Some(Rung::Due) {
             self.lay_law(view);
             self.approach(view, true, scope);
-            if let Some(coupling) = &mut self.coupling {
+            if let Some(coupling) = &mut self.follower.coupling {
                 coupling.is_kept = false;
             }
             self.tell_outside(view, scope);
@@ -144,20 +144,21 @@ impl<P: Planner> Axis<P> {
 
     /// Whether its coupling is in gear, whether or not the motion follows it now.
     fn is_locked(&self) -> bool {
-        self.coupling
+        self.follower
+            .coupling
             .as_ref()
             .is_some_and(|coupling| coupling.rung.is_locked())
     }
 
     pub(super) fn rung(&self) -> Option<Rung> {
-        self.coupling.as_ref().map(|coupling| coupling.rung)
+        self.follower.coupling.as_ref().map(|coupling| coupling.rung)
     }
 
     /// Coordinates of master or slave have moved: the law moves with them, and nothing else changes.
     fn rebase(&mut self, view: &View<'_, P::Plan>, scan: u64) {
         let (here, moves) = (self.place(), self.frame.moves());
         let own = self.coordinates_moved(scan);
-        let Some(coupling) = &mut self.coupling else {
+        let Some(coupling) = &mut self.follower.coupling else {
             return;
         };
         let now = view.seen();
@@ -204,7 +205,7 @@ impl<P: Planner> Axis<P> {
     /// or whether the way onto the law is due to be searched again.
     fn look_ahead(&mut self, view: &View<'_, P::Plan>) -> bool {
         let limits = self.slowed(&self.parameters.limits);
-        let Some(coupling) = &mut self.coupling else {
+        let Some(coupling) = &mut self.follower.coupling else {
             return false;
         };
         let is_locked = coupling.rung.is_locked();
@@ -227,7 +228,9 @@ impl<P: Planner> Axis<P> {
     /// In gear: the set-point is the law.
     fn step_in_gear(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let added = self.next_added();
-        let Some(coupling) = &self.coupling else { return };
+        let Some(coupling) = &self.follower.coupling else {
+            return;
+        };
         let Some(mut anchor) = coupling.anchor else { return };
         let limits = coupling.limits;
         if let Some(added) = &added {
@@ -255,7 +258,7 @@ impl<P: Planner> Axis<P> {
         }
         self.mover.keep_only(limits);
         self.publish_behind(place, next, scope);
-        if let (true, Some(added), Some(coupling)) = (self.is_on_law(), added, &mut self.coupling) {
+        if let (true, Some(added), Some(coupling)) = (self.is_on_law(), added, &mut self.follower.coupling) {
             coupling.anchor = Some(anchor);
             self.note_added(added);
         }
@@ -272,7 +275,7 @@ impl<P: Planner> Axis<P> {
             let has_stood = was.place == view.now.place && was.at.is_at_rest();
             return self.holds_end_of_cam() || (view.future.kind() == Kind::Still && has_stood);
         }
-        let Some(coupling) = &self.coupling else {
+        let Some(coupling) = &self.follower.coupling else {
             return false;
         };
         let mut both = coupling.was.iter().zip(view.seen());
@@ -286,7 +289,7 @@ impl<P: Planner> Axis<P> {
         if self.is_on_cam() {
             return self.lead_of_master(view).map(|lead| [Some(lead), None]);
         }
-        let leads = self.coupling.as_ref()?.leads(&view.future)?;
+        let leads = self.follower.coupling.as_ref()?.leads(&view.future)?;
         leads.iter().any(Option::is_some).then_some(leads)
     }
 
@@ -295,7 +298,7 @@ impl<P: Planner> Axis<P> {
         &self,
         view: &View<'_, P::Plan>,
     ) -> Option<(Setpoint, Setpoint)> {
-        let coupling = self.coupling.as_ref()?;
+        let coupling = self.follower.coupling.as_ref()?;
         let anchor = coupling.anchor?;
         let law = |seen| coupling.law(&anchor, seen).1;
         Some((law(&coupling.was), law(&view.seen())))
@@ -311,7 +314,9 @@ impl<P: Planner> Axis<P> {
         };
         let (beside, elapsed, is_over) = (step.beside, step.elapsed, step.is_over());
         let goal = plan.at(step.scans).position;
-        let Some(coupling) = &self.coupling else { return };
+        let Some(coupling) = &self.follower.coupling else {
+            return;
+        };
         let (rung, known) = (coupling.rung, coupling.anchor);
         let anchor = match (rung, known) {
             (Rung::BesideLaw(anchor) | Rung::BesideMeasured { anchor, .. }, _) | (_, Some(anchor)) => anchor,
@@ -371,7 +376,7 @@ impl<P: Planner> Axis<P> {
     /// After several turns on its way back onto its law the rest is looked for from where it is then: a plan that began further away is
     /// as coarse as that is far.
     fn look_from_near(&mut self, beside: &Setpoint, line: f64) {
-        let (Some(modulo), Some(coupling)) = (&self.modulo, &mut self.coupling) else {
+        let (Some(modulo), Some(coupling)) = (&self.modulo, &mut self.follower.coupling) else {
             return;
         };
         let is_long = is_far(beside.position, modulo.length) || is_far(line, modulo.length);
@@ -397,7 +402,7 @@ impl<P: Planner> Axis<P> {
         };
         let resolved = RESOLVED * 4.0 * (frame.position.abs() + law_place.position.abs() + length);
         let is_on = off(place, law_place, length).abs() <= resolved && self.law_is_near(frame, law);
-        if let (false, Some(coupling)) = (is_on, &mut self.coupling) {
+        if let (false, Some(coupling)) = (is_on, &mut self.follower.coupling) {
             coupling.left = 0;
         }
         is_on
@@ -406,7 +411,9 @@ impl<P: Planner> Axis<P> {
     /// After a step of its own: in gear, if it has reached the velocity of the law, was not in gear
     /// before, and can stay.
     fn lock_at_velocity(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
-        let Some(coupling) = &self.coupling else { return };
+        let Some(coupling) = &self.follower.coupling else {
+            return;
+        };
         let is_at_goal =
             matches!(self.mover.motion(), Motion::Run { elapsed, scans, .. } if elapsed >= scans);
         if coupling.anchor.is_some() || coupling.rung != Rung::Own || !is_at_goal || self.is_paused() {
@@ -428,7 +435,7 @@ impl<P: Planner> Axis<P> {
     /// Whether the law keeps the limits of the slave as far as is known. It is checked from the end of
     /// this scan if the step `is_over`, else from the end of the last one.
     pub(super) fn law_fits(&self, view: &View<'_, P::Plan>, is_over: bool) -> bool {
-        let Some(coupling) = &self.coupling else {
+        let Some(coupling) = &self.follower.coupling else {
             return false;
         };
         if !self.is_told_finely(view) {
@@ -465,7 +472,11 @@ impl<P: Planner> Axis<P> {
         view: &View<'_, P::Plan>,
         limits: &Limits,
     ) -> Option<Beyond> {
-        let coupling = self.coupling.as_ref().filter(|_| self.follows_actual())?;
+        let coupling = self
+            .follower
+            .coupling
+            .as_ref()
+            .filter(|_| self.follows_actual())?;
         let (_, from) = coupling.law(anchor, &coupling.was);
         let (_, to) = coupling.law(anchor, &view.seen());
         let peaks = Piece::between(&from, &to, self.planner.cycle()).peaks();
@@ -494,7 +505,7 @@ impl<P: Planner> Axis<P> {
     /// Whether the law of measured values left a plan this `room` beside it during the whole scan. At the
     /// end of the scan both together are at `next`.
     fn leaves_room(&self, anchor: &Anchor, view: &View<'_, P::Plan>, room: &Limits, next: &Setpoint) -> bool {
-        let Some(coupling) = &self.coupling else {
+        let Some(coupling) = &self.follower.coupling else {
             return false;
         };
         let (limits, cycle) = (self.mover.in_force(), self.planner.cycle());
@@ -513,7 +524,7 @@ impl<P: Planner> Axis<P> {
     /// Whether measured places are fine enough that rounding causes no step of the slave. Only jumps lead
     /// to places that are too coarse.
     pub(super) fn is_told_finely(&self, view: &View<'_, P::Plan>) -> bool {
-        let Some(coupling) = self.coupling.as_ref().filter(|_| self.follows_actual()) else {
+        let Some(coupling) = self.follower.coupling.as_ref().filter(|_| self.follows_actual()) else {
             return true;
         };
         let numbers = coupling.size_of_masters(&view.seen()) + self.mover.setpoint().position.abs();
@@ -523,7 +534,7 @@ impl<P: Planner> Axis<P> {
 
     /// The limit that the law exceeds in this scan, if the motion ahead is not known.
     pub(super) fn beyond_now(&self, view: &View<'_, P::Plan>) -> Option<Beyond> {
-        let coupling = self.coupling.as_ref()?;
+        let coupling = self.follower.coupling.as_ref()?;
         let anchor = coupling.anchor.unwrap_or_default();
         let (place, law) = coupling.law(&anchor, &view.seen());
         let place = coupling.anchor.map(|_| place);
@@ -549,7 +560,7 @@ impl<P: Planner> Axis<P> {
 
     /// In gear from now on, on the law through `anchor`.
     pub(super) fn lock(&mut self, anchor: Anchor, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
-        if let Some(coupling) = &mut self.coupling {
+        if let Some(coupling) = &mut self.follower.coupling {
             coupling.anchor = Some(anchor);
             coupling.rung = Rung::Locked;
             coupling.left = u64::MAX;
@@ -590,7 +601,7 @@ impl<P: Planner> Axis<P> {
             return found;
         };
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
-        let geared = self.coupling.as_ref();
+        let geared = self.follower.coupling.as_ref();
         let masters = geared.map_or_else(
             || self.size_of_master_on_cam(),
             |coupling| coupling.size_of_masters(&coupling.was),
@@ -694,7 +705,7 @@ impl<P: Planner> Axis<P> {
         self.pause(ErrorId::MasterLost, scope);
         self.end_superimposed(Fate::Aborted);
         self.end_phasing();
-        if let Some(coupling) = &mut self.coupling {
+        if let Some(coupling) = &mut self.follower.coupling {
             coupling.rung = Rung::Lost;
             coupling.anchor = None;
             coupling.deviation = 0.0;
@@ -706,7 +717,7 @@ impl<P: Planner> Axis<P> {
     fn measure(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let here = self.place();
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
-        let Some(coupling) = &mut self.coupling else {
+        let Some(coupling) = &mut self.follower.coupling else {
             return;
         };
         coupling.deviation = match (coupling.rung, &coupling.anchor) {

@@ -34,13 +34,17 @@ impl<P: Planner> Axis<P> {
         if self.parameters.software_limits.is_none() {
             return;
         }
-        let rest = match &self.coupling {
+        let rest = match &self.follower.coupling {
             Some(coupling) => coupling.rest_of_law(view),
             None => self.rest_of_cam(view, &scope.cams),
         };
         let outside = rest.filter(|rest| self.allowed(*rest).is_err());
-        let told = self.coupling.as_mut().map(|coupling| &mut coupling.leads_outside);
-        let Some(told) = told.or_else(|| self.on_cam.as_mut().map(OnCam::leads_outside)) else {
+        let told = self
+            .follower
+            .coupling
+            .as_mut()
+            .map(|coupling| &mut coupling.leads_outside);
+        let Some(told) = told.or_else(|| self.follower.on_cam.as_mut().map(OnCam::leads_outside)) else {
             return;
         };
         let was = core::mem::replace(told, outside);

@@ -111,7 +111,7 @@ impl<P: Planner> Axis<P> {
 
     /// The same for each of its masters; 0 without a shift.
     pub fn phases(&self) -> [f64; 2] {
-        self.phasing.legs.map(|leg| leg.now.position)
+        self.follower.phasing.legs.map(|leg| leg.now.position)
     }
 
     /// MC_PhasingAbsolute, MC_PhasingRelative: shifts the master as the slave sees it. Nothing is planned
@@ -145,7 +145,7 @@ impl<P: Planner> Axis<P> {
         if mode == BufferMode::Aborting {
             self.end_shifts(leg, Fate::Aborted);
         }
-        if let Some(leg) = self.phasing.legs.get_mut(leg) {
+        if let Some(leg) = self.follower.phasing.legs.get_mut(leg) {
             let slot = if leg.command.is_none() {
                 &mut leg.command
             } else {
@@ -198,7 +198,7 @@ impl<P: Planner> Axis<P> {
 
     /// Ends the commands for the shift of this master; the shift stays as it is.
     fn end_shifts(&mut self, leg: usize, fate: Fate) {
-        let Some(leg) = self.phasing.legs.get_mut(leg) else {
+        let Some(leg) = self.follower.phasing.legs.get_mut(leg) else {
             return;
         };
         let ended = [leg.command.take(), leg.next.take()];
@@ -209,19 +209,24 @@ impl<P: Planner> Axis<P> {
 
     /// Ends the shifts together with the coupling.
     pub(in crate::axis) fn end_phasing(&mut self) {
-        for leg in 0..self.phasing.legs.len() {
+        for leg in 0..self.follower.phasing.legs.len() {
             self.end_shifts(leg, Fate::Aborted);
         }
-        self.phasing = Phasing::default();
+        self.follower.phasing = Phasing::default();
     }
 
     /// The shifts, if `entry`, which takes over, continues them behind the same masters.
     pub(in crate::axis) fn lend_phasing(&mut self, entry: &Entry) -> Phasing<P::Plan> {
         if self.goes_on_behind_masters(entry) {
-            core::mem::take(&mut self.phasing)
+            core::mem::take(&mut self.follower.phasing)
         } else {
             Phasing::default()
         }
+    }
+
+    /// The owner before has ended; its phase shift goes on.
+    pub(in crate::axis) fn keep_phasing(&mut self, phasing: Phasing<P::Plan>) {
+        self.follower.phasing = phasing;
     }
 
     /// Whether `entry` follows the masters of the owner.
@@ -235,7 +240,7 @@ impl<P: Planner> Axis<P> {
 
     /// The state of command `id`, if it belongs to the shift in progress.
     pub(in crate::axis) fn phasing_fate(&self, id: CommandId) -> Option<Fate> {
-        let shift = self.phasing.shifts().find(|shift| shift.id == id)?;
+        let shift = self.follower.phasing.shifts().find(|shift| shift.id == id)?;
         Some(if shift.runs {
             Fate::Active { reached: false }
         } else {
@@ -247,7 +252,7 @@ impl<P: Planner> Axis<P> {
     pub(in crate::axis) fn withdraw_shift(&mut self, id: CommandId) -> bool {
         let waits = |shift: &mut Shift| shift.id == id && !shift.runs;
         let mut taken = false;
-        for leg in &mut self.phasing.legs {
+        for leg in &mut self.follower.phasing.legs {
             let is_here = leg.command.take_if(waits).is_some() || leg.next.take_if(waits).is_some();
             if is_here {
                 leg.command = leg.command.or_else(|| leg.next.take());
@@ -262,12 +267,12 @@ impl<P: Planner> Axis<P> {
 
     /// The shift is changing.
     pub(super) fn is_phasing(&self) -> bool {
-        self.phasing.motion.is_some()
+        self.follower.phasing.motion.is_some()
     }
 
     /// The limits that a changing shift of this master takes at most (u of the master).
     pub(super) fn taken_by_shift(&self, leg: usize) -> Option<&Limits> {
-        let motion = self.phasing.motion.as_ref();
+        let motion = self.follower.phasing.motion.as_ref();
         motion
             .filter(|(moves, _)| *moves == leg)
             .map(|(_, moving)| &moving.most)
@@ -275,7 +280,7 @@ impl<P: Planner> Axis<P> {
 
     /// The present shifts.
     pub(super) fn phases_now(&self) -> [&Setpoint; 2] {
-        let [first, second] = &self.phasing.legs;
+        let [first, second] = &self.follower.phasing.legs;
         [&first.now, &second.now]
     }
 
@@ -287,32 +292,33 @@ impl<P: Planner> Axis<P> {
         view: &View<'v, P::Plan>,
         scope: &mut Scope<'_>,
     ) -> View<'v, P::Plan> {
-        if self.phasing.is_none() {
+        if self.follower.phasing.is_none() {
             return *view;
         }
-        for leg in 0..self.phasing.legs.len() {
+        for leg in 0..self.follower.phasing.legs.len() {
             self.begin_shift(leg, view, scope);
         }
         let mut shifted = *view;
-        for leg in &mut self.phasing.legs {
+        for leg in &mut self.follower.phasing.legs {
             // The condition that stopped it is over.
             leg.now = Setpoint::at_rest(leg.now.position);
         }
-        if let Some((leg, moving)) = &mut self.phasing.motion {
+        if let Some((leg, moving)) = &mut self.follower.phasing.motion {
             let leg = *leg;
             moving.elapsed = moving.elapsed.wrapping_add(1);
             let now = moving.plan.next(moving.elapsed);
             let is_over = moving.elapsed >= moving.scans;
-            if let (Some(shift), Some(part)) =
-                (self.phasing.legs.get_mut(leg), shifted.future.parts.get_mut(leg))
-            {
+            if let (Some(shift), Some(part)) = (
+                self.follower.phasing.legs.get_mut(leg),
+                shifted.future.parts.get_mut(leg),
+            ) {
                 shift.now = now;
                 if !matches!(part.course, Course::Measured(_)) {
                     part.course = Course::Unknown;
                 }
             }
             if is_over {
-                self.phasing.motion = None;
+                self.follower.phasing.motion = None;
                 self.complete_shift(leg);
             }
         }
@@ -323,7 +329,7 @@ impl<P: Planner> Axis<P> {
     }
 
     fn complete_shift(&mut self, leg: usize) {
-        let Some(leg) = self.phasing.legs.get_mut(leg) else {
+        let Some(leg) = self.follower.phasing.legs.get_mut(leg) else {
             return;
         };
         if let Some(done) = leg.command.take_if(|shift| shift.runs) {
@@ -334,7 +340,7 @@ impl<P: Planner> Axis<P> {
 
     /// Begins the command that waits for room, if there is some.
     fn begin_shift(&mut self, leg: usize, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
-        let Some(Shifts { now, command, .. }) = self.phasing.legs.get(leg).copied() else {
+        let Some(Shifts { now, command, .. }) = self.follower.phasing.legs.get(leg).copied() else {
             return;
         };
         let Some(mut shift) = command.filter(|shift| !shift.runs) else {
@@ -342,6 +348,7 @@ impl<P: Planner> Axis<P> {
         };
         // One at a time.
         if self
+            .follower
             .phasing
             .motion
             .as_ref()
@@ -364,6 +371,7 @@ impl<P: Planner> Axis<P> {
             snap: asked.snap.min(room.snap),
         };
         let before = self
+            .follower
             .phasing
             .motion
             .as_ref()
@@ -374,7 +382,12 @@ impl<P: Planner> Axis<P> {
                 .move_to(self.config.profile, &now, target, limits, &before)
         };
         let mut planned = plan(&limits);
-        let most = self.phasing.motion.as_ref().map(|(_, moving)| moving.most);
+        let most = self
+            .follower
+            .phasing
+            .motion
+            .as_ref()
+            .map(|(_, moving)| moving.most);
         if let (Ok(slow), Some(most), true) = (&planned, &most, self.slows_master())
             && slow.excess().is_some()
         {
@@ -400,7 +413,7 @@ impl<P: Planner> Axis<P> {
                     limits,
                     most: most.map_or(limits, |before| limits.or_larger(&before)),
                 };
-                self.phasing.motion = Some((leg, moving));
+                self.follower.phasing.motion = Some((leg, moving));
                 self.record(Event::Phasing { to: target, scans }, scope);
             }
             Err(error) => {
@@ -408,7 +421,7 @@ impl<P: Planner> Axis<P> {
                 self.decide(shift.id, Fate::Failed(error));
             }
         }
-        if let Some(leg) = self.phasing.legs.get_mut(leg) {
+        if let Some(leg) = self.follower.phasing.legs.get_mut(leg) {
             leg.command = if is_planned { Some(shift) } else { leg.next.take() };
         }
     }
@@ -424,7 +437,7 @@ impl<P: Planner> Axis<P> {
         if self.is_on_cam() {
             return self.room_for_shift_on_cam(asked, view, cams);
         }
-        let coupling = self.coupling.as_ref()?;
+        let coupling = self.follower.coupling.as_ref()?;
         if !coupling.rung.is_locked() || self.adds_motion() {
             return None;
         }

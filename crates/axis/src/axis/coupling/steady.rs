@@ -131,8 +131,8 @@ impl<P: Planner> Axis<P> {
     /// steps.
     fn may_go_on(&self) -> bool {
         let (limits, moves) = (self.slowed(&self.parameters.limits), self.frame.moves());
-        let in_gear = self.coupling.as_ref();
-        let on_cam = self.on_cam.as_ref();
+        let in_gear = self.follower.coupling.as_ref();
+        let on_cam = self.follower.on_cam.as_ref();
         let is_locked = in_gear.is_some_and(|coupling| coupling.may_go_on(&limits, moves))
             || on_cam.is_some_and(|on_cam| on_cam.may_go_on(&limits, moves));
         is_locked
@@ -143,60 +143,60 @@ impl<P: Planner> Axis<P> {
             && self.config.following.on_limit != OnLimit::Error
             && self.parameters.software_limits.is_none()
             && self.queue.is_empty()
-            && self.awaited.is_none()
-            && self.phasing.is_none()
+            && self.follower.awaited.is_none()
+            && self.follower.phasing.is_none()
             && !self.is_paused()
             && !self.bars_any()
     }
 
     /// After a step: notes whether nothing may be new in the next one.
     pub(super) fn note_steady(&mut self) {
-        self.steady.is_settled = self.may_go_on();
-        if self.steady.is_settled {
-            let is_straight = self.coupling.as_ref().is_some_and(Coupling::is_straight);
+        self.follower.steady.is_settled = self.may_go_on();
+        if self.follower.steady.is_settled {
+            let is_straight = self.follower.coupling.as_ref().is_some_and(Coupling::is_straight);
             let (limits, widest) = (self.mover.in_force(), &self.config.limits);
-            self.steady.room = Some(Room::new(limits, widest, self.planner.cycle(), is_straight));
+            self.follower.steady.room = Some(Room::new(limits, widest, self.planner.cycle(), is_straight));
         }
     }
 
     /// Before any axis has moved in this scan: nothing is new for an axis that follows none.
     pub(crate) fn settle_alone(&mut self) {
-        self.steady.is_settled = true;
+        self.follower.steady.is_settled = true;
     }
 
     /// Whether nothing is new: it follows none, or it is a slave whose next step may be one in which
     /// nothing is new. Every event that ends this calls [`Axis::unsettle`].
     #[inline]
     pub(crate) fn is_settled(&self) -> bool {
-        self.steady.is_settled
+        self.follower.steady.is_settled
     }
 
     /// Something is new, or may be.
     #[inline]
     pub(in crate::axis) fn unsettle(&mut self) {
-        self.steady.is_settled = false;
+        self.follower.steady.is_settled = false;
     }
 
     /// Called before a step in which something may be new.
     pub(crate) fn begin_anew(&mut self) {
         self.unsettle();
-        self.steady.has_gone_on = false;
+        self.follower.steady.has_gone_on = false;
         self.note_source();
     }
 
     /// Called before its step, if some slave may follow it: notes its place.
     #[inline(always)]
     pub(crate) fn note_before(&mut self, scan: u64) {
-        if !self.links.is_followed() {
+        if !self.follower.links.is_followed() {
             return;
         }
         if self.modulo.is_none() {
-            self.steady.was.at = *self.mover.setpoint();
-            self.steady.was.moved = self.coordinates_moved(scan);
+            self.follower.steady.was.at = *self.mover.setpoint();
+            self.follower.steady.was.moved = self.coordinates_moved(scan);
         } else {
             self.note_before_round(scan);
         }
-        if !self.links.is_bound() {
+        if !self.follower.links.is_bound() {
             self.note_source();
         }
     }
@@ -204,12 +204,12 @@ impl<P: Planner> Axis<P> {
     /// The same on a modulo axis.
     #[inline(never)]
     fn note_before_round(&mut self, scan: u64) {
-        self.steady.was = self.seen_before(scan);
+        self.follower.steady.was = self.seen_before(scan);
     }
 
     /// After its step: its place before the step, as noted.
     pub(crate) fn was(&self) -> Seen {
-        let mut was = self.steady.was;
+        let mut was = self.follower.steady.was;
         was.place.position = was.at.position;
         was
     }
@@ -217,10 +217,10 @@ impl<P: Planner> Axis<P> {
     /// The one master of a slave for which nothing is new.
     #[inline(always)]
     pub(crate) fn steady_master(&self) -> Option<AxisId> {
-        if !self.steady.is_settled {
+        if !self.follower.steady.is_settled {
             return None;
         }
-        let coupling = self.coupling.as_ref();
+        let coupling = self.follower.coupling.as_ref();
         coupling.map_or_else(
             || self.master_on_cam(),
             |coupling| Some(coupling.gearing.first.master),
@@ -233,12 +233,16 @@ impl<P: Planner> Axis<P> {
     fn went_on(&self) -> Option<(usize, u64)> {
         match self.mover.motion() {
             // If something was new for it or for a master of it, its slaves check the step in full.
-            Motion::Geared if self.steady.has_gone_on => {
-                let coupling = self.coupling.as_ref().filter(|_| self.steady.is_settled)?;
+            Motion::Geared if self.follower.steady.has_gone_on => {
+                let coupling = self
+                    .follower
+                    .coupling
+                    .as_ref()
+                    .filter(|_| self.follower.steady.is_settled)?;
                 let known = &coupling.known[0];
                 Some((known.root, known.elapsed))
             }
-            Motion::Run { .. } if self.steady.source == Source::Plan => match self.course() {
+            Motion::Run { .. } if self.follower.steady.source == Source::Plan => match self.course() {
                 Course::Plan(_, elapsed) => Some((self.id.index(), elapsed)),
                 Course::Still | Course::Unknown | Course::Measured(_) => None,
             },
@@ -259,11 +263,11 @@ impl<P: Planner> Axis<P> {
         else {
             return false;
         };
-        let Some(coupling) = &mut self.coupling else {
+        let Some(coupling) = &mut self.follower.coupling else {
             return self.follow_cam_steadily(master, plan, scope);
         };
         let (known, gear) = (&mut coupling.known[0], &coupling.gearing.first.gear);
-        let (Some(anchor), Some(room)) = (&coupling.anchor, &self.steady.room) else {
+        let (Some(anchor), Some(room)) = (&coupling.anchor, &self.follower.steady.room) else {
             return false;
         };
         if !known.goes_on(plan) {
@@ -289,7 +293,7 @@ impl<P: Planner> Axis<P> {
             return false;
         }
         (_, known.elapsed) = plan;
-        self.steady.source = Source::Gear;
+        self.follower.steady.source = Source::Gear;
         let place = Place {
             turns,
             position,
@@ -303,10 +307,10 @@ impl<P: Planner> Axis<P> {
     // In line, so that the set-point stays in registers.
     #[inline(always)]
     pub(super) fn publish_steadily(&mut self, place: Place, next: Setpoint, scope: &mut Scope<'_>) {
-        self.steady.has_gone_on = true;
+        self.follower.steady.has_gone_on = true;
         let positions = [self.mover.setpoint().position, next.position];
         let stays = |modulo: &Modulo| modulo.stays_in(place.turns, positions);
-        if let Some(room) = &self.steady.room
+        if let Some(room) = &self.follower.steady.room
             && self.modulo.as_ref().is_none_or(stays)
             && room.holds_step(self.mover.setpoint(), &next)
         {

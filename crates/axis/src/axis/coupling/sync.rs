@@ -253,9 +253,9 @@ impl<P: Planner> Axis<P> {
         }
         self.end_awaited(Fate::Aborted);
         let entry = Entry::new(self.new_id(), scope.instance, work, limits, mode);
-        self.links.set_bound(true);
+        self.follower.links.set_bound(true);
         self.unsettle();
-        self.awaited = Awaited::new(entry);
+        self.follower.awaited = Awaited::new(entry);
         Ok(entry.id)
     }
 
@@ -266,7 +266,7 @@ impl<P: Planner> Axis<P> {
         command: &Command,
         scope: &mut Scope<'_>,
     ) -> Result<(), ErrorId> {
-        let Some(before) = self.awaited.filter(|awaited| awaited.entry.id == id) else {
+        let Some(before) = self.follower.awaited.filter(|awaited| awaited.entry.id == id) else {
             return Ok(());
         };
         let mut entry = before.entry;
@@ -275,7 +275,7 @@ impl<P: Planner> Axis<P> {
         };
         self.take_values(&mut entry, work, limits);
         // A command that starts at once takes over in the next motion step, like one at its start point.
-        self.awaited = Awaited::new(entry).map(|awaited| Awaited {
+        self.follower.awaited = Awaited::new(entry).map(|awaited| Awaited {
             was: before.was,
             laid: before.laid_for(&entry, &scope.cams),
             ..awaited
@@ -285,33 +285,35 @@ impl<P: Planner> Axis<P> {
 
     /// Whether command `id` waits for its start point.
     pub(in crate::axis) fn awaits_start(&self, id: CommandId) -> bool {
-        self.awaited
+        self.follower
+            .awaited
             .as_ref()
             .is_some_and(|awaited| awaited.entry.id == id)
     }
 
     /// Ends the command that waits for its start point.
     pub(in crate::axis) fn end_awaited(&mut self, fate: Fate) {
-        if let Some(awaited) = self.awaited.take() {
+        if let Some(awaited) = self.follower.awaited.take() {
             self.decide(awaited.entry.id, fate);
         }
     }
 
     /// The master whose place a command waits for.
     pub(crate) fn awaited_master(&self) -> Option<AxisId> {
-        self.awaited.as_ref().map(|awaited| awaited.master)
+        self.follower.awaited.as_ref().map(|awaited| awaited.master)
     }
 
     /// The same master, with the values of it that count.
     pub(crate) fn awaited_values(&self) -> Option<Values> {
-        self.awaited
+        self.follower
+            .awaited
             .as_ref()
             .map(|awaited| (awaited.master, awaited.source))
     }
 
     /// Before any axis has moved in this scan: notes the place of the master that a command waits for.
     pub(crate) fn note_awaited_master(&mut self, seen: Seen) {
-        if let Some(awaited) = &mut self.awaited {
+        if let Some(awaited) = &mut self.follower.awaited {
             awaited.was = seen;
         }
     }
@@ -319,7 +321,7 @@ impl<P: Planner> Axis<P> {
     /// Whether the command that waits for a place of its master starts in this scan, with the master seen
     /// at `now`. `turn` is the length of the master's turn (u). Call it once in a motion step.
     pub(crate) fn reaches_start(&mut self, now: &Seen, turn: Option<f64>, cams: &Cams<'_>) -> bool {
-        let Some(awaited) = &mut self.awaited else {
+        let Some(awaited) = &mut self.follower.awaited else {
             return false;
         };
         let course = awaited.course(now, turn, cams);
@@ -331,7 +333,7 @@ impl<P: Planner> Axis<P> {
     ///
     /// Cost: that of the plans tried in the search for a way onto a law.
     pub(crate) fn start_at_point(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
-        let Some(Awaited { entry, was, laid, .. }) = self.awaited else {
+        let Some(Awaited { entry, was, laid, .. }) = self.follower.awaited else {
             return;
         };
         let is_same_master = self.goes_on_behind_masters(&entry);
@@ -348,11 +350,11 @@ impl<P: Planner> Axis<P> {
         if let Err((pin, value, limit, error)) = found {
             return self.fail_awaited((pin, value, limit), error, scope);
         }
-        self.awaited = None;
+        self.follower.awaited = None;
         let before = self.limits_before(&entry.limits);
         let phasing = self.lend_phasing(&entry);
         self.end_all(Fate::Aborted, Fate::Aborted);
-        self.phasing = phasing;
+        self.follower.phasing = phasing;
         self.begin(entry, Motion::Geared, before, scope);
         self.note_start_on_cam(laid);
         self.note_masters([was, Seen::default()]);
@@ -370,9 +372,9 @@ impl<P: Planner> Axis<P> {
             was: [seen, Seen::default()],
             ..Coupling::new(gearing, self.slowed(&self.parameters.limits), self.frame.moves())
         };
-        let own = self.coupling.replace(coupling);
+        let own = self.follower.coupling.replace(coupling);
         let found = self.way_at_start(entry, view);
-        self.coupling = own;
+        self.follower.coupling = own;
         found
     }
 
@@ -384,7 +386,7 @@ impl<P: Planner> Axis<P> {
     }
 
     fn fail_awaited(&mut self, at: (&'static str, f64, f64), error: ErrorId, scope: &mut Scope<'_>) {
-        let Some(Awaited { entry, .. }) = self.awaited.take() else {
+        let Some(Awaited { entry, .. }) = self.follower.awaited.take() else {
             return;
         };
         let (pin, value, limit) = at;
@@ -398,7 +400,7 @@ impl<P: Planner> Axis<P> {
     /// value and limit, and the reason.
     fn way_at_start(&mut self, entry: &Entry, view: &View<'_, P::Plan>) -> Result<(), NotInTime> {
         self.lay_law(view);
-        let Some(coupling) = &self.coupling else {
+        let Some(coupling) = &self.follower.coupling else {
             return Ok(());
         };
         let (Some(anchor), Some(sync)) = (coupling.anchor, coupling.gearing.sync) else {
@@ -436,7 +438,7 @@ impl<P: Planner> Axis<P> {
 
     /// The distance (u) of the master from its sync point at the end of the last scan.
     fn way_to_sync(&self, view: &View<'_, P::Plan>, anchor: &Anchor) -> f64 {
-        let Some(coupling) = &self.coupling else {
+        let Some(coupling) = &self.follower.coupling else {
             return 0.0;
         };
         let was = coupling.was[0].place;
@@ -452,7 +454,7 @@ impl<P: Planner> Axis<P> {
             Some((plan, from, late)) => {
                 let to = from.saturating_add(scans.saturating_sub(late));
                 let way = view.future.parts[0].factor * (plan.at(to).position - plan.at(from).position);
-                let first = self.coupling.as_ref().map_or(0.0, |coupling| {
+                let first = self.follower.coupling.as_ref().map_or(0.0, |coupling| {
                     let turns = view.now.place.turns.wrapping_sub(coupling.was[0].place.turns) as f64;
                     turns * view.turn.unwrap_or(0.0)
                         + (view.now.place.position - coupling.was[0].place.position)
@@ -487,7 +489,9 @@ impl<P: Planner> Axis<P> {
     /// Settles the turns of a law with sync positions: that of the master, and that of the slave. No
     /// effect on any other law, or on one already settled.
     pub(super) fn lay_law(&mut self, view: &View<'_, P::Plan>) {
-        let Some(coupling) = &self.coupling else { return };
+        let Some(coupling) = &self.follower.coupling else {
+            return;
+        };
         let (Some(sync), None) = (coupling.gearing.sync, coupling.anchor) else {
             return;
         };
@@ -507,14 +511,16 @@ impl<P: Planner> Axis<P> {
         if let Some(length) = self.modulo.as_ref().map(|modulo| modulo.length) {
             anchor.slave.turns = self.slave_turn(&sync, &anchor, length, view);
         }
-        if let Some(coupling) = &mut self.coupling {
+        if let Some(coupling) = &mut self.follower.coupling {
             coupling.anchor = Some(anchor);
         }
     }
 
     /// The turn of `length` (u) in which the slave has its place when the master is at the sync point.
     fn slave_turn(&self, sync: &Sync, anchor: &Anchor, length: f64, view: &View<'_, P::Plan>) -> i64 {
-        let Some(coupling) = &self.coupling else { return 0 };
+        let Some(coupling) = &self.follower.coupling else {
+            return 0;
+        };
         let here = self.place();
         let cycle = self.planner.cycle();
         // The slave's place without the command when the master gets there, and its place with the
@@ -550,7 +556,7 @@ impl<P: Planner> Axis<P> {
 
     /// In sync for the first time: recorded if the master is past the sync point.
     pub(super) fn note_sync(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
-        let Some(coupling) = &mut self.coupling else {
+        let Some(coupling) = &mut self.follower.coupling else {
             return;
         };
         if coupling.was_in_gear {

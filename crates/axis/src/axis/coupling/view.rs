@@ -392,12 +392,12 @@ impl<P: Planner> Axis<P> {
 
     /// Before its step in this scan: notes the source of the step.
     pub(crate) fn note_source(&mut self) {
-        self.steady.source = self.source();
+        self.follower.steady.source = self.source();
     }
 
     /// Whether its next set-point has another source than that of this scan.
     pub(crate) fn has_new_source(&self) -> bool {
-        self.steady.source != self.source()
+        self.follower.steady.source != self.source()
     }
 
     /// The next motion of its actual values.
@@ -411,7 +411,11 @@ impl<P: Planner> Axis<P> {
 
     /// In gear, the factor from the derivatives of its master's plan to its own.
     pub(crate) fn factor_in_gear(&self) -> Option<f64> {
-        let coupling = self.coupling.as_ref().filter(|_| !self.follows_actual())?;
+        let coupling = self
+            .follower
+            .coupling
+            .as_ref()
+            .filter(|_| !self.follows_actual())?;
         let follows_one = coupling.gearing.second.is_none() && !self.is_phasing() && !self.adds_motion();
         (coupling.rung.is_locked() && matches!(self.mover.motion(), Motion::Geared) && follows_one)
             .then(|| coupling.gearing.first.gear.derivative(1.0))
@@ -422,7 +426,7 @@ impl<P: Planner> Axis<P> {
         let [first, second] = seen;
         let [by, by_second] = self.phases_now();
         let seen = [first.shifted(by), second.shifted(by_second)];
-        if let Some(coupling) = &mut self.coupling {
+        if let Some(coupling) = &mut self.follower.coupling {
             coupling.was = seen;
         }
         self.note_master_on_cam(seen[0]);

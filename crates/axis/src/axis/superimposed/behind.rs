@@ -185,11 +185,8 @@ impl<P: Planner> Axis<P> {
         };
         let is_found = proposed.is_some();
         let (place, moves) = (layer.added.position, layer.moves());
-        if let (false, Some(coupling)) = (moves, &mut self.coupling) {
-            coupling.lay_layer(place);
-        }
         if !moves {
-            self.lay_layer_on_cam(place);
+            self.lay_layer_on_law(place);
         }
         self.add(proposed, scope);
         self.stir();

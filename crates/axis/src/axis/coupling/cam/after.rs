@@ -33,7 +33,7 @@ impl<P: Planner> Axis<P> {
         let is_paused = self.is_paused();
         let switch = self.switch_of_next();
         let cycle = self.planner.cycle();
-        let Some(on_cam) = self.on_cam.as_mut().filter(|_| !is_paused) else {
+        let Some(on_cam) = self.follower.on_cam.as_mut().filter(|_| !is_paused) else {
             return;
         };
         let (Some(cam), Some(shadow)) = (scope.cams.cam(on_cam.camming.cam), on_cam.shadow) else {
@@ -64,7 +64,7 @@ impl<P: Planner> Axis<P> {
             _ => None,
         };
         if let Some(passed) = passed {
-            self.cam_ends = self.cam_ends.wrapping_add(1);
+            self.follower.cam_ends = self.follower.cam_ends.wrapping_add(1);
             if passed.ends > 1 {
                 let periods = passed.ends;
                 self.record(Event::CamPassed { periods }, &mut self.owner_scope(scope));
@@ -77,11 +77,11 @@ impl<P: Planner> Axis<P> {
             return;
         }
         let before = self.values_on_cam();
-        let was = self.on_cam.map(|on_cam| (on_cam.was, on_cam.known));
+        let was = self.follower.on_cam.map(|on_cam| (on_cam.was, on_cam.known));
         self.hand_over(self.mover.setpoint().position, scope);
         let goes_on = before == self.values_on_cam() && self.is_now_due();
         if let (true, Some(ended), Some((was, known))) = (goes_on, ended, was) {
-            if let Some(on_cam) = &mut self.on_cam {
+            if let Some(on_cam) = &mut self.follower.on_cam {
                 on_cam.was = was;
                 on_cam.known = known;
             }
@@ -98,7 +98,7 @@ impl<P: Planner> Axis<P> {
         if !self.mover.setpoint().is_at_rest() {
             return self.fail(ErrorId::DeviationTooLarge, scope);
         }
-        if let Some(on_cam) = &mut self.on_cam {
+        if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.shadow = Some(Shadow {
                 place: view.now.place,
                 at: view.now.at,
@@ -118,12 +118,14 @@ impl<P: Planner> Axis<P> {
     /// A cam has just become the owner's.
     fn is_now_due(&self) -> bool {
         let is_new = |on_cam: &OnCam| on_cam.rung == Rung::Due && on_cam.anchor.is_none();
-        self.on_cam.as_ref().is_some_and(is_new)
+        self.follower.on_cam.as_ref().is_some_and(is_new)
     }
 
     /// The next cam begins where the one before gave way; the slave comes onto it.
     fn go_on_behind(&mut self, ended: &Ended, shadow: &Shadow, scope: &Scope<'_>) {
-        let Some(mut on_cam) = self.on_cam else { return };
+        let Some(mut on_cam) = self.follower.on_cam else {
+            return;
+        };
         let Some(cam) = scope.cams.cam(on_cam.camming.cam) else {
             return;
         };
@@ -138,7 +140,7 @@ impl<P: Planner> Axis<P> {
             on_cam.shadow = Some(*shadow);
         }
         let _begun = on_cam.ends.note(&cam, &on_cam.at);
-        self.on_cam = Some(on_cam);
+        self.follower.on_cam = Some(on_cam);
     }
 
     /// In sync, before the step of this scan: the master passes the place at which a cam that waits takes over, and both meet there. Then
@@ -157,13 +159,13 @@ impl<P: Planner> Axis<P> {
             return false;
         }
         if let Some(passed) = passed {
-            self.cam_ends = self.cam_ends.wrapping_add(1);
+            self.follower.cam_ends = self.follower.cam_ends.wrapping_add(1);
             if passed.ends > 1 {
                 let periods = passed.ends;
                 self.record(Event::CamPassed { periods }, &mut self.owner_scope(scope));
             }
         }
-        self.on_cam = Some(next);
+        self.follower.on_cam = Some(next);
         self.lock_on_cam(scope);
         self.publish_on_cam(&next.at, shadow, scope);
         true
@@ -179,7 +181,7 @@ impl<P: Planner> Axis<P> {
         let Work::Cam(camming) = self.queue.first().filter(|entry| entry.barred.is_none())?.work else {
             return None;
         };
-        let own = self.on_cam?;
+        let own = self.follower.on_cam?;
         let is_same_master = Some((camming.master, camming.source)) == self.values_on_cam();
         if !is_same_master || self.mover.layer().is_some() || own.ends.is_over() {
             return None;
@@ -219,9 +221,9 @@ impl<P: Planner> Axis<P> {
         }
         let _begun = next.ends.note(&cam, &first);
         next.at = new.at(now.place, &now.at, first.piece);
-        self.on_cam = Some(next);
+        self.follower.on_cam = Some(next);
         let keeps = self.keeps_on_cam(&new, view, false).is_ok();
-        self.on_cam = Some(own);
+        self.follower.on_cam = Some(own);
         keeps.then_some((next, passed))
     }
 

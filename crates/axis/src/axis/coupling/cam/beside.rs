@@ -21,7 +21,7 @@ const SHARE: f64 = 0.4;
 impl<P: Planner> Axis<P> {
     /// Before bounds are collected: whether its master keeps the limits of the slave is noted.
     pub(in crate::axis::coupling) fn begin_bound_on_cam(&mut self) {
-        if let Some(on_cam) = &mut self.on_cam
+        if let Some(on_cam) = &mut self.follower.on_cam
             && on_cam.rung == Rung::Lost
         {
             on_cam.bound = None;
@@ -30,7 +30,7 @@ impl<P: Planner> Axis<P> {
 
     /// What is left to its master, which keeps the limits of the slave.
     pub(in crate::axis::coupling) fn bound_on_cam(&self) -> Option<Limits> {
-        self.on_cam.as_ref()?.bound
+        self.follower.on_cam.as_ref()?.bound
     }
 
     /// In sync: from now on its master keeps the limits of the slave, if that is how it is set up.
@@ -38,7 +38,9 @@ impl<P: Planner> Axis<P> {
         if self.config.following.on_limit != OnLimit::SlowMaster {
             return;
         }
-        let Some(on_cam) = &self.on_cam else { return };
+        let Some(on_cam) = &self.follower.on_cam else {
+            return;
+        };
         let cam = cams.cam(on_cam.camming.cam);
         let Some(curve) = cam.and_then(|cam| on_cam.curve(cam)) else {
             return;
@@ -50,7 +52,7 @@ impl<P: Planner> Axis<P> {
         let bound = (!bounds.is_level())
             .then(|| bounds.shadow(&limits, most, 0.0))
             .flatten();
-        if let Some(on_cam) = &mut self.on_cam {
+        if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.bound = Some(bound.unwrap_or(Limits::NONE));
         }
     }
@@ -63,7 +65,7 @@ impl<P: Planner> Axis<P> {
         view: &View<'_, P::Plan>,
         cams: &Cams<'_>,
     ) -> Option<Limits> {
-        let on_cam = self.on_cam.as_ref()?;
+        let on_cam = self.follower.on_cam.as_ref()?;
         let is_free = on_cam.rung.is_locked() && !self.adds_motion();
         if !is_free || (self.slows_master() && (view.future.is_new || view.future.is_late())) {
             return None;
@@ -125,7 +127,7 @@ impl<P: Planner> Axis<P> {
 
     /// The largest magnitudes of what the cam asks for along what the master does next, and whether that does not end.
     fn used_on_cam(&self, view: &View<'_, P::Plan>, cams: &Cams<'_>) -> Option<(Setpoint, bool)> {
-        let on_cam = self.on_cam.as_ref()?;
+        let on_cam = self.follower.on_cam.as_ref()?;
         let curve = on_cam.curve(cams.cam(on_cam.camming.cam)?)?;
         let lead = self.lead_of_master(view)?;
         // What changes at once leaves nothing, smooth as it may be beside that.
@@ -163,7 +165,7 @@ impl<P: Planner> Axis<P> {
 
     /// What is added from now on moves the cam on from where it lies: the layer is at `place` (u).
     pub(in crate::axis) fn lay_layer_on_cam(&mut self, place: f64) {
-        if let Some(on_cam) = &mut self.on_cam {
+        if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.lead = on_cam.anchor.map_or(0.0, |anchor| anchor.slave.phase) - place;
         }
     }

@@ -59,18 +59,23 @@ impl<P: Planner> Axis<P> {
     }
 
     pub(in crate::axis::coupling) fn is_locked_on_cam(&self) -> bool {
-        self.on_cam.as_ref().is_some_and(|on_cam| on_cam.rung.is_locked())
+        self.follower
+            .on_cam
+            .as_ref()
+            .is_some_and(|on_cam| on_cam.rung.is_locked())
     }
 
     pub(super) fn cam_rung(&self) -> Option<Rung> {
-        self.on_cam.as_ref().map(|on_cam| on_cam.rung)
+        self.follower.on_cam.as_ref().map(|on_cam| on_cam.rung)
     }
 
     /// Coordinates of master or slave have moved: the cam moves with them, and nobody else.
     fn rebase_cam(&mut self, view: &View<'_, P::Plan>, scan: u64) {
         let moves = self.frame.moves();
         let own = self.coordinates_moved(scan);
-        let Some(on_cam) = &mut self.on_cam else { return };
+        let Some(on_cam) = &mut self.follower.on_cam else {
+            return;
+        };
         // What moved in the motion step itself was not seen before it.
         let late = view.now.moved - on_cam.was.moved;
         on_cam.was.place.position += late;
@@ -120,7 +125,7 @@ impl<P: Planner> Axis<P> {
     /// be looked for again.
     fn look_ahead_on_cam(&mut self, view: &View<'_, P::Plan>) -> bool {
         let limits = self.slowed(&self.parameters.limits);
-        let Some(on_cam) = &mut self.on_cam else {
+        let Some(on_cam) = &mut self.follower.on_cam else {
             return false;
         };
         let is_locked = on_cam.rung.is_locked();
@@ -145,7 +150,9 @@ impl<P: Planner> Axis<P> {
         view: &View<'_, P::Plan>,
         is_over: bool,
     ) -> Result<(), Beyond> {
-        let Some(on_cam) = &self.on_cam else { return Ok(()) };
+        let Some(on_cam) = &self.follower.on_cam else {
+            return Ok(());
+        };
         let is_late = view.future.is_late();
         let found = match self.lead_of_master(view) {
             Some(lead) if self.is_too_fast_for_corners(curve, &lead) => {
@@ -171,7 +178,7 @@ impl<P: Planner> Axis<P> {
 
     /// What the cam asks for beyond the limits in this scan, where nothing is known of what comes.
     fn beyond_on_cam_now(&self, curve: &Curve<'_>, view: &View<'_, P::Plan>) -> Option<Beyond> {
-        let on_cam = self.on_cam.as_ref()?;
+        let on_cam = self.follower.on_cam.as_ref()?;
         let at = curve.at(view.now.place, &view.now.at, on_cam.at.piece);
         let is_rough = self.is_rough_on_cam(view, &at);
         self.beyond(Some(at.place), &at.state, &on_cam.limits, Some(is_rough))
@@ -180,7 +187,11 @@ impl<P: Planner> Axis<P> {
     /// The master moves less smoothly than the slave may, where the cam passes that on.
     fn is_rough_on_cam(&self, view: &View<'_, P::Plan>, at: &CamAt) -> bool {
         let degree = self.slowed(&self.parameters.limits).order().degree();
-        let was = self.on_cam.as_ref().map_or(0.0, |on_cam| on_cam.was.at.velocity);
+        let was = self
+            .follower
+            .on_cam
+            .as_ref()
+            .map_or(0.0, |on_cam| on_cam.was.at.velocity);
         let accelerates = view.now.at.acceleration != 0.0 || view.now.at.velocity != was;
         view.degree() < degree && accelerates && at.state.velocity != 0.0
     }
@@ -201,7 +212,7 @@ impl<P: Planner> Axis<P> {
 
     /// Where the slave is on the curve for a master there.
     fn on_curve(&self, place: Place, moving: &Setpoint, scope: &Scope<'_>) -> Option<CamAt> {
-        let on_cam = self.on_cam.as_ref()?;
+        let on_cam = self.follower.on_cam.as_ref()?;
         let curve = on_cam.curve(scope.cams.cam(on_cam.camming.cam)?)?;
         Some(curve.at(place, moving, on_cam.at.piece))
     }
@@ -214,15 +225,15 @@ impl<P: Planner> Axis<P> {
         let added = self.next_added();
         // What is added to a law that stands was held against the limits before.
         let is_held = added.is_some() && self.law_stands(view);
-        let before = self.on_cam.as_ref().and_then(|on_cam| on_cam.anchor);
+        let before = self.follower.on_cam.as_ref().and_then(|on_cam| on_cam.anchor);
         let held = self.held_end(added.as_ref());
-        if let (Some(added), Some(on_cam)) = (&added, &mut self.on_cam)
+        if let (Some(added), Some(on_cam)) = (&added, &mut self.follower.on_cam)
             && let Some(anchor) = &mut on_cam.anchor
         {
             anchor.slave.phase = on_cam.lead + added.position;
         }
         let at = held.or_else(|| self.on_curve(view.now.place, &view.now.at, scope));
-        let (Some(mut at), Some(on_cam)) = (at, &self.on_cam) else {
+        let (Some(mut at), Some(on_cam)) = (at, &self.follower.on_cam) else {
             return self.fail(ErrorId::SetpointBroken, scope);
         };
         let limits = on_cam.limits;
@@ -244,7 +255,7 @@ impl<P: Planner> Axis<P> {
         let reason = corner.map(|corner| corner.asks(&limits));
         let reason = reason.or_else(|| self.beyond(Some(at.place), &at.state, &limits, rough));
         if let Some(reason) = reason {
-            if let Some(on_cam) = &mut self.on_cam {
+            if let Some(on_cam) = &mut self.follower.on_cam {
                 on_cam.anchor = before;
             }
             self.lose_sync(reason, scope);
@@ -273,7 +284,7 @@ impl<P: Planner> Axis<P> {
 
     /// Publishes a place of the curve, at which the slave is from now on.
     pub(super) fn publish_on_cam(&mut self, at: &CamAt, shadow: Shadow, scope: &mut Scope<'_>) {
-        if let Some(on_cam) = &mut self.on_cam {
+        if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.at = *at;
             on_cam.shadow = Some(shadow);
         }
@@ -326,7 +337,9 @@ impl<P: Planner> Axis<P> {
 
     /// The shadow has come to its master: in sync from now on, if that keeps the limits. Returns whether it is.
     fn arrive_on_cam(&mut self, shadow: &Shadow, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) -> bool {
-        let Some(on_cam) = &self.on_cam else { return false };
+        let Some(on_cam) = &self.follower.on_cam else {
+            return false;
+        };
         let turn = on_cam.camming.law.master_turn.unwrap_or(0.0);
         let numbers = shadow.place.position.abs() + view.now.place.position.abs() + turn;
         let is_there = apart(shadow.place, view.now.place, turn).abs() <= RESOLVED * 4.0 * numbers;
@@ -335,7 +348,7 @@ impl<P: Planner> Axis<P> {
         let cam = scope.cams.cam(on_cam.camming.cam);
         let curve = cam.and_then(|cam| on_cam.curve(cam));
         let Some(curve) = curve.filter(|_| is_there && is_even) else {
-            if let Some(on_cam) = &mut self.on_cam {
+            if let Some(on_cam) = &mut self.follower.on_cam {
                 on_cam.left = 0;
             }
             return false;
@@ -386,7 +399,7 @@ impl<P: Planner> Axis<P> {
         };
         let at = self.on_curve(to, &shadow.at, scope);
         let is_there = to == view.now.place && view.now.at.is_at_rest() && view.future.kind() == Kind::Still;
-        if let (Some(on_cam), Some(at)) = (&mut self.on_cam, at) {
+        if let (Some(on_cam), Some(at)) = (&mut self.follower.on_cam, at) {
             on_cam.at = at;
             on_cam.shadow = Some(shadow);
             on_cam.rung = Rung::Due;
@@ -398,8 +411,12 @@ impl<P: Planner> Axis<P> {
 
     /// In sync from now on.
     pub(super) fn lock_on_cam(&mut self, scope: &mut Scope<'_>) {
-        let was_in_sync = self.on_cam.as_ref().is_some_and(|on_cam| on_cam.was_in_sync);
-        if let Some(on_cam) = &mut self.on_cam {
+        let was_in_sync = self
+            .follower
+            .on_cam
+            .as_ref()
+            .is_some_and(|on_cam| on_cam.was_in_sync);
+        if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.rung = Rung::Locked;
             on_cam.left = u64::MAX;
             on_cam.deviation = 0.0;
@@ -422,7 +439,7 @@ impl<P: Planner> Axis<P> {
         scope: &mut Scope<'_>,
     ) {
         let adds = self.adds_motion();
-        if let Some(on_cam) = &mut self.on_cam {
+        if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.rung = Rung::Due;
             if adds {
                 // It has the velocity of what was being added, which no place of the curve has.
@@ -437,7 +454,7 @@ impl<P: Planner> Axis<P> {
 
     /// The master went out of operation: no way onto the cam is looked for.
     pub(in crate::axis::coupling) fn hold_off_cam(&mut self) {
-        if let Some(on_cam) = &mut self.on_cam {
+        if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.rung = Rung::Lost;
             on_cam.anchor = None;
             on_cam.deviation = 0.0;
@@ -452,7 +469,9 @@ impl<P: Planner> Axis<P> {
         let at = is_off
             .then(|| self.on_curve(view.now.place, &view.now.at, scope))
             .flatten();
-        let Some(on_cam) = &mut self.on_cam else { return };
+        let Some(on_cam) = &mut self.follower.on_cam else {
+            return;
+        };
         on_cam.deviation = at.map_or(0.0, |at| off(here, at.place, length));
         let most = self.config.following.max_deviation;
         let most = most.filter(|_| on_cam.was_in_sync);
@@ -463,7 +482,11 @@ impl<P: Planner> Axis<P> {
 
     /// The end of a cam without periods at which the slave holds, moved on by what is `added` to that.
     pub(super) fn held_end(&self, added: Option<&Setpoint>) -> Option<CamAt> {
-        let on_cam = self.on_cam.as_ref().filter(|_| self.holds_end_of_cam())?;
+        let on_cam = self
+            .follower
+            .on_cam
+            .as_ref()
+            .filter(|_| self.holds_end_of_cam())?;
         let mut at = on_cam.at;
         if let (Some(added), Some(anchor)) = (added, &on_cam.anchor) {
             at.place.position += on_cam.lead + added.position - anchor.slave.phase;
@@ -474,6 +497,9 @@ impl<P: Planner> Axis<P> {
 
     /// A cam without periods is over, and the slave holds its last place.
     pub(in crate::axis) fn holds_end_of_cam(&self) -> bool {
-        self.on_cam.as_ref().is_some_and(|on_cam| on_cam.ends.is_over())
+        self.follower
+            .on_cam
+            .as_ref()
+            .is_some_and(|on_cam| on_cam.ends.is_over())
     }
 }

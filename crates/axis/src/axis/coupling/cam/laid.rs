@@ -62,7 +62,7 @@ impl CamLaid {
 impl<P: Planner> Axis<P> {
     /// The cam that the owner is on, once it lies somewhere.
     pub fn cam_laid(&self) -> Option<CamLaid> {
-        let on_cam = self.on_cam.as_ref()?;
+        let on_cam = self.follower.on_cam.as_ref()?;
         Some(CamLaid {
             cam: on_cam.camming.cam,
             law: on_cam.camming.law,

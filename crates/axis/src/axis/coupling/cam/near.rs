@@ -34,14 +34,21 @@ impl Curve<'_> {
 impl<P: Planner> Axis<P> {
     /// The place of the shadow is told from near it.
     pub(super) fn tell_shadow_near(&mut self, curve: &Curve<'_>) {
-        if let Some(shadow) = self.on_cam.as_mut().and_then(|on_cam| on_cam.shadow.as_mut()) {
+        if let Some(shadow) = self
+            .follower
+            .on_cam
+            .as_mut()
+            .and_then(|on_cam| on_cam.shadow.as_mut())
+        {
             shadow.place = curve.told_near(shadow.place);
         }
     }
 
     /// After a long part of its way the shadow goes on along it by a plan from where it is. Cost: one plan.
     pub(super) fn go_on_from_near(&mut self, view: &View<'_, P::Plan>, scope: &Scope<'_>) {
-        let Some(on_cam) = self.on_cam else { return };
+        let Some(on_cam) = self.follower.on_cam else {
+            return;
+        };
         let cam = scope.cams.cam(on_cam.camming.cam);
         let (Some(mut shadow), Some(curve)) = (on_cam.shadow, cam.and_then(|cam| on_cam.curve(cam))) else {
             return;
@@ -71,7 +78,9 @@ impl<P: Planner> Axis<P> {
         } else {
             self.at_shadow_pace(view, &shadow, &stretch, limits)
         };
-        let Some(on_cam) = &mut self.on_cam else { return };
+        let Some(on_cam) = &mut self.follower.on_cam else {
+            return;
+        };
         match way.filter(|way| !way.exceeds) {
             Some(way) => {
                 on_cam.shadow = Some(shadow);

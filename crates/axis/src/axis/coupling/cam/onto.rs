@@ -74,7 +74,9 @@ pub(super) enum Choice<Q> {
 impl<P: Planner> Axis<P> {
     /// Finds the way onto the cam, from the state at the end of the scan before; in sync at once only if it `may_lock`.
     pub(super) fn decide_on_cam(&mut self, view: &View<'_, P::Plan>, may_lock: bool, scope: &mut Scope<'_>) {
-        let Some(on_cam) = self.on_cam else { return };
+        let Some(on_cam) = self.follower.on_cam else {
+            return;
+        };
         if on_cam.ends.is_over() {
             // It holds its last place, whatever the master does.
             return self.stay_at_end(view, scope);
@@ -115,7 +117,7 @@ impl<P: Planner> Axis<P> {
 
     /// Where the cam lies is settled, and whether the slave is on it.
     pub(super) fn lay_cam<'a>(&mut self, cam: Cam<'a>) -> Option<Curve<'a>> {
-        let mut on_cam = self.on_cam?;
+        let mut on_cam = self.follower.on_cam?;
         if on_cam.anchor.is_none() {
             let camming = &mut on_cam.camming;
             let settled = on_cam.begins;
@@ -124,7 +126,7 @@ impl<P: Planner> Axis<P> {
             let anchor = self.laid(&on_cam, &cam, master);
             on_cam.laid = anchor.slave.phase;
             on_cam.anchor = Some(anchor);
-            self.on_cam = Some(on_cam);
+            self.follower.on_cam = Some(on_cam);
         }
         let curve = on_cam.curve(cam)?;
         self.find_shadow(&curve);
@@ -182,7 +184,9 @@ impl<P: Planner> Axis<P> {
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
         let limits = self.slowed(&self.parameters.limits);
         let last = *self.mover.setpoint();
-        let Some(on_cam) = &mut self.on_cam else { return };
+        let Some(on_cam) = &mut self.follower.on_cam else {
+            return;
+        };
         if on_cam.shadow.is_some() {
             return;
         }
@@ -207,7 +211,9 @@ impl<P: Planner> Axis<P> {
 
     /// A shadow that is whole periods behind is where it would be without them.
     fn drop_periods(&mut self, curve: &Curve<'_>) {
-        let Some(on_cam) = &self.on_cam else { return };
+        let Some(on_cam) = &self.follower.on_cam else {
+            return;
+        };
         let (Some(shadow), true) = (on_cam.shadow, curve.repeats()) else {
             return;
         };
@@ -223,7 +229,9 @@ impl<P: Planner> Axis<P> {
 
     /// The place of the shadow is called so much more (u of the master): whole periods.
     fn move_shadow(&mut self, curve: &Curve<'_>, by: f64) {
-        let Some(on_cam) = &mut self.on_cam else { return };
+        let Some(on_cam) = &mut self.follower.on_cam else {
+            return;
+        };
         let Some(shadow) = &mut on_cam.shadow else { return };
         shadow.place = curve.told_near(Place {
             position: shadow.place.position + by,
@@ -249,7 +257,7 @@ impl<P: Planner> Axis<P> {
         owner: &Entry,
         may_lock: bool,
     ) -> Choice<P::Plan> {
-        let Some(on_cam) = &self.on_cam else {
+        let Some(on_cam) = &self.follower.on_cam else {
             return Choice::Wait(u64::MAX);
         };
         let stretch = self.stretch_of_master(on_cam, view);
@@ -338,7 +346,7 @@ impl<P: Planner> Axis<P> {
 
     /// A move onto the curve: to the master's place where that rests, else to one it comes to.
     fn onto_curve(&self, curve: &Curve<'_>, owner: &Entry, stretch: &Stretch) -> Choice<P::Plan> {
-        let Some(on_cam) = &self.on_cam else {
+        let Some(on_cam) = &self.follower.on_cam else {
             return Choice::Wait(u64::MAX);
         };
         if stretch.velocity == 0.0 {
@@ -439,7 +447,7 @@ impl<P: Planner> Axis<P> {
         stretch: &Stretch,
         periodic: bool,
     ) -> Choice<P::Plan> {
-        let Some(on_cam) = &self.on_cam else {
+        let Some(on_cam) = &self.follower.on_cam else {
             return Choice::Wait(u64::MAX);
         };
         if !periodic || on_cam.is_timed {
@@ -480,7 +488,7 @@ impl<P: Planner> Axis<P> {
     /// # Errors
     /// Why the slave may not go there.
     fn move_onto(&self, curve: &Curve<'_>, owner: &Entry, to: Place) -> Result<Way<P::Plan>, ErrorId> {
-        let near = self.on_cam.as_ref().map_or(0, |on_cam| on_cam.at.piece);
+        let near = self.follower.on_cam.as_ref().map_or(0, |on_cam| on_cam.at.piece);
         let at = curve.at(to, &Setpoint::default(), near);
         let here = self.place();
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
@@ -522,7 +530,9 @@ impl<P: Planner> Axis<P> {
 
     /// The place of the shadow is called a period more.
     fn lap_shadow(&mut self, by: f64, scope: &Scope<'_>) {
-        let Some(on_cam) = self.on_cam else { return };
+        let Some(on_cam) = self.follower.on_cam else {
+            return;
+        };
         let cam = scope.cams.cam(on_cam.camming.cam);
         if let Some(curve) = cam.and_then(|cam| on_cam.curve(cam)) {
             self.move_shadow(&curve, by);
@@ -539,7 +549,7 @@ impl<P: Planner> Axis<P> {
         self.replan_due = false;
         self.mover
             .watch(self.owner.is_some_and(|owner| self.needs_watching(&owner)));
-        if let Some(on_cam) = &mut self.on_cam {
+        if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.rung = way.rung;
             on_cam.is_timed = false;
             on_cam.left = way.left;
@@ -593,7 +603,7 @@ impl<P: Planner> Axis<P> {
                 None => self.fail(ErrorId::DeviationTooLarge, scope),
             };
         }
-        if let Some(on_cam) = &mut self.on_cam {
+        if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.rung = Rung::Waiting;
             on_cam.left = left;
         }
@@ -605,7 +615,7 @@ impl<P: Planner> Axis<P> {
     fn give_up_cam(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
         match error {
             ErrorId::PositiveBarred | ErrorId::NegativeBarred | ErrorId::OutwardFromLimitSwitch => {
-                if let Some(on_cam) = &mut self.on_cam {
+                if let Some(on_cam) = &mut self.follower.on_cam {
                     on_cam.rung = Rung::Due;
                 }
                 self.pause(error, scope);

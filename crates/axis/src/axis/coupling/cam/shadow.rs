@@ -200,7 +200,7 @@ impl<P: Planner> Axis<P> {
 
     /// The limits of the shadow in motion, inside which it is.
     pub(super) fn shadow_limits_now(&self) -> Option<Limits> {
-        let on_cam = self.on_cam.as_ref()?;
+        let on_cam = self.follower.on_cam.as_ref()?;
         match on_cam.rung {
             Rung::BesideLine { .. } | Rung::BesideMaster | Rung::Corner { .. } if !on_cam.slows => {
                 Some(on_cam.shadow_limits)
@@ -213,7 +213,7 @@ impl<P: Planner> Axis<P> {
     fn is_slowing_down(&self) -> bool {
         let is_under_way =
             matches!(self.mover.motion(), Motion::Closing { elapsed, scans, .. } if elapsed < scans);
-        is_under_way && self.on_cam.as_ref().is_some_and(|on_cam| on_cam.slows)
+        is_under_way && self.follower.on_cam.as_ref().is_some_and(|on_cam| on_cam.slows)
     }
 
     /// Beside the master: the difference comes to 0. None where that is not known to keep the limits, or leads ahead of it.
@@ -229,7 +229,7 @@ impl<P: Planner> Axis<P> {
             return None;
         }
         let lead = self.lead_of_master(view)?;
-        let on_cam = self.on_cam.as_ref()?;
+        let on_cam = self.follower.on_cam.as_ref()?;
         let now = Setpoint {
             position: difference.position,
             velocity: difference.velocity + on_cam.was.at.velocity,

@@ -30,7 +30,7 @@ impl Camming {
 impl<P: Planner> Axis<P> {
     /// What the cam of the owner was laid by while it waited for its start point.
     pub(in crate::axis::coupling) fn note_start_on_cam(&mut self, laid: Option<(Place, f64)>) {
-        if let Some(on_cam) = &mut self.on_cam {
+        if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.begins = laid;
             on_cam.is_timed = true;
         }
@@ -51,11 +51,11 @@ impl<P: Planner> Axis<P> {
             is_timed: true,
             ..OnCam::new(camming, self.slowed(&self.parameters.limits), self.frame.moves())
         };
-        let gear = self.coupling.take();
-        let own = self.on_cam.replace(on_cam);
+        let gear = self.follower.coupling.take();
+        let own = self.follower.on_cam.replace(on_cam);
         let found = self.way_at_start_on_cam(entry, view, scope);
-        self.on_cam = own;
-        self.coupling = gear;
+        self.follower.on_cam = own;
+        self.follower.coupling = gear;
         found
     }
 
@@ -69,14 +69,16 @@ impl<P: Planner> Axis<P> {
         let not_at_all = |error| ("Master", f64::from(master), f64::NAN, error);
         self.gear_motion(entry, self.mover.setpoint())
             .map_err(not_at_all)?;
-        let cam = self.on_cam.as_ref().map(|on_cam| on_cam.camming.cam);
+        let cam = self.follower.on_cam.as_ref().map(|on_cam| on_cam.camming.cam);
         let cam = cam.and_then(|id| scope.cams.cam(id));
         let Some(curve) = cam.and_then(|cam| self.lay_cam(cam)) else {
             return Err(("CamTableID", 0.0, f64::NAN, ErrorId::CamUnknown));
         };
         let keeps = self.keeps_on_cam(&curve, view, false).is_ok();
         let choice = self.choose(&curve, view, entry, keeps);
-        let Some(on_cam) = &self.on_cam else { return Ok(()) };
+        let Some(on_cam) = &self.follower.on_cam else {
+            return Ok(());
+        };
         let distance = on_cam.camming.start_distance;
         let too_short = |least| ("MasterStartDistance", distance, least, ErrorId::SyncNotReachable);
         let way = match choice {
@@ -117,7 +119,9 @@ impl<P: Planner> Axis<P> {
 
     /// In sync for the first time: told if the master is past its sync position by more than a scan.
     pub(super) fn note_sync_on_cam(&self, scope: &mut Scope<'_>) {
-        let Some(on_cam) = &self.on_cam else { return };
+        let Some(on_cam) = &self.follower.on_cam else {
+            return;
+        };
         let (Some(sync), Some(cam)) = (on_cam.camming.sync, scope.cams.cam(on_cam.camming.cam)) else {
             return;
         };

@@ -33,7 +33,7 @@ impl<P: Planner> Axis<P> {
         plan: (usize, u64),
         scope: &mut Scope<'_>,
     ) -> bool {
-        let (Some(on_cam), Some(room)) = (&mut self.on_cam, &self.steady.room) else {
+        let (Some(on_cam), Some(room)) = (&mut self.follower.on_cam, &self.follower.steady.room) else {
             return false;
         };
         let (Some(anchor), Some(cam)) = (&on_cam.anchor, scope.cams.cam(on_cam.camming.cam)) else {
@@ -57,7 +57,7 @@ impl<P: Planner> Axis<P> {
         on_cam.ends = ends;
         on_cam.at = at;
         on_cam.shadow = Some(Shadow { place, at: moving });
-        self.steady.source = Source::Other;
+        self.follower.steady.source = Source::Other;
         self.publish_steadily(at.place, at.state, scope);
         true
     }
