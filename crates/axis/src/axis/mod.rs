@@ -461,7 +461,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The future behaviour of the axis: everything but positions, results of ended commands and the
-    /// configuration. Two axes of equal outlook and set-point behave alike from now on.
+    /// configuration. Two axes of equal outlook and set-point behave alike from now on, unless a shaper still holds what was.
     pub fn outlook(&self) -> Outlook {
         let mut waiting = [None; QUEUE_MAX];
         for (slot, entry) in waiting.iter_mut().zip(self.queue.iter()) {

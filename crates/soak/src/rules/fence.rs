@@ -2,7 +2,8 @@
 //!
 //! A motion that was inside does not leave the limits, for any command: a motion that would leave is
 //! refused or stops before. Exceptions are ramps to rest that cannot be refused, those after an error or
-//! without power, and moves of the coordinates.
+//! without power, moves of the coordinates, an axis that a drive moves until it has power again, and what is
+//! in a shaper when limits are written.
 
 use super::{Broken, rule};
 use standstill_axis::{Axis, AxisState, Planner};
@@ -32,6 +33,8 @@ pub struct Fence {
     limits: (f64, f64),
     /// It was inside with the last set-point, and must not leave.
     inside: bool,
+    /// A shaper may hold a motion that was outside before the limits were written.
+    comes_out: bool,
 }
 
 impl Fence {
@@ -40,6 +43,7 @@ impl Fence {
         Self {
             limits: limits_of(axis),
             inside: false,
+            comes_out: false,
         }
     }
 
@@ -57,6 +61,7 @@ impl Fence {
         let limits @ (min, max) = limits_of(axis);
         if core::mem::replace(&mut self.limits, limits) != limits {
             self.forget();
+            self.comes_out = axis.config().vibration.iter().any(Option::is_some);
         }
         if limits == NONE {
             return Ok(());
@@ -69,6 +74,10 @@ impl Fence {
         // A homing searches the reference of the limits, so they do not apply yet (docs/homing.md).
         let exempt = matches!(axis.state(), AxisState::ErrorStop | AxisState::Homing);
         let commanded = !(axis.is_following() || exempt || axis.outlook().going_off);
+        self.comes_out &= axis.state() != AxisState::Standstill;
+        if axis.is_following() || self.comes_out {
+            self.forget();
+        }
         rule(
             is_inside || !was_inside || !commanded,
             "software limits",
