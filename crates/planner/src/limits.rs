@@ -290,13 +290,14 @@ impl Limits {
     /// velocity bound. So a velocity bound far above the speeds of the motion is lowered to [`REACH`]
     /// times the speed it may reach (docs/planner.md, eq. 40).
     pub(crate) fn acting_for(&self, start: &Setpoint, end: f64, distance: f64, cycle: f64) -> Self {
+        let acting = self.acting(cycle);
         let Self {
             acceleration,
             deceleration,
             jerk,
             snap,
             ..
-        } = self.acting(cycle);
+        } = acting;
         let lower = acceleration.min(deceleration);
         // Until acceleration and jerk are zero.
         let rising = start.jerk.abs() / snap;
@@ -312,12 +313,12 @@ impl Limits {
         // from the speed are not below the state's own acceleration and jerk.
         let soonest = SOONEST * cycle;
         let least = soonest * (steepest + soonest * start.jerk.abs());
-        let velocity = if reached > 0.0 {
-            self.velocity.min(REACH * reached.max(least))
+        let velocity = REACH * reached.max(least);
+        if reached > 0.0 && velocity < self.velocity {
+            Self { velocity, ..*self }.acting(cycle)
         } else {
-            self.velocity
-        };
-        Self { velocity, ..*self }.acting(cycle)
+            acting
+        }
     }
 
     /// Whether no bound is given at all.

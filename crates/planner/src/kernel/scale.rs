@@ -33,9 +33,11 @@ impl Scale {
 
     /// `value`, `levels` (at most 4) integrations above the input, in the units of the kernel.
     pub fn inward(&self, value: f64, levels: u32) -> f64 {
+        // Of a power of two, exact.
+        let rate = 1.0 / self.time;
         let mut scaled = value / self.input;
         for _ in 0..levels.min(4) {
-            scaled /= self.time;
+            scaled *= rate;
         }
         scaled
     }
