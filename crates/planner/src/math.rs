@@ -58,6 +58,21 @@ pub fn rough_cbrt(x: f64) -> f64 {
     f64::from_bits(x.to_bits() / 3 + TWO_THIRDS_OF_ONE)
 }
 
+/// `x` to the power of `exponent` within 1 %, for a normal `x` of at most 1 and an `exponent` of 0 to 1.
+pub fn rough_power(x: f64, exponent: f64) -> f64 {
+    /// How far a logarithm is above the straight line between two powers of two, as a parabola.
+    const ABOVE: f64 = 0.335;
+    const BIAS: f64 = 1023.0;
+    let one = 1.0_f64.to_bits();
+    let (mantissa, digits) = (x.to_bits() & ((1 << 52) - 1), x.to_bits() >> 52);
+    let part = f64::from_bits(one | mantissa) - 1.0;
+    let logarithm = (digits as f64 - BIAS) + part * (1.0 + ABOVE * (1.0 - part));
+    let raised = max(exponent * logarithm + BIAS, 0.0);
+    let whole = floor(raised);
+    let part = raised - whole;
+    f64::from_bits((whole as u64) << 52) * (1.0 + part * (1.0 - ABOVE * (1.0 - part)))
+}
+
 /// Cube root of `x` >= 0 within an ulp or two: five of Newton's steps are enough from 6 %.
 pub fn cbrt(x: f64) -> f64 {
     /// Scales numbers below the normal range into it; its cube root is 2^54.
@@ -73,4 +88,25 @@ pub fn cbrt(x: f64) -> f64 {
 
 fn cbrt_of_normal(x: f64) -> f64 {
     (0..5).fold(rough_cbrt(x), |root, _| root - (root - x / (root * root)) / 3.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rough_power_is_within_one_per_cent() {
+        for step in 1..=1000 {
+            let root = 1.001 * f64::from(step) / 1001.0;
+            let mut power = root;
+            for exponent in 1..=6 {
+                let found = rough_power(power, 1.0 / f64::from(exponent));
+                assert!(
+                    (found - root).abs() <= 0.01 * root,
+                    "{power} {exponent}: {found}, not {root}"
+                );
+                power *= root;
+            }
+        }
+    }
 }

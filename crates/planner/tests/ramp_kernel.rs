@@ -225,11 +225,21 @@ fn a_root_needs_no_cap() {
     assert!(most <= 94);
 }
 
-/// Functions that jump over zero, which no step comes near to, and steep ones.
+/// Functions that jump over zero, which no step comes near to, and steep ones; with slopes that mislead, too.
 #[test]
 fn a_zero_needs_no_cap() {
     let mut random = Random(59);
     let mut most = 0;
+    let slopes = [
+        f64::NAN,
+        0.0,
+        -1.0,
+        f64::INFINITY,
+        f64::MIN_POSITIVE,
+        1e300,
+        1e-3,
+        1.0,
+    ];
     for case in 0..20_000 {
         let root = match case % 3 {
             0 => 0.0,
@@ -245,6 +255,7 @@ fn a_zero_needs_no_cap() {
                 _ => cbrt((at - root).abs()).copysign(at - root),
             },
             noise: 0.0,
+            slope: slopes[(case + (at.to_bits() % 3) as usize * (case / 8 % 2)) % slopes.len()],
         };
         let (point, steps) = zero(
             function(-1.0 - random.unit()),
@@ -260,6 +271,44 @@ fn a_zero_needs_no_cap() {
     }
     println!("{most} steps of {MAX_STEPS}");
     assert!(most <= 114, "{most}");
+}
+
+/// Powers, flat where they begin or with a slope there, and roots from near one end of the bracket to near the other.
+#[test]
+fn a_zero_with_slopes_takes_few_steps() {
+    let mut random = Random(61);
+    let (mut most, mut sum) = (0, 0);
+    for case in 0..20_000 {
+        let power = 1 + case % 5;
+        let linear = if case % 3 == 0 {
+            0.0
+        } else {
+            random.log(1e-3, 10.0)
+        };
+        let root = if case % 2 == 0 {
+            random.log(1e-4, 1.0)
+        } else {
+            random.unit()
+        };
+        let side = random.sign();
+        let times = |at: f64, power: i32| (0..power).fold(1.0, |product, _| product * at);
+        let rise = |at: f64| at * linear + times(at, power);
+        let function = |at: f64| Point {
+            at,
+            value: side * (rise(at) - rise(root)),
+            noise: 4.0 * f64::EPSILON * (rise(at) + rise(root)),
+            slope: side * (linear + f64::from(power) * times(at, power - 1)),
+        };
+        let (point, steps) = zero(function(0.0), function(1.0), function);
+        assert!(
+            (point.at - root).abs() <= 1e-14 * root,
+            "{case}: {root} {point:?}"
+        );
+        most = most.max(steps);
+        sum += steps;
+    }
+    println!("{most} steps at most, {} in 20,000", sum);
+    assert!(most <= 6 && sum <= 3 * 20_000, "{most} {sum}");
 }
 
 /// `cargo test --release -p standstill-planner --features std --test all ramp_kernel -- --ignored --nocapture`

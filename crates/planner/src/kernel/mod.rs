@@ -22,8 +22,8 @@ pub use root::{MAX_STEPS, falling_root};
 pub use scale::Scale;
 pub use second::second;
 pub use spans::{Span, Spans};
-pub(crate) use third::append_third;
 pub use third::{Bounds, Profile, THIRD_SPANS, third};
+pub(crate) use third::{append_third, gain};
 pub use zero::{Point, zero};
 
 /// How far outside a bound a state still counts as on it, relative to the bound.

@@ -62,6 +62,23 @@ impl<const N: usize> Spans<N> {
         self.list.iter().take(self.len)
     }
 
+    /// The spans in order of time.
+    pub fn as_slice(&self) -> &[Span] {
+        self.list.get(..self.len).unwrap_or_default()
+    }
+
+    /// What is left of the spans after `time` of the first one.
+    pub fn advance(&mut self, time: f64) {
+        if let Some(first) = self.list.first_mut()
+            && first.duration > time
+        {
+            first.duration -= time;
+        } else if let Some(spans @ [_, ..]) = self.list.get_mut(..self.len) {
+            spans.rotate_left(1);
+            self.len -= 1;
+        }
+    }
+
     /// The spans in order of time, each in `parts` of the same length.
     pub fn split(&self, parts: usize) -> impl Iterator<Item = Span> {
         self.iter().flat_map(move |span| {
@@ -143,5 +160,25 @@ impl<const N: usize> Spans<N> {
 impl<const N: usize> Default for Spans<N> {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    #[test]
+    fn what_is_over_is_left_out() {
+        let mut spans = Spans::<3>::new();
+        spans.advance(1.0);
+        assert!(spans.is_empty());
+        spans.push(2.0, 1.0);
+        spans.push(3.0, -1.0);
+        spans.advance(0.5);
+        let durations = |spans: &Spans<3>| spans.iter().map(|span| span.duration).collect::<Vec<_>>();
+        assert_eq!(durations(&spans), [1.5, 3.0]);
+        spans.advance(1.5);
+        assert_eq!(durations(&spans), [3.0]);
     }
 }

@@ -103,6 +103,67 @@ pub(crate) fn append_third<const N: usize>(
     }
 }
 
+/// How much larger the integral of the value along the spans of [`third`] to zero gets for each unit of `a` more at their
+/// start (O21).
+///
+/// Back in time from the end: a change of `a` makes none where the input switches, since the switch moves with it.
+pub(crate) fn gain(spans: &[Span]) -> f64 {
+    // What brings `a` to zero at last.
+    let (push, hold, release) = match spans {
+        [.., push, hold, release] if hold.input == 0.0 => (push.duration, hold.duration, release.duration),
+        [.., push, release] => (push.duration, 0.0, release.duration),
+        _ => return 0.0,
+    };
+    // A start on a bound comes back to it.
+    if spans.first().is_some_and(|first| first.input == 0.0) {
+        return 0.0;
+    }
+    let stop = hold + release;
+    let x = -(0.5 * stop * (stop + push) + (push * push - release * release) / 6.0)
+        / (hold + 0.5 * (push + release));
+    let mut gains = Gains {
+        x,
+        v: between_switches(release, x),
+        a: 0.0,
+    };
+    let mut next_input = 0.0;
+    let mut earlier = spans.iter().rev().skip(1);
+    for span in spans.iter().rev() {
+        gains.a = 0.0;
+        match earlier.next() {
+            // `v` is on its bound: a change of it before makes none later.
+            Some(before) if span.input == 0.0 && before.input == next_input => {
+                gains.x += span.duration;
+                gains.v = between_switches(before.duration, gains.x);
+            }
+            _ => gains.back(span.duration),
+        }
+        next_input = span.input;
+    }
+    max(gains.a, 0.0)
+}
+
+/// What an integral gains for each unit of the value, of `v` and of `a` at one instant.
+struct Gains {
+    x: f64,
+    v: f64,
+    a: f64,
+}
+
+impl Gains {
+    /// The same `t` earlier.
+    fn back(&mut self, t: f64) {
+        self.a += t * (self.v + t * (0.5 * self.x + t / 6.0));
+        self.v += t * (self.x + 0.5 * t);
+        self.x += t;
+    }
+}
+
+/// The gain of `v` at the end of a span of the duration `t` with a switch at either end, if that of the value is `x`.
+fn between_switches(t: f64, x: f64) -> f64 {
+    -t * (0.5 * x + t / 6.0)
+}
+
 /// A list of spans to append to those of a problem mirrored where `side` is -1.
 struct Appended<'a, const N: usize> {
     spans: &'a mut Spans<N>,
@@ -209,4 +270,64 @@ fn holding(left: f64, v: f64, a: f64, brake: f64) -> f64 {
     let linear = a * brake;
     let constant = 2.0 * linear * budget / (a + brake);
     2.0 * constant / (linear + sqrt(linear * linear + 4.0 * constant))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use standstill_testkit::Random;
+    use std::collections::BTreeSet;
+    use std::vec::Vec;
+
+    /// The integral of the value along `spans`.
+    fn integral(start: State, spans: &[Span]) -> f64 {
+        let (mut state, mut sum) = (start, 0.0);
+        for span in spans {
+            let t = span.duration;
+            sum += t * (state.x + t * (state.v / 2.0 + t * (state.a / 6.0 + t * span.input / 24.0)));
+            state = state.after(t, span.input);
+        }
+        sum
+    }
+
+    #[test]
+    fn a_gain_is_the_slope_of_the_integral() {
+        let mut random = Random(3);
+        let mut shapes = BTreeSet::new();
+        for case in 0..60_000 {
+            let sides = |random: &mut Random| Sides {
+                minus: random.log(0.1, 10.0),
+                plus: random.log(0.1, 10.0),
+            };
+            let bounds = Bounds {
+                v: sides(&mut random),
+                a: Sides::both(random.log(0.1, 10.0)),
+            };
+            let a = random.between(-1.0, 1.0) * bounds.a.plus;
+            let v = random.between(-bounds.v.minus, bounds.v.plus);
+            let x = random.sign() * random.log(1e-3, 1e2);
+            let settled = v + 0.5 * a * a.abs();
+            if settled > bounds.v.plus || settled < -bounds.v.minus {
+                continue;
+            }
+            let spans_from = |a: f64| third(x, v, a, 0.0, &bounds).spans;
+            let shape = |spans: &Spans<THIRD_SPANS>| -> Vec<i8> {
+                spans.iter().map(|span| span.input as i8).collect()
+            };
+            let (spans, step) = (spans_from(a), 1e-6 * a.abs());
+            let (more, less) = (spans_from(a + step), spans_from(a - step));
+            // Where the shape changes, the slope bends.
+            if shape(&more) != shape(&spans) || shape(&less) != shape(&spans) {
+                continue;
+            }
+            let of = |a: f64, spans: &Spans<THIRD_SPANS>| integral(State { x, v, a }, spans.as_slice());
+            let slope = (of(a + step, &more) - of(a - step, &less)) / (2.0 * step);
+            let longest = spans.duration();
+            let off =
+                (gain(spans.as_slice()) - slope).abs() / (slope.abs() + 1e-3 * longest * longest * longest);
+            assert!(off < 1e-4, "case {case}: {spans:?}, {slope}");
+            shapes.insert(shape(&spans));
+        }
+        assert_eq!(shapes.len(), 16, "{shapes:?}");
+    }
 }

@@ -1,7 +1,7 @@
 //! The zero of a function that costs much to evaluate.
 
 use super::MAX_STEPS;
-use crate::math::{max, min};
+use crate::math::{max, min, rough_power};
 
 /// A function at one argument.
 #[derive(Clone, Copy, Debug)]
@@ -12,6 +12,8 @@ pub struct Point {
     pub value: f64,
     /// What of the value may be rounding.
     pub noise: f64,
+    /// How fast the value grows with the argument; NaN where that is not known.
+    pub slope: f64,
 }
 
 /// Steps the bracket may take longer than by halving it every other step.
@@ -20,9 +22,10 @@ const PATIENCE: f64 = 16.0;
 /// An argument between `low` and `high`, where a continuous function has values of different signs, at
 /// which it is zero up to its rounding; also the steps taken, at most [`MAX_STEPS`].
 ///
-/// Inverse quadratic interpolation where it is safe (Chandrupatla's rule), halving elsewhere, and always
-/// halving when the bracket has not become half as wide with every two steps. So after
-/// 114 steps the bracket is below 2^-52 of what it was, whatever the function, and that ends it.
+/// A step goes to the zero of the cubic through the last two points, where slopes are known; otherwise to that of the
+/// inverse quadratic through three, where it is safe (Chandrupatla's rule); otherwise to the middle, and always there
+/// when the bracket has not become half as wide with every two steps. So after 114 steps the bracket is below 2^-52 of
+/// what it was, whatever the function, and that ends it.
 pub fn zero(low: Point, high: Point, mut function: impl FnMut(f64) -> Point) -> (Point, u32) {
     // `new` and `old` have different signs; `last` is what the newer of the two replaced.
     let (mut new, mut old) = if low.value.abs() < high.value.abs() {
@@ -31,7 +34,7 @@ pub fn zero(low: Point, high: Point, mut function: impl FnMut(f64) -> Point) -> 
         (high, low)
     };
     let mut best = new;
-    let mut part = new.value / (new.value - old.value);
+    let mut part = by_slopes(&new, &old, &old).unwrap_or_else(|| new.value / (new.value - old.value));
     let narrow = f64::EPSILON * (high.at - low.at).abs();
     let mut wanted = PATIENCE * (high.at - low.at).abs();
     for step in 1..=MAX_STEPS {
@@ -42,6 +45,7 @@ pub fn zero(low: Point, high: Point, mut function: impl FnMut(f64) -> Point) -> 
             return (best, step - 1);
         }
         let point = function(new.at + width * min(max(part, least), 1.0 - least));
+        let before = new;
         let last = if (point.value < 0.0) == (new.value < 0.0) {
             new
         } else {
@@ -55,7 +59,9 @@ pub fn zero(low: Point, high: Point, mut function: impl FnMut(f64) -> Point) -> 
         part = if (old.at - new.at).abs() > wanted {
             0.5
         } else {
-            interpolated(&new, &old, &last).unwrap_or(0.5)
+            by_slopes(&new, &before, &old)
+                .or_else(|| interpolated(&new, &old, &last))
+                .unwrap_or(0.5)
         };
     }
     (best, MAX_STEPS)
@@ -71,4 +77,50 @@ fn interpolated(new: &Point, old: &Point, last: &Point) -> Option<f64> {
         let (a, b, c) = (new.value, old.value, last.value);
         a / (b - a) * (c / (b - c)) + (last.at - new.at) / (old.at - new.at) * (a / (c - a)) * (b / (c - b))
     })
+}
+
+/// Where between `new` (0) and `old` (1) the cubic with the values and slopes of `new` and of `before`, the point looked at
+/// before it, is zero; `None` if a slope is not known or is against the chord, or if the zero is not between them.
+fn by_slopes(new: &Point, before: &Point, old: &Point) -> Option<f64> {
+    let (way, change) = (before.at - new.at, before.value - new.value);
+    let (from, to) = (new.slope * way / change, before.slope * way / change);
+    if !(from >= 0.0 && to >= 0.0) {
+        return None;
+    }
+    // Without a sign: a zero may have one, and the mirrored function the other.
+    let part = reached(-new.value / change, from.abs(), to.abs()) * way / (old.at - new.at);
+    (part > 0.0 && part < 1.0).then_some(part)
+}
+
+/// Up to this slope at an end a cubic from (0, 0) to (1, 1) does not fall between them.
+const STEEP: f64 = 3.0;
+
+/// From here on a cubic that is flat at 0 rises, however steep it is at 1.
+const RISING: f64 = 2.0 / 3.0;
+
+/// Where the cubic from (0, 0) to (1, 1) with the slopes `from` and `to` comes to the `level`; where it might fall, about
+/// where a power does that has the steeper one of them.
+fn reached(level: f64, from: f64, to: f64) -> f64 {
+    let (mut t, mut is_cubic) = (0.0, true);
+    if level > 0.0 && level < 1.0 {
+        let rises = from < to;
+        let (height, flat, steep) = if rises {
+            (level, from, to)
+        } else {
+            (1.0 - level, to, from)
+        };
+        // No farther than the line with the other slope.
+        let risen = min(rough_power(height, 1.0 / steep), height / flat);
+        t = if rises { risen } else { 1.0 - risen };
+        is_cubic = steep <= STEEP || risen > RISING;
+    }
+    if is_cubic {
+        let (square, cube) = (3.0 - 2.0 * from - to, from + to - 2.0);
+        // Newton's; a third step would cost more than it saves.
+        for _ in 0..2 {
+            let value = t * (from + t * (square + t * cube)) - level;
+            t -= value / (from + t * (2.0 * square + 3.0 * t * cube));
+        }
+    }
+    t
 }

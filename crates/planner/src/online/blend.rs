@@ -242,6 +242,7 @@ fn fastest_down_to(wanted: f64, distance: f64, exit: f64, ramps: &Ramps, cycle: 
             at: speed,
             value: end + ramps.inward(speed * cycle, 0) - way,
             noise: NOISE * way,
+            slope: f64::NAN,
         }
     };
     let fastest = beyond(wanted);

@@ -243,6 +243,7 @@ impl<'a> Ends<'a> {
                 at,
                 value: side * last.beyond,
                 noise: last.noise,
+                slope: f64::NAN,
             }
         };
         let mut from = ahead(start, 0.0);
@@ -304,6 +305,7 @@ impl<'a> Ends<'a> {
                 at: velocity,
                 value: way - self.target,
                 noise: 0.25 * NOISE * added_up,
+                slope: f64::NAN,
             }
         };
         let (low, high) = (beyond(-self.top.minus), beyond(self.top.plus));

@@ -60,7 +60,7 @@ impl OnlinePlan {
     /// and `before`; an infinite bound in `before` counts as that of `limits`. What is exceeded on the way
     /// is told by [`OnlinePlan::excess`].
     ///
-    /// Bounded work: at most [`MAX_SOLVES`] ramps, in practice about 9 ([`OnlinePlan::solves`]), each with at
+    /// Bounded work: at most [`MAX_SOLVES`] ramps, in practice about 5 ([`OnlinePlan::solves`]), each with at
     /// most seven roots of [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps.
     ///
     /// # Errors

@@ -6,6 +6,7 @@ use core::cell::Cell;
 
 use crate::Setpoint;
 use crate::kernel::{MAX_STEPS, NOISE, ON_LIMIT, Point, Sides, Spans, THIRD_SPANS, zero};
+use crate::math::min;
 use crate::ramp::path::Way;
 use crate::ramp::solve::{Course, RAMP_SPANS, Ramp, Ramps, heading};
 
@@ -61,6 +62,23 @@ impl Stop {
             at,
             value: side * self.beyond,
             noise: self.noise,
+            slope: f64::NAN,
+        }
+    }
+
+    /// Begins at a `state` that it comes to after a `time` of its first span.
+    fn follow(&mut self, time: f64, state: &Setpoint) {
+        if time > 0.0 {
+            self.ramp.spans.advance(time);
+            self.start = *state;
+        }
+    }
+
+    /// As [`Stop::ahead`], where its start moves along a push with `input`.
+    fn ahead_of(&self, at: f64, side: f64, input: f64) -> Point {
+        Point {
+            slope: side * self.ramp.speed_of_end(input),
+            ..self.ahead(at, side)
         }
     }
 }
@@ -130,42 +148,39 @@ impl<'a> Search<'a> {
         }
         let side = if stop.beyond < 0.0 { 1.0 } else { -1.0 };
         let top = self.top(side);
-        let Ramp {
-            spans: push, lead, ..
-        } = self.whole_ramp(start, top);
+        let push = self.whole_ramp(start, top);
         let mut way = Way::new(self.ramps.order(), start, self.ramps.lower());
-        let mut from = stop.ahead(0.0, side);
-        if lead == 0
-            && let Some(left) = self.left_to_cruise(&mut stop, start, &push, top)
-        {
-            spans.extend(&push);
-            spans.push(left / top.abs(), 0.0);
-            spans.extend(&stop.ramp.spans);
+        if push.lead == 0 && self.cruises(&mut spans, start, &push.spans, top) {
             return spans;
         }
         let parts = if self.end_velocity == 0.0 { 1 } else { PARTS };
-        for span in push.split(parts) {
+        for span in push.spans.split(parts) {
             way.begin(span.input);
             let after = |time: f64| {
                 let mut way = way;
                 way.go(time);
                 way.state
             };
-            let mut ahead = |time: f64| {
-                self.stop_from(&mut stop, &after(time));
-                stop.ahead(time, side)
-            };
-            let to = ahead(span.duration);
-            if to.value >= 0.0 {
-                let switch = self.zero(Point { at: 0.0, ..from }, to, &mut ahead);
-                ahead(switch.at);
-                spans.push(switch.at, span.input);
-                spans.extend(&stop.ramp.spans);
-                return spans;
+            // As long as the push goes the way of the stop, that ends where it did.
+            let along = min(stop.ramp.goes_along(span.input), span.duration);
+            stop.follow(along, &after(along));
+            if along < span.duration {
+                let from = stop.ahead_of(along, side, span.input);
+                let mut ahead = |time: f64| {
+                    self.stop_from(&mut stop, &after(time));
+                    stop.ahead_of(time, side, span.input)
+                };
+                let to = ahead(span.duration);
+                if to.value >= 0.0 {
+                    let switch = self.zero(from, to, &mut ahead);
+                    ahead(switch.at);
+                    spans.push(switch.at, span.input);
+                    spans.extend(&stop.ramp.spans);
+                    return spans;
+                }
             }
             spans.push(span.duration, span.input);
             way.go(span.duration);
-            from = to;
         }
         self.stop_from(&mut stop, &steady(&way.state, top));
         cruise(&mut spans, -stop.ahead(0.0, side).value, top);
@@ -173,25 +188,25 @@ impl<'a> Search<'a> {
         spans
     }
 
-    /// How far the whole `push` to the velocity `top` and the `stop` behind it leave a move that ends at rest short of its
-    /// target, if that is more than rounding: then no end of a span needs a look.
-    fn left_to_cruise(
-        &self,
-        stop: &mut Stop,
-        start: &Setpoint,
-        push: &Spans<RAMP_SPANS>,
-        top: f64,
-    ) -> Option<f64> {
+    /// Whether the whole `push` to the velocity `top` and the stop behind it leave a move that ends at rest short of its
+    /// target by more than rounding: then no end of a span needs a look, and all three are appended to `spans`.
+    fn cruises(&self, spans: &mut Candidate, start: &Setpoint, push: &Spans<RAMP_SPANS>, top: f64) -> bool {
         let end = follow(self.ramps, start, push);
         let side = top.signum();
         let least = top * top / (2.0 * self.ramps.deceleration());
         if self.end_velocity != 0.0 || side * (self.target - end.position) < least {
-            return None;
+            return false;
         }
-        self.stop_from(stop, &steady(&end, top));
+        let stop = self.stop(&steady(&end, top));
         let left = -side * stop.beyond;
         let duration = push.duration() + stop.ramp.spans.duration();
-        (left > ON_LIMIT * (top.abs() * duration)).then_some(left)
+        let cruises = left > ON_LIMIT * (top.abs() * duration);
+        if cruises {
+            spans.extend(push);
+            spans.push(left / top.abs(), 0.0);
+            spans.extend(&stop.ramp.spans);
+        }
+        cruises
     }
 
     /// A ramp to a peak velocity and one from it, with a cruise between them if it is the bound (O6).

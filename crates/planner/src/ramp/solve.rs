@@ -3,7 +3,7 @@
 use super::inside::{self, Box4, LEAD_SPANS, Lead, State};
 use super::slope::{Box3, Slope};
 use super::turn::TURN_SPANS;
-use crate::kernel::{Bounds, ON_LIMIT, Profile, Scale, Sides, Spans, append_third, second, third};
+use crate::kernel::{Bounds, ON_LIMIT, Profile, Scale, Sides, Spans, append_third, gain, second, third};
 use crate::{DirectedLimits, Order, Setpoint};
 
 /// Most spans of a ramp: getting inside the limits, then a ramp that may turn.
@@ -49,9 +49,30 @@ pub(crate) struct Ramp {
     pub(crate) steps: u32,
     /// Whether the start was inside and viable and the ramp keeps its direction, so that it exceeds nothing.
     pub(crate) viable: bool,
+    /// Whether it is a stop from a viable state inside the limits that has the same bounds throughout: from any state on
+    /// it, the rest of it is the stop.
+    is_plain_stop: bool,
 }
 
 impl Ramp {
+    /// How long a push with this `input` goes the way of a stop, which then ends where it did.
+    pub(crate) fn goes_along(&self, input: f64) -> f64 {
+        match self.spans.as_slice() {
+            [first, ..] if self.is_plain_stop && first.input == input => first.duration,
+            _ => 0.0,
+        }
+    }
+
+    /// How fast the end of a stop moves while a push with this `input` takes its start along (O21); NaN where that is not
+    /// known.
+    pub(crate) fn speed_of_end(&self, input: f64) -> f64 {
+        match self.spans.as_slice() {
+            _ if !self.is_plain_stop => f64::NAN,
+            [] => 0.0,
+            spans @ [first, ..] => (input - first.input) * gain(spans),
+        }
+    }
+
     /// No ramp yet.
     pub(crate) const fn nothing() -> Self {
         Self {
@@ -59,6 +80,7 @@ impl Ramp {
             lead: 0,
             steps: 0,
             viable: false,
+            is_plain_stop: false,
         }
     }
 }
@@ -240,6 +262,7 @@ impl Ramps {
             self.velocity
         };
         ramp.spans.clear();
+        ramp.is_plain_stop = false;
         match self.order {
             Order::Two => self.second_order(ramp, state.v, goal, range.plus, course),
             Order::Three => self.third_order(ramp, state, goal, range, course),
@@ -403,6 +426,7 @@ impl Ramps {
             spans.extend(&turning);
             steps
         } else {
+            ramp.is_plain_stop = viable && goal == 0.0;
             append_third(spans, &lead.arrest, (v, a, j), goal, &own(dips))
         };
         ramp.steps = lead.steps.max(steps);
