@@ -63,12 +63,12 @@ impl<const N: usize> Spans<N> {
     }
 
     /// The spans in order of time.
-    pub fn as_slice(&self) -> &[Span] {
+    pub(crate) fn as_slice(&self) -> &[Span] {
         self.list.get(..self.len).unwrap_or_default()
     }
 
     /// What is left of the spans after `time` of the first one.
-    pub fn advance(&mut self, time: f64) {
+    pub(crate) fn advance(&mut self, time: f64) {
         if let Some(first) = self.list.first_mut()
             && first.duration > time
         {
