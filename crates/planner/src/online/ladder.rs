@@ -1,7 +1,7 @@
 //! The ladder: each candidate is verified against the true limits before it is taken.
 
 use super::ends::{Ends, Wide};
-use super::search::Search;
+use super::search::{Candidate, Search};
 use super::{MAX_PIECES, OnlinePlan, grid_from};
 use crate::grid::GridPlan;
 use crate::kernel::{NOISE, ON_LIMIT, Sides, Spans};
@@ -24,7 +24,8 @@ pub enum Rung {
     TwoPhase,
     /// Acceleration and jerk to zero, then push and stop.
     Arrest,
-    /// To rest, then on from there: on the grid, or, with an end velocity, two ramps and a cruise.
+    /// To rest, then on from there: on the grid, or, with an end velocity, two ramps and a cruise. With an end velocity the
+    /// ramp to it and a cruise, if that is a way to the target.
     Brake,
 }
 
@@ -134,7 +135,11 @@ impl OnlinePlan {
                 Rung::TwoPhase => climb.verify(found, &climb.search.two_phase(&from)),
                 Rung::Arrest => climb.verify(found, &climb.search.arrest_then_push(&from)),
                 Rung::Brake if end_velocity != 0.0 => {
-                    climb.verify(found, &climb.search.rest_then_run_up(&from))
+                    let run_up = climb.search.rest_then_run_up(&from);
+                    let straight = climb.search.ramp_then_cruise(&from);
+                    let shorter = straight.filter(|spans| spans.duration() < run_up.duration());
+                    shorter.is_some_and(|spans| climb.verify_straight(found, &spans))
+                        || climb.verify(found, &run_up)
                 }
                 Rung::Brake => {
                     climb.brake_to_grid(found, start.position, target, cycle)?;
@@ -299,6 +304,16 @@ impl<'a> Climb<'a> {
         found.excess = excess::excess(path, self.end_velocity, None, self.limits);
         // There is nothing after the last rung.
         found.rung == Rung::Brake || found.excess.is_none_or(|excess| self.is_unavoidable(&excess))
+    }
+
+    /// As [`Climb::verify`] for a candidate of the last rung that has another behind it.
+    fn verify_straight(&mut self, found: &mut Found, candidate: &Candidate) -> bool {
+        let is_plan =
+            self.verify(found, candidate) && found.excess.is_none_or(|excess| self.is_unavoidable(&excess));
+        if !is_plan {
+            found.path = Path::new(self.ramps.order());
+        }
+        is_plan
     }
 
     /// Whether a path that ends in `end` has the end acceleration and no jerk.

@@ -252,6 +252,23 @@ impl<'a> Search<'a> {
         spans
     }
 
+    /// The ramp to the end velocity, which is not 0, and a cruise with it (O15); `None` if that ramp ends beyond the target, or if
+    /// the end velocity is more than a cruise may have.
+    ///
+    /// The cruise leaves nothing to be met by a root, however short the move.
+    pub(super) fn ramp_then_cruise(&self, start: &Setpoint) -> Option<Candidate> {
+        let stop = self.stop(start);
+        let side = self.end_velocity.signum();
+        let left = -side * stop.beyond;
+        if left < 0.0 || self.end_velocity.abs() > self.top(side).abs() {
+            return None;
+        }
+        let mut spans = Spans::new();
+        spans.extend(&stop.ramp.spans);
+        cruise(&mut spans, left, self.end_velocity);
+        Some(spans)
+    }
+
     /// To rest, and to the end velocity, which is not 0, by way of a velocity that is held for as long as it
     /// takes (O15).
     ///

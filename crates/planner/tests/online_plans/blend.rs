@@ -153,3 +153,34 @@ fn a_larger_speed_is_reached_at_the_end() {
         assert!((0..=late).all(|scan| plan.at(scan).velocity <= 50.0 * (1.0 + 1e-9)));
     }
 }
+
+/// A way of a few scans at the speed of the start is passed without turning, at no less than that: ramps so short are rounding
+/// beside the positions, the cruise is not.
+#[test]
+fn a_way_of_a_few_scans_is_passed() {
+    let mut random = Random(73);
+    for case in 0..20_000 {
+        let limits = support::limits(&mut random, ORDERS[case % 3]);
+        let cycle = 0.02 * limits.velocity / limits.acceleration;
+        let speed = limits.velocity * random.between(0.01, 0.9);
+        let scans = random.between(0.5, 4.0);
+        let side = if random.below(2) == 0 { 1.0 } else { -1.0 };
+        let start = Setpoint {
+            velocity: side * speed,
+            ..Setpoint::at_rest(random.between(-10.0, 10.0))
+        };
+        let target = start.position + side * speed * scans * cycle;
+        let passage = Passage {
+            wanted: random.between(speed, limits.velocity),
+            most: f64::INFINITY,
+        };
+        let plan = OnlinePlan::blending(&start, target, &passage, &limits, &limits, cycle).expect("valid");
+        let plan = plan.unwrap_or_else(|| panic!("case {case}: {limits:?} {start:?} {target} {passage:?}"));
+        let reached = side * plan.end_velocity();
+        assert!(
+            f64::from(plan.scans()) <= scans + 1.0 && reached >= speed * (1.0 - 1e-9),
+            "case {case}: {reached} after {} scans of {scans}, {start:?}",
+            plan.scans()
+        );
+    }
+}
