@@ -234,6 +234,14 @@ fn chains_are_passed_in_order_within_the_limits() {
     many(0..10_000);
 }
 
+/// Short moves behind faster ones: their ramps are rounding beside the positions.
+#[test]
+fn moves_of_a_scan_or_two_behind_a_faster_one_are_passed() {
+    for seed in [17_832, 367_575, 419_444, 694_750, 753_432, 820_520] {
+        assert!(judge(seed).is_ok(), "seed {seed}: {:?}", judge(seed));
+    }
+}
+
 #[test]
 #[ignore = "a million chains; by hand, in release"]
 fn a_million_chains() {

@@ -253,14 +253,20 @@ impl<'a> Search<'a> {
     }
 
     /// The ramp to the end velocity, which is not 0, and a cruise with it (O15); `None` if that ramp ends beyond the target, or if
-    /// the end velocity is more than a cruise may have.
+    /// the end velocity is more than a cruise may have and than the start comes with.
     ///
     /// The cruise leaves nothing to be met by a root, however short the move.
     pub(super) fn ramp_then_cruise(&self, start: &Setpoint) -> Option<Candidate> {
         let stop = self.stop(start);
         let side = self.end_velocity.signum();
         let left = -side * stop.beyond;
-        if left < 0.0 || self.end_velocity.abs() > self.top(side).abs() {
+        let coming = side * start.velocity;
+        let most = self
+            .top(side)
+            .abs()
+            .max(coming)
+            .max(side * self.ramps.arrested(start));
+        if left < 0.0 || self.end_velocity.abs() > most {
             return None;
         }
         let mut spans = Spans::new();
