@@ -15,12 +15,12 @@ use standstill_axis::{
 use standstill_testkit::Random;
 use std::slice;
 
-const CYCLE: f64 = 0.001;
+pub const CYCLE: f64 = 0.001;
 
 /// Longest chain that is followed (scans).
-const LONGEST: u64 = 200_000;
+pub const LONGEST: u64 = 200_000;
 
-const BLENDING: [BufferMode; 4] = [
+pub const BLENDING: [BufferMode; 4] = [
     BufferMode::BlendingLow,
     BufferMode::BlendingPrevious,
     BufferMode::BlendingNext,
@@ -39,7 +39,7 @@ fn limits(order: u32) -> Limits {
 }
 
 /// Limits of order 2, 3 or 4 whose parts all take a few scans, with acceleration and deceleration apart in half of the cases.
-fn drawn_limits(random: &mut Random) -> Limits {
+pub fn drawn_limits(random: &mut Random) -> Limits {
     let order = 2 + random.below(3);
     let velocity = random.between(1.0, 100.0);
     let times = [(); 3].map(|()| CYCLE * random.between(2.0, 60.0));
@@ -64,25 +64,25 @@ fn drawn_limits(random: &mut Random) -> Limits {
 }
 
 /// An axis that began at rest at 0, its clock and the moves it was told.
-struct Rig {
-    axis: Axis,
-    log: Log,
-    scan: u64,
-    watch: Watch,
+pub struct Rig {
+    pub axis: Axis,
+    pub log: Log,
+    pub scan: u64,
+    pub watch: Watch,
     /// Of each move: its number, where it leads, and when it was done.
-    moves: Vec<(CommandId, f64, Option<u64>)>,
+    pub moves: Vec<(CommandId, f64, Option<u64>)>,
     /// The velocity of the last set-point of each.
-    speeds: Vec<f64>,
+    pub speeds: Vec<f64>,
     /// Moves whose ends come round, and those in the first turn.
-    turning: Vec<(CommandId, f64)>,
+    pub turning: Vec<(CommandId, f64)>,
 }
 
 impl Rig {
-    fn new(limits: Limits) -> Self {
+    pub fn new(limits: Limits) -> Self {
         Self::of(AxisConfig::new(limits))
     }
 
-    fn of(config: AxisConfig) -> Self {
+    pub fn of(config: AxisConfig) -> Self {
         let config = AxisConfig {
             start: StartState::Standstill,
             queue: QUEUE_MAX,
@@ -99,7 +99,7 @@ impl Rig {
         }
     }
 
-    fn command(&mut self, command: Command, mode: BufferMode) -> CommandId {
+    pub fn command(&mut self, command: Command, mode: BufferMode) -> CommandId {
         let request = Request {
             command,
             buffer_mode: mode.into(),
@@ -117,11 +117,11 @@ impl Rig {
     }
 
     /// A move within the limits of the axis.
-    fn move_to(&mut self, position: f64, mode: BufferMode) -> CommandId {
+    pub fn move_to(&mut self, position: f64, mode: BufferMode) -> CommandId {
         self.move_with(position, mode, Dynamics::default())
     }
 
-    fn move_with(&mut self, position: f64, mode: BufferMode, dynamics: Dynamics) -> CommandId {
+    pub fn move_with(&mut self, position: f64, mode: BufferMode, dynamics: Dynamics) -> CommandId {
         let velocity = if dynamics.velocity == 0.0 {
             self.axis.config().limits.velocity
         } else {
@@ -137,7 +137,7 @@ impl Rig {
         id
     }
 
-    fn step(&mut self) {
+    pub fn step(&mut self) {
         let before = self.axis.setpoint().position;
         let scope = &mut Scope::new(self.scan, &mut self.log);
         steps::advance(slice::from_mut(&mut self.axis), scope);
@@ -167,7 +167,7 @@ impl Rig {
     }
 
     /// Scans until it stands.
-    fn run(&mut self) -> u64 {
+    pub fn run(&mut self) -> u64 {
         while self.axis.state() != AxisState::Standstill {
             assert!(self.scan < LONGEST, "does not end");
             self.step();
@@ -694,7 +694,7 @@ fn other_dynamics_or_another_way_end_one_motion() {
 }
 
 /// Dynamics of a command within these limits: all of them, or a part.
-fn drawn_dynamics(random: &mut Random, limits: &Limits) -> Dynamics {
+pub fn drawn_dynamics(random: &mut Random, limits: &Limits) -> Dynamics {
     let part = |random: &mut Random, limit: f64| {
         if limit.is_finite() {
             limit * random.between(0.3, 1.0)

@@ -21,4 +21,5 @@ mod superimposed;
 mod superimposed_behind;
 mod superimposed_least;
 mod take_over;
+mod turns;
 mod values;

@@ -65,7 +65,8 @@ pub trait Planner {
 
     /// A move that passes `target` (u) as `passage` says, with the wanted speed or the nearest one that
     /// needs no overshoot and no reversal; `None` if there is none. The wanted speed may be above that of
-    /// `limits`, which then applies until just before the target. `before` as in [`Planner::move_to`].
+    /// `limits`, which then applies until just before the target. If it is to turn there, [`Plan::turn`] tells when it does.
+    /// `before` as in [`Planner::move_to`].
     ///
     /// # Errors
     /// [`PlanError`] if an input is not usable or the move too long.
@@ -289,6 +290,11 @@ pub trait Plan: Copy + core::fmt::Debug {
         None
     }
 
+    /// The scan in which the plan turns at the target of [`Planner::blend`]: behind that it comes to rest somewhere.
+    fn turn(&self) -> Option<u32> {
+        None
+    }
+
     /// The same motion in coordinates moved by `by` (u): every position of the plan is that much larger.
     fn shift(&mut self, by: f64);
 
@@ -493,8 +499,12 @@ impl Planner for Standard {
         limits: &Limits,
         before: &Limits,
     ) -> Result<Option<StandardPlan>, PlanError> {
-        OnlinePlan::blending(start, target, passage, limits, before, self.cycle)
-            .map(|plan| plan.map(StandardPlan::Online))
+        let plan = if passage.turn > 0.0 {
+            OnlinePlan::turning(start, target, passage.turn, limits, before, self.cycle)
+        } else {
+            OnlinePlan::blending(start, target, passage, limits, before, self.cycle)
+        };
+        Ok(plan?.map(StandardPlan::Online))
     }
 
     fn profile(
@@ -669,6 +679,13 @@ impl Plan for StandardPlan {
         match self {
             Self::Grid(_) | Self::Unequal(_) | Self::Ramp(_) | Self::Sampled(_) | Self::Profile(_) => None,
             Self::Online(plan) => Some(plan.rung()),
+        }
+    }
+
+    fn turn(&self) -> Option<u32> {
+        match self {
+            Self::Online(plan) => plan.turn(),
+            Self::Grid(_) | Self::Unequal(_) | Self::Ramp(_) | Self::Sampled(_) | Self::Profile(_) => None,
         }
     }
 

@@ -4,6 +4,7 @@
 //! standard leaves open is told in `docs/buffering.md`. The maths is the planner's.
 
 use super::commands::{Entry, REST, ROUNDING, Run, Work};
+use super::mover::scans_to_goal;
 use super::power::Reaction;
 use super::{Axis, Motion};
 use crate::{BufferMode, ErrorId, Fate, QUEUE_MAX, Scope};
@@ -53,7 +54,7 @@ impl<P: Planner> Axis<P> {
             // What was to go on as one motion with something that is another one now does not come to rest as planned.
             None if was.run.count > 0 => self.at_rest_ahead(&owner, start, before),
             planned => {
-                let moves = |plan: &P::Plan| plan.at(u64::from(plan.scans())).velocity != 0.0;
+                let moves = |plan: &P::Plan| !plan.at(scans_to_goal(plan)).is_at_rest();
                 planned.filter(|plan| was.run.count > 0 || owner.run.count > 0 || moves(plan))
             }
         };
@@ -96,6 +97,9 @@ impl<P: Planner> Axis<P> {
         passage: &Passage,
         before: &Limits,
     ) -> Option<P::Plan> {
+        if passage.turn > 0.0 {
+            return self.turned(entry, start, (end, passage), before);
+        }
         if passage.wanted <= 0.0 && !self.passes_its_end() {
             return None;
         }
@@ -134,26 +138,9 @@ impl<P: Planner> Axis<P> {
         if is_wanted && !is_braking {
             return true;
         }
+        let to_rest = self.scans_to_rest(entry, start, end, before);
         let profile = self.config.profile;
-        let planned = self.planner.move_to(profile, start, end, &entry.limits, before);
-        // Coming to rest by way of a turn is none.
-        let planned = planned
-            .ok()
-            .filter(|plan| !self.turns(plan, end > start.position));
-        let anew = planned.map_or(u64::MAX, |plan| u64::from(plan.scans()));
-        let present = match (self.mover.motion(), &self.owner) {
-            (Motion::Run { plan, elapsed, scans }, Some(owner))
-                if owner.id == entry.id
-                    && owner.run.count == entry.run.count
-                    && plan.at(*scans).velocity == 0.0 =>
-            {
-                scans.saturating_sub(*elapsed)
-            }
-            _ => u64::MAX,
-        };
-        let to_rest = anew.min(present);
-        let mut behind = self.queue.iter().filter(|next| next.id != entry.id);
-        let Some(next) = behind.nth(entry.run.count) else {
+        let Some(next) = self.next_behind(entry) else {
             return true;
         };
         let target = self.end_of_leg(next, end, end > start.position);
@@ -173,6 +160,35 @@ impl<P: Planner> Axis<P> {
         in_motion < to_rest.saturating_add(after(&Setpoint::at_rest(end)))
     }
 
+    /// Scans of `entry` until it rests at its `end`, planned anew or as planned already.
+    pub(super) fn scans_to_rest(&self, entry: &Entry, start: &Setpoint, end: f64, before: &Limits) -> u64 {
+        let planned = self
+            .planner
+            .move_to(self.config.profile, start, end, &entry.limits, before);
+        // Coming to rest by way of a turn is none.
+        let planned = planned
+            .ok()
+            .filter(|plan| start.is_at_rest() || !self.turns(plan, end > start.position));
+        let anew = planned.map_or(u64::MAX, |plan| u64::from(plan.scans()));
+        let present = match (self.mover.motion(), &self.owner) {
+            (Motion::Run { plan, elapsed, scans }, Some(owner))
+                if owner.id == entry.id
+                    && owner.run.count == entry.run.count
+                    && plan.at(*scans).is_at_rest() =>
+            {
+                scans.saturating_sub(*elapsed)
+            }
+            _ => u64::MAX,
+        };
+        anew.min(present)
+    }
+
+    /// The command behind `entry` and what is one motion with it.
+    pub(super) fn next_behind(&self, entry: &Entry) -> Option<&Entry> {
+        let mut behind = self.queue.iter().filter(|next| next.id != entry.id);
+        behind.nth(entry.run.count)
+    }
+
     /// `limits` of a motion, with the velocity its plan ends with, should that be larger (B3).
     pub(super) fn limits_of(limits: &Limits, motion: &Motion<P::Plan>) -> Limits {
         match motion {
@@ -188,7 +204,13 @@ impl<P: Planner> Axis<P> {
     /// The owner has passed its end in motion: Done, and the next takes over from the set-point (B2). Should
     /// the next have to wait for a superimposed motion, so does the owner, with the velocity it has.
     pub(super) fn pass_on(&mut self, scope: &mut Scope<'_>) {
-        self.hand_over(self.passed_end(), scope);
+        let follows = self.owner.as_ref().is_some_and(|owner| !owner.passage.rests());
+        if follows || !self.is_turning() {
+            self.hand_over(self.passed_end(), scope);
+        }
+        if self.is_turning() {
+            return self.rest_at_end(scope);
+        }
         if self.queue.is_empty()
             && self.mover.base().velocity != 0.0
             && self.goal_reached()
@@ -226,7 +248,7 @@ impl<P: Planner> Axis<P> {
 
     /// Whether the owner is to pass its end, and does.
     pub(super) fn passes_in_motion(&self) -> bool {
-        self.passes_on() && self.mover.base().velocity != 0.0
+        self.passes_on() && !self.mover.base().is_at_rest()
     }
 
     fn passes_on(&self) -> bool {
@@ -384,9 +406,9 @@ impl<P: Planner> Axis<P> {
         if self.way_barred(towards).is_some() || (runs_up && self.bars_any()) {
             return REST;
         }
-        // Reversed, or nowhere: at rest (B13). To the velocity 0 leads no direction.
+        // Reversed, or nowhere: without velocity (B13). To the velocity 0 leads no direction.
         if towards * direction <= 0.0 && velocity != 0.0 {
-            return REST;
+            return self.at_turn(leg.entry, next.entry, leg.end, direction);
         }
         let first = entry.limits.velocity;
         let wanted = match mode {
@@ -399,11 +421,16 @@ impl<P: Planner> Axis<P> {
         let passage = match exit {
             Some(exit) => {
                 let most = self.planner.entry_speed(wanted, towards.abs(), exit, limits);
-                Passage { wanted: most, most }
+                Passage {
+                    wanted: most,
+                    most,
+                    turn: 0.0,
+                }
             }
             None => Passage {
                 wanted,
                 most: f64::INFINITY,
+                turn: 0.0,
             },
         };
         self.stoppable(passage, leg.end, direction)
@@ -426,6 +453,7 @@ impl<P: Planner> Axis<P> {
         Passage {
             wanted: most,
             most: passage.most.min(most),
+            ..passage
         }
     }
 }

@@ -12,10 +12,7 @@ use standstill_planner::{CamLaw, Field, Gear, Limits, Passage, PlanError, Profil
 pub(super) const ROUNDING: f64 = 1e-9;
 
 /// A command that comes to rest at its end.
-pub(super) const REST: Passage = Passage {
-    wanted: 0.0,
-    most: 0.0,
-};
+pub(super) const REST: Passage = Passage::REST;
 
 /// What of the commands that wait is one motion with the one before them: they lead on the same way within the same limits.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -21,7 +21,7 @@
 //! | --- | --- |
 //! | [`accept`], [`queued`], [`update`], [`retrigger`] | commands: taken or refused, administrative ones that wait, new values, replaced ones |
 //! | [`dynamics`], [`factors`], [`parameters`] | limits from pins, the override, what can be written by number |
-//! | [`step`], [`replan`], [`blend`], [`run`], [`inside`], [`guard`] | the motion step and hand-over, the owner's motion changed while it runs, how fast it passes its end, chains as one motion, take-overs within the limits, no jump |
+//! | [`step`], [`replan`], [`blend`], [`run`], [`turn`], [`inside`], [`guard`] | the motion step and hand-over, the owner's motion changed while it runs, how fast it passes its end, chains as one motion, turns between commands, take-overs within the limits, no jump |
 //! | [`superimposed`] | a second motion on top |
 //! | [`coupling`] | behind a master |
 //! | [`profile`], [`torque`], [`jog`], [`homing`] | curves through points, torques, MC_Jog, the search for the reference |
@@ -64,6 +64,7 @@ mod step;
 mod superimposed;
 mod supervision;
 mod torque;
+mod turn;
 mod update;
 
 use crate::fate::Fates;

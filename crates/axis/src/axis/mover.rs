@@ -9,7 +9,7 @@ mod shaping;
 
 use super::superimposed::Layer;
 use crate::{AxisConfig, ConfigError};
-pub(super) use motion::Motion;
+pub(super) use motion::{Motion, scans_to_goal};
 use shaping::Shaping;
 use standstill_planner::{Limits, Plan, Setpoint};
 

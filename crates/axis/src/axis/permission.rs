@@ -138,9 +138,9 @@ impl<P: Planner> Axis<P> {
         let owner = self
             .owner
             .as_ref()
-            .filter(|owner| !owner.paused && owner.passage.wanted > 0.0)?;
+            .filter(|owner| !owner.paused && !owner.passage.rests())?;
         let passage = self.passage(owner, self.mover.setpoint().position, 0);
-        self.bars(true, true).filter(|_| passage.wanted <= 0.0)
+        self.bars(true, true).filter(|_| passage.rests())
     }
 
     /// Everything brakes: from now on there is one motion, with the velocity of the sum. A superimposed

@@ -157,8 +157,8 @@ impl<P: Planner> Axis<P> {
             (Motion::Run { plan, .. }, Some(Work::Through { .. })) if self.goal_reached() => {
                 return Way::of(plan.at(u64::from(plan.scans())).velocity);
             }
-            (Motion::Run { plan, .. }, Some(work)) if work.manner().place.is_some() => {
-                plan.at(u64::from(plan.scans())).position - self.mover.base().position
+            (Motion::Run { plan, scans, .. }, Some(work)) if work.manner().place.is_some() => {
+                plan.at(*scans).position - self.mover.base().position
             }
             (_, Some(_) | None) => 0.0,
         };

@@ -8,6 +8,7 @@
 //! Source: PLCopen Motion Control Part 1, sections on ContinuousUpdate and MC_SetOverride; R9, R12, B15 to B17.
 
 use super::commands::{Ending, Entry, Place, ROUNDING, Work};
+use super::mover::scans_to_goal;
 use super::superimposed::Layer;
 use super::supervision::Arrival;
 use super::{Axis, Motion};
@@ -59,7 +60,12 @@ impl<P: Planner> Axis<P> {
         let motion = match self.mover.layer().copied() {
             None => {
                 let motion = self.plan_from(&mut owner, &here, &before)?;
-                Some(self.kept_inside(&mut owner, motion, &here, &before)?)
+                let motion = self.kept_inside(&mut owner, motion, &here, &before)?;
+                if self.has_to_turn(&owner, &motion) {
+                    self.own(owner);
+                    return Ok(());
+                }
+                Some(motion)
             }
             Some(layer) => self.plan_beside(layer, &mut owner, &before)?,
         };
@@ -226,7 +232,8 @@ impl<P: Planner> Axis<P> {
     fn record_plan(&self, entry: &Entry, plan: &P::Plan, scope: &mut Scope<'_>) {
         let scope = &mut scope.with(entry.instance);
         let positioning = entry.work.manner().ending == Ending::InPosition;
-        let end = plan.at(u64::from(plan.scans()));
+        let scans = scans_to_goal(plan);
+        let end = plan.at(scans);
         let goal = match entry.goal() {
             _ if entry.halted || entry.passed => Goal::Velocity(end.velocity),
             Some(position) if end.velocity != 0.0 || !positioning => Goal::Passing {
@@ -238,7 +245,8 @@ impl<P: Planner> Axis<P> {
         };
         let planned = Event::Planned {
             goal,
-            scans: plan.scans(),
+            // A plan has at most 2^31 - 1.
+            scans: u32::try_from(scans).unwrap_or(u32::MAX),
         };
         self.record(planned, scope);
         if let Some(excess) = self.beyond_axis(plan) {

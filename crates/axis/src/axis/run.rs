@@ -8,6 +8,7 @@
 //! commands are one motion.
 
 use super::commands::{Entry, ROUNDING, Run};
+use super::mover::scans_to_goal;
 use super::supervision::Arrival;
 use super::{Axis, Motion};
 use crate::{CommandId, Fate, Scope};
@@ -122,7 +123,7 @@ impl<P: Planner> Axis<P> {
             .move_to(profile, &rest, entry.run.end, &entry.limits, before);
         let left = scans.saturating_sub(*elapsed);
         onwards.map_or(true, |onwards| {
-            u64::from(plan.scans()) <= left.saturating_add(u64::from(onwards.scans()))
+            scans_to_goal(plan) <= left.saturating_add(u64::from(onwards.scans()))
         })
     }
 
@@ -192,7 +193,7 @@ impl<P: Planner> Axis<P> {
         };
         let goal = match next.end {
             Some(end) if next.run.count > 0 => passing_scan(plan, *elapsed, end, forward),
-            _ => u64::from(plan.scans()),
+            _ => scans_to_goal(plan),
         };
         self.mover.set_goal(goal);
         if next.run.count == 0 {
@@ -245,9 +246,10 @@ fn is_past<P: Plan>(plan: &P, scan: u64, end: f64, forward: bool) -> bool {
     if forward { position >= end } else { position <= end }
 }
 
-/// The first scan after `from`, in which it is not there yet, in which `plan` is at or past `end` (u); its last if there is none.
+/// The first scan after `from`, in which it is not there yet, in which `plan` is at or past `end` (u); that of its goal if there is
+/// none.
 fn passing_scan<P: Plan>(plan: &P, from: u64, end: f64, forward: bool) -> u64 {
-    let (mut short, mut past) = (from, u64::from(plan.scans()));
+    let (mut short, mut past) = (from, scans_to_goal(plan));
     for _ in 0..HALVINGS {
         let middle = short + past.saturating_sub(short) / 2;
         if middle == short {

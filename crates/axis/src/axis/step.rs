@@ -189,9 +189,9 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A move has completed once the axis is in position; one that passes its end does not wait for that.
+    /// A move has completed once the axis is in position; one that passes its end, or turns there, does not wait for that.
     fn complete_move(&mut self, scope: &mut Scope<'_>) {
-        if self.mover.base().velocity != 0.0 || self.has_arrived() {
+        if !self.mover.base().is_at_rest() || self.has_arrived() {
             self.complete(scope);
         }
     }
@@ -199,7 +199,7 @@ impl<P: Planner> Axis<P> {
     /// The owner has completed, at rest or passing its end on to a blended successor.
     #[cold]
     pub(super) fn complete(&mut self, scope: &mut Scope<'_>) {
-        if self.mover.base().velocity != 0.0 {
+        if !self.mover.base().is_at_rest() {
             return self.pass_on(scope);
         }
         self.end_owner(Fate::Done);

@@ -56,6 +56,11 @@ impl Scale {
         duration * self.time
     }
 
+    /// A duration in seconds in the units of the kernel.
+    pub(crate) const fn moments(&self, seconds: f64) -> f64 {
+        seconds / self.time
+    }
+
     /// Spans as (seconds, input in the user's unit).
     pub(crate) fn outward<const N: usize>(&self, spans: &Spans<N>) -> impl Iterator<Item = (f64, f64)> {
         spans

@@ -25,6 +25,23 @@ pub struct Passage {
     /// The speed from which what comes after the target can still be done (u/s); exceeded only if every way
     /// without turning exceeds it.
     pub most: f64,
+    /// Where what comes after the target leads back: the acceleration (u/s^2) that both can have as they turn there, 0 or more. At 0
+    /// the target is passed, or rested at.
+    pub turn: f64,
+}
+
+impl Passage {
+    /// At rest.
+    pub const REST: Self = Self {
+        wanted: 0.0,
+        most: 0.0,
+        turn: 0.0,
+    };
+
+    /// Whether the target is neither passed nor turned at.
+    pub fn rests(&self) -> bool {
+        self.wanted <= 0.0 && self.turn <= 0.0
+    }
 }
 
 impl OnlinePlan {

@@ -10,6 +10,7 @@ use core::cell::Cell;
 use super::MAX_PIECES;
 use super::search::{CANDIDATE_SPANS, Candidate, PARTS, Search, follow, steady};
 use crate::kernel::{NOISE, ON_LIMIT, Point, Sides, Spans, zero};
+use crate::math::ceil;
 use crate::ramp::excess;
 use crate::ramp::path::{Path, Way};
 use crate::ramp::solve::{Course, RAMP_SPANS, Ramps, heading};
@@ -24,6 +25,9 @@ const CROSSINGS: u32 = 4;
 /// How far inside what is kept the nearest end acceleration stays, relative to it: on the border itself a limit would be kept
 /// to rounding only.
 const NEAREST: f64 = 1e-7;
+
+/// How well the fastest way to a turn is known, in scans.
+const ROUGHLY: f64 = 1e-3;
 
 /// How often a velocity is halved on the last rung, and an end acceleration that is refused.
 const HALVINGS: u32 = 64;
@@ -325,6 +329,67 @@ impl<'a> Ends<'a> {
         }
         spans.extend(&self.turned(&last));
         spans
+    }
+
+    /// To the end in whole scans of the length `scan`, without going back: a ramp to a velocity towards `side`, a cruise with it and
+    /// the way back from the end, turned (O21). `None` where the slowest way that is left to the end is too long.
+    ///
+    /// The least whole number of scans follows from the fastest such move, the velocity from that number (O22).
+    pub(super) fn turning(&self, start: &Setpoint, side: f64, scan: f64) -> Option<Wide> {
+        let end = self.end();
+        let both = |velocity: f64| {
+            (
+                self.ramp(self.ramps, start, velocity),
+                self.ramp(&self.back, &end, velocity),
+            )
+        };
+        let way = |first: &Spans<RAMP_SPANS>, last: &Spans<RAMP_SPANS>| {
+            follow(self.ramps, start, first).position + follow(&self.back, &end, last).position
+        };
+        // How far beyond the target it ends, with a cruise that makes it `whole` or with none.
+        let beyond = |speed: f64, whole: Option<f64>| {
+            let (first, last) = both(side * speed);
+            let moving = first.duration() + last.duration();
+            let cruise = whole.map_or(0.0, |whole| speed * (whole - moving));
+            Point {
+                at: speed,
+                value: side * (way(&first, &last) - self.target) + cruise,
+                // Of the fastest only the whole scans are asked for.
+                noise: whole.map_or(ROUGHLY * scan * speed, |whole| {
+                    0.25 * NOISE * (self.target.abs() + whole * speed)
+                }),
+                slope: f64::NAN,
+            }
+        };
+        let slowest = self.ramps.arrested(&end).abs();
+        let low = beyond(slowest, None);
+        let top = beyond(self.top.plus, None);
+        if low.value > 0.0 {
+            return None;
+        }
+        let fastest = if top.value <= 0.0 {
+            top
+        } else {
+            self.zero(low, top, |speed| beyond(speed, None))
+        };
+        let (first, last) = both(side * fastest.at);
+        let least = first.duration() + last.duration() + (-fastest.value).max(0.0) / fastest.at;
+        let whole = ceil(least / scan * (1.0 - ON_LIMIT)) * scan;
+        let (low, high) = (beyond(slowest, Some(whole)), beyond(fastest.at, Some(whole)));
+        if low.value > 0.0 {
+            return None;
+        }
+        let speed = if high.value <= 0.0 {
+            high
+        } else {
+            self.zero(low, high, |speed| beyond(speed, Some(whole)))
+        };
+        let (first, last) = both(side * speed.at);
+        let mut spans = Wide::new();
+        spans.extend(&first);
+        spans.push(whole - first.duration() - last.duration(), 0.0);
+        spans.extend(&self.turned(&last));
+        Some(spans)
     }
 
     /// Acceleration and jerk to zero as soon as can be, then as from a constant velocity.

@@ -44,12 +44,27 @@ impl Rung {
     }
 }
 
-/// A grid plan after the brake.
+/// What a plan has beyond its path.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Tail {
-    pub(super) grid: GridPlan,
-    /// The scan it begins with.
-    pub(super) begin: u32,
+pub(super) enum Tail {
+    /// A grid plan after the brake, from the scan it begins with.
+    Grid { grid: GridPlan, begin: u32 },
+    /// The scan in which it turns, and the position and acceleration there, both exactly.
+    Turn {
+        scan: u32,
+        position: f64,
+        acceleration: f64,
+    },
+}
+
+impl Tail {
+    /// A grid plan after the brake, and the scan it begins with.
+    pub(super) const fn grid(&self) -> Option<(&GridPlan, u32)> {
+        match self {
+            Self::Grid { grid, begin } => Some((grid, *begin)),
+            Self::Turn { .. } => None,
+        }
+    }
 }
 
 /// A plan as found. It is large, so it is made where it is to stay.
@@ -229,6 +244,53 @@ impl OnlinePlan {
         found.solves = ends.solves();
         found.steps = ends.steps();
         Ok(())
+    }
+
+    /// Takes `spans` for the way to a turn at the target with the `acceleration` that leads back, and has the motion come to rest behind
+    /// it; whether the way arrives.
+    pub(super) fn climb_to_turn(
+        &mut self,
+        ramps: &Ramps,
+        spans: &Wide,
+        acceleration: f64,
+        limits: &DirectedLimits,
+    ) -> bool {
+        let Self {
+            start,
+            target,
+            cycle,
+            ref mut found,
+            ..
+        } = *self;
+        let top = Sides::both(limits.lower_velocity());
+        let mut climb = Climb::new(ramps, start, target, (0.0, acceleration), top, limits, cycle);
+        found.rung = Rung::TwoPhase;
+        let side = (target - start.position).signum();
+        let arrives = climb.verify(found, spans)
+            && found.is_rounding
+            && found.path.keeps_side(side, ON_LIMIT * limits.limits.velocity);
+        let Some(scan) = scans(found.path.duration(), cycle).filter(|_| arrives) else {
+            return false;
+        };
+        let turn = Setpoint {
+            acceleration: ramps.inward(acceleration, 2),
+            ..Setpoint::default()
+        };
+        let stop = climb.search.ramp(&turn, 0.0);
+        found.path = Path::new(ramps.order());
+        let outward = ramps.scale().outward(spans).chain(ramps.scale().outward(&stop));
+        let bound = limits.limits.lower_acceleration();
+        found.path.fill(&climb.start, bound, outward);
+        found.path.pin(0.0);
+        found.excess = excess::excess(&found.path, 0.0, None, limits);
+        found.tail = Some(Tail::Turn {
+            scan,
+            position: target,
+            acceleration,
+        });
+        let rest = found.path.end_position().unwrap_or(0.0) + found.residual;
+        self.target = start.position + rest;
+        spans.len() + stop.len() <= MAX_PIECES && self.found.excess.is_none()
     }
 }
 
@@ -413,7 +475,7 @@ impl<'a> Climb<'a> {
             velocity: self.limits.velocity(target - rest),
             ..*limits
         };
-        found.tail = Some(Tail {
+        found.tail = Some(Tail::Grid {
             grid: grid_from(rest, target, &onwards, cycle).map_err(|_| too_long)?,
             begin,
         });

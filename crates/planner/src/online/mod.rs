@@ -8,6 +8,7 @@ mod blend;
 mod ends;
 mod ladder;
 mod search;
+mod turn;
 
 pub use blend::{BLEND_STEPS, Passage, entry_speed};
 pub use ladder::Rung;
@@ -204,7 +205,8 @@ impl OnlinePlan {
         plan.found.excess = plan.excess_beyond(given);
         let moving = ramp::scans(plan.found.path.duration(), cycle).ok_or(too_long)?;
         // Both counts are below 2^31, so the sum fits.
-        plan.scans = moving + plan.found.tail.map_or(0, |tail| tail.grid.scans());
+        let grid = plan.found.tail.as_ref().and_then(Tail::grid);
+        plan.scans = moving + grid.map_or(0, |(grid, _)| grid.scans());
         Ok(plan)
     }
 
@@ -382,10 +384,21 @@ impl OnlinePlan {
         if scan == 0 {
             return self.start;
         }
-        if let Some(Tail { grid, begin }) = &self.found.tail
-            && scan >= u64::from(*begin)
-        {
-            return grid.at(scan - u64::from(*begin));
+        match &self.found.tail {
+            Some(Tail::Grid { grid, begin }) if scan >= u64::from(*begin) => {
+                return grid.at(scan - u64::from(*begin));
+            }
+            &Some(Tail::Turn {
+                scan: turn,
+                position,
+                acceleration,
+            }) if scan == u64::from(turn) => {
+                return Setpoint {
+                    acceleration,
+                    ..Setpoint::at_rest(position)
+                };
+            }
+            _ => {}
         }
         let time = scan as f64 * self.cycle;
         match self.found.path.at(time) {
@@ -463,8 +476,10 @@ impl OnlinePlan {
     pub(crate) fn shift(&mut self, by: f64) {
         self.start.position += by;
         self.target += by;
-        if let Some(tail) = &mut self.found.tail {
-            tail.grid.shift(by);
+        match &mut self.found.tail {
+            Some(Tail::Grid { grid, .. }) => grid.shift(by),
+            Some(Tail::Turn { position, .. }) => *position += by,
+            None => {}
         }
     }
 
@@ -501,9 +516,22 @@ impl OnlinePlan {
 
     /// Time until the target (s), not rounded to scans but where a grid plan ends it.
     pub fn duration(&self) -> f64 {
-        match &self.found.tail {
-            Some(tail) => f64::from(tail.begin) * self.cycle + tail.grid.duration(),
+        match self.grid() {
+            Some((grid, begin)) => f64::from(begin) * self.cycle + grid.duration(),
             None => self.found.path.duration(),
+        }
+    }
+
+    /// The grid plan it has after the brake, and the scan that begins with.
+    fn grid(&self) -> Option<(&GridPlan, u32)> {
+        self.found.tail.as_ref().and_then(Tail::grid)
+    }
+
+    /// The scan in which it turns ([`OnlinePlan::turning`]).
+    pub const fn turn(&self) -> Option<u32> {
+        match self.found.tail {
+            Some(Tail::Turn { scan, .. }) => Some(scan),
+            Some(Tail::Grid { .. }) | None => None,
         }
     }
 
@@ -547,8 +575,8 @@ impl OnlinePlan {
             snap: first.snap,
         });
         // The grid plan begins with a scan.
-        let wait = self.found.tail.map_or(0.0, |tail| {
-            f64::from(tail.begin) * self.cycle - self.found.path.duration()
+        let wait = self.grid().map_or(0.0, |(_, begin)| {
+            f64::from(begin) * self.cycle - self.found.path.duration()
         });
         let wait = Segment {
             duration: wait,
@@ -559,17 +587,16 @@ impl OnlinePlan {
         };
         let wait = (wait.duration > 0.0).then_some(wait);
         let grid = self
-            .found
-            .tail
+            .grid()
             .into_iter()
-            .flat_map(|tail| tail.grid.segments().map(Segment::from));
+            .flat_map(|(grid, _)| grid.segments().map(Segment::from));
         path.chain(wait).chain(grid)
     }
 
     /// The largest magnitudes of the continuous plan, in closed form.
     pub fn peaks(&self) -> Peaks {
         let peaks = excess::peaks(&self.found.path, self.end_velocity);
-        let Some(grid) = self.found.tail.map(|tail| tail.grid.peaks()) else {
+        let Some(grid) = self.grid().map(|(grid, _)| grid.peaks()) else {
             return peaks;
         };
         Peaks {

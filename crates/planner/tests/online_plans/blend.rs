@@ -32,6 +32,7 @@ fn order_2_reaches_what_the_closed_form_does() {
         let passage = Passage {
             wanted,
             most: f64::INFINITY,
+            turn: 0.0,
         };
         let target = side * (3.0 + way);
         let plan = OnlinePlan::blending(&start, target, &passage, &limits, &limits, CYCLE).expect("a plan");
@@ -90,6 +91,7 @@ fn a_move_can_be_blended_at_any_of_its_scans() {
         let passage = Passage {
             wanted,
             most: f64::INFINITY,
+            turn: 0.0,
         };
         let Some(plan) =
             OnlinePlan::blending(&start, way, &passage, &limits, &limits, cycle).expect("a plan")
@@ -144,6 +146,7 @@ fn a_larger_speed_is_reached_at_the_end() {
         let passage = Passage {
             wanted: 80.0,
             most: f64::INFINITY,
+            turn: 0.0,
         };
         let plan = OnlinePlan::blending(&Setpoint::at_rest(0.0), 200.0, &passage, &limits, &limits, CYCLE);
         let plan = plan.expect("a plan").expect("a way");
@@ -154,8 +157,8 @@ fn a_larger_speed_is_reached_at_the_end() {
     }
 }
 
-/// A way of a few scans at the speed of the start is passed without turning, at no less than that: ramps so short are rounding
-/// beside the positions, the cruise is not.
+/// A way of a few scans at the speed of the start is passed without turning: ramps so short are rounding beside the positions, the
+/// cruise is not. The move may have a lower velocity than it begins with, and the speed to pass with may be a little lower.
 #[test]
 fn a_way_of_a_few_scans_is_passed() {
     let mut random = Random(73);
@@ -171,14 +174,20 @@ fn a_way_of_a_few_scans_is_passed() {
         };
         let target = start.position + side * speed * scans * cycle;
         let passage = Passage {
-            wanted: random.between(speed, limits.velocity),
+            wanted: random.between(0.999 * speed, limits.velocity),
             most: f64::INFINITY,
+            turn: 0.0,
         };
-        let plan = OnlinePlan::blending(&start, target, &passage, &limits, &limits, cycle).expect("valid");
+        let slower = Limits {
+            velocity: limits.velocity * random.between(0.3, 1.0),
+            ..limits
+        };
+        let own = if case % 2 == 0 { limits } else { slower };
+        let plan = OnlinePlan::blending(&start, target, &passage, &own, &limits, cycle).expect("valid");
         let plan = plan.unwrap_or_else(|| panic!("case {case}: {limits:?} {start:?} {target} {passage:?}"));
         let reached = side * plan.end_velocity();
         assert!(
-            f64::from(plan.scans()) <= scans + 1.0 && reached >= speed * (1.0 - 1e-9),
+            f64::from(plan.scans()) <= 1.1 * scans + 1.0 && reached >= 0.99 * speed,
             "case {case}: {reached} after {} scans of {scans}, {start:?}",
             plan.scans()
         );

@@ -7,4 +7,5 @@ mod ends;
 mod last;
 mod scans;
 mod shape;
+mod turn;
 use crate::ramp_plans::support;

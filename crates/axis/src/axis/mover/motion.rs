@@ -22,12 +22,12 @@ pub(in crate::axis) enum Motion<Plan> {
 }
 
 impl<P: Plan> Motion<P> {
-    /// Along `plan`, from its start.
+    /// Along `plan`, from its start to its goal.
     pub fn along(plan: P) -> Self {
         Self::Run {
             plan,
             elapsed: 0,
-            scans: u64::from(plan.scans()),
+            scans: scans_to_goal(&plan),
         }
     }
 
@@ -65,4 +65,9 @@ impl<P: Plan> Motion<P> {
             }
         }
     }
+}
+
+/// Scans of a plan to where it comes to rest, passes its target or turns at it.
+pub(in crate::axis) fn scans_to_goal<P: Plan>(plan: &P) -> u64 {
+    plan.turn().unwrap_or(plan.scans()).into()
 }

@@ -1,0 +1,135 @@
+//! Turns: where the next command leads back, the axis need not come to rest between the two.
+//!
+//! It comes to the end with velocity 0, exactly and in a scan, and with an acceleration that leads on into the next command. What
+//! stands here: which acceleration, and what becomes of a turn that nothing follows. The maths is the planner's.
+//!
+//! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; B13. `docs/buffering.md`.
+
+use super::commands::{Entry, REST, Work};
+use super::{Axis, Motion};
+use crate::{BufferMode, Scope};
+use standstill_planner::{Limits, MoveProfile, Passage, Plan, Planner, Setpoint};
+
+/// Parts of the largest acceleration that are tried at a turn: the first with which the next command need not go back.
+const PARTS: [f64; 3] = [1.0, 0.7, 0.45];
+
+impl<P: Planner> Axis<P> {
+    /// How `entry` is to pass its `end` (u), to which it leads in `direction`, if `next` leads back from there.
+    ///
+    /// Cost: with software limits one ramp.
+    pub(super) fn at_turn(&self, entry: &Entry, next: &Entry, end: Option<f64>, direction: f64) -> Passage {
+        let is_move = matches!(next.work, Work::Position(_) | Work::Distance(_));
+        if self.modulo.is_some() || !is_move || next.mode == BufferMode::Buffered {
+            return REST;
+        }
+        let most = |entry: &Entry| entry.limits.lower_acceleration();
+        let turn = most(entry).min(most(next));
+        if self.stops_behind(end, direction, turn) {
+            Passage { turn, ..REST }
+        } else {
+            REST
+        }
+    }
+
+    /// Whether the stop dynamics keep an axis inside the software limits that is stopped on its way to a turn at `end` with the
+    /// acceleration `turn`: the stop has to let go of the brake, and so leads further than the turn.
+    fn stops_behind(&self, end: Option<f64>, direction: f64, turn: f64) -> bool {
+        let (Some((min, max)), Some(end)) = (self.parameters.software_limits, end) else {
+            return true;
+        };
+        let limits = self.stop_limits();
+        let at_turn = Setpoint {
+            acceleration: direction * turn,
+            ..Setpoint::at_rest(0.0)
+        };
+        // From the turn onwards it takes longer than on the way there.
+        let stop = self.planner.ramp_to(&at_turn, 0.0, &limits, &limits);
+        stop.is_ok_and(|stop| {
+            let furthest = end + stop.at(u64::from(stop.scans())).position;
+            turn <= limits.lower_acceleration() && min <= furthest && furthest <= max
+        })
+    }
+
+    /// The plan of `entry` that turns at `end`, if what comes after is done sooner like that than with a rest.
+    ///
+    /// Cost: at most that of eight plans.
+    pub(super) fn turned(
+        &self,
+        entry: &Entry,
+        start: &Setpoint,
+        (end, passage): (f64, &Passage),
+        before: &Limits,
+    ) -> Option<P::Plan> {
+        let forward = end > start.position;
+        let next = self.next_behind(entry)?;
+        let target = self.end_of_leg(next, end, forward)?;
+        let after = |from: &Setpoint, profile| {
+            let limits = &next.limits;
+            let planned = self.planner.move_to(profile, from, target, limits, limits);
+            let is_straight = |plan: &P::Plan| from.is_at_rest() || !self.turns(plan, !forward);
+            planned
+                .ok()
+                .filter(|plan| plan.excess().is_none() && is_straight(plan))
+        };
+        let plan = PARTS.iter().find_map(|part| {
+            let turn = part * passage.turn;
+            let from = Setpoint {
+                acceleration: if forward { -turn } else { turn },
+                ..Setpoint::at_rest(end)
+            };
+            let after = after(&from, MoveProfile::Online)?;
+            let passage = Passage { turn, ..*passage };
+            let planned = self.planner.blend(start, end, &passage, &entry.limits, before);
+            let plan = planned.ok().flatten()?;
+            let is_kept = self.beyond_bound(&plan).is_none();
+            is_kept.then_some((plan, after.scans()))
+        });
+        let (plan, scans) = plan?;
+        let rest = after(&Setpoint::at_rest(end), self.config.profile);
+        let with_rest = rest.map_or(u64::MAX, |after| {
+            let to_rest = self.scans_to_rest(entry, start, end, before);
+            to_rest.saturating_add(after.scans().into())
+        });
+        let turning = u64::from(plan.turn()?).saturating_add(scans.into());
+        (turning < with_rest).then_some(plan)
+    }
+
+    /// Whether it is in the scan in which it turns at the end of its owner.
+    pub(super) fn is_turning(&self) -> bool {
+        self.goal_reached() && !self.is_held_up() && self.is_to_turn()
+    }
+
+    /// Whether the goal of the motion is a turn.
+    fn is_to_turn(&self) -> bool {
+        let Motion::Run { plan, scans, .. } = self.mover.motion() else {
+            return false;
+        };
+        plan.turn().map(u64::from) == Some(*scans)
+    }
+
+    /// Whether `owner`, planned anew along `motion`, would come to its end only by way of going back, and turns there as planned: it
+    /// is too late for anything else, so it goes on as planned.
+    pub(super) fn has_to_turn(&self, owner: &Entry, motion: &Motion<P::Plan>) -> bool {
+        let (Motion::Run { plan, .. }, Some(end)) = (motion, owner.end) else {
+            return false;
+        };
+        let is_same = |was: &Entry| was.id == owner.id && was.end == owner.end && !was.halted;
+        self.is_to_turn()
+            && !self.goal_reached()
+            && !owner.halted
+            && self.owner.as_ref().is_some_and(is_same)
+            && plan.turn().is_none()
+            && self.turns(plan, end > self.mover.setpoint().position)
+    }
+
+    /// Nothing takes over where it turns: it goes back to the end and comes to rest there.
+    #[cold]
+    pub(super) fn rest_at_end(&mut self, scope: &mut Scope<'_>) {
+        if let Some(owner) = self.owner
+            && self.replan(owner, scope).is_err()
+        {
+            // It comes to rest behind the turn as planned.
+            self.halt_behind_end(scope);
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! Moves that turn at their target: in a scan, exactly there, with the acceleration that leads back.
+
+use super::support::{self, Random, integrate};
+use standstill_planner::kernel::MAX_STEPS;
+use standstill_planner::{DirectedLimits, Goal, Limits, OnlinePlan, Order, Setpoint};
+
+struct Seen {
+    turned: u32,
+    solves: u32,
+    steps: u32,
+    /// Scans more than the shortest of all candidates takes, in part of them.
+    longer: Vec<f64>,
+}
+
+/// Turns of moves from rest and from any state of a move towards the same target.
+fn turns(seed: u64, count: usize) -> Seen {
+    let mut random = Random(seed);
+    let mut all = Seen {
+        turned: 0,
+        solves: 0,
+        steps: 0,
+        longer: Vec::new(),
+    };
+    for case in 0..count {
+        let order = [Order::Three, Order::Four][case % 2];
+        let limits = support::limits(&mut random, order);
+        let cycle = limits.velocity / limits.acceleration * random.log(0.01, 0.2);
+        let side = random.sign();
+        let way = side * limits.velocity * cycle * random.log(3.0, 300.0);
+        let rest = Setpoint::at_rest(way * random.between(-3.0, 3.0));
+        let target = rest.position + way;
+        let first = OnlinePlan::new(&rest, target, &limits, &limits, cycle).expect("a plan");
+        let start = match case % 3 {
+            0 => rest,
+            _ => first.at(random.below(u64::from(first.scans()))),
+        };
+        let acceleration = limits.lower_acceleration() * random.between(0.05, 1.0);
+        let context = || format!("case {case}: {start:?} -> {target} {acceleration} {limits:?} {cycle}");
+        let plan = OnlinePlan::turning(&start, target, acceleration, &limits, &limits, cycle)
+            .unwrap_or_else(|error| panic!("{error} {}", context()));
+        let Some(plan) = plan else { continue };
+        all.turned += 1;
+        all.solves = all.solves.max(plan.solves());
+        all.steps = all.steps.max(plan.steps());
+        let last = u64::from(plan.turn().expect("a turn"));
+        let end = Setpoint {
+            acceleration: -side * acceleration,
+            ..Setpoint::at_rest(target)
+        };
+        assert_eq!(plan.at(last), end, "{}", context());
+        let mut before = start.position;
+        for scan in 1..=last {
+            let here = plan.at(scan).position;
+            let resolved = 1e-9 * way.abs();
+            assert!(side * (here - before) >= -resolved, "goes back, {}", context());
+            assert!(side * (target - here) >= 0.0, "goes too far, {}", context());
+            before = here;
+        }
+        let behind = plan.at(u64::from(plan.scans()));
+        assert_eq!(behind, Setpoint::at_rest(plan.target()), "{}", context());
+        assert!(side * (target - behind.position) > 0.0, "{}", context());
+        kept(&start, &plan, &limits, &context);
+        let goal = Goal {
+            position: target,
+            velocity: 0.0,
+            acceleration: end.acceleration,
+        };
+        let directed = DirectedLimits::from(limits);
+        if let Ok(shortest) = OnlinePlan::reaching(&start, &goal, &directed, &directed, cycle) {
+            all.longer.push((last as f64 - 1.0) * cycle / shortest.duration());
+        }
+    }
+    all
+}
+
+/// Every limit holds on the whole way.
+fn kept(start: &Setpoint, plan: &OnlinePlan, limits: &Limits, context: &dyn Fn() -> String) {
+    let origin = Setpoint {
+        position: 0.0,
+        ..*start
+    };
+    let order = limits.order();
+    let seen = integrate(&origin, plan, order);
+    let inside = |value: f64, bound: f64| value <= bound * (1.0 + 1e-9);
+    assert!(
+        plan.excess().is_none()
+            && inside(seen.v_max, limits.velocity)
+            && inside(-seen.v_min, limits.velocity)
+            && inside(seen.speeding, limits.acceleration)
+            && inside(seen.slowing, limits.deceleration)
+            && inside(seen.jerk, limits.jerk)
+            && (order < Order::Four || inside(seen.snap, limits.snap)),
+        "{} {seen:?} {plan:?}",
+        context()
+    );
+}
+
+#[test]
+fn turns_are_in_a_scan_exactly_on_their_target_within_the_limits() {
+    let mut seen = turns(41, 3_000);
+    seen.longer.sort_by(f64::total_cmp);
+    let at = |share: f64| seen.longer[(share * (seen.longer.len() - 1) as f64) as usize];
+    let (turned, steps, solves) = (seen.turned, seen.steps, seen.solves);
+    println!("{turned} turned, at most {solves} ramps, {steps} steps");
+    println!(
+        "beside the shortest: {:.3} {:.3} {:.3}",
+        at(0.5),
+        at(0.95),
+        at(1.0)
+    );
+    assert!(turned > 1_000 && steps <= MAX_STEPS);
+}
+
+#[test]
+fn at_order_2_nothing_is_gained_by_a_turn() {
+    let limits = Limits {
+        velocity: 1.0,
+        acceleration: 10.0,
+        deceleration: 10.0,
+        ..Limits::NONE
+    };
+    let rest = Setpoint::at_rest(0.0);
+    let plan = OnlinePlan::turning(&rest, 1.0, 10.0, &limits, &limits, 1e-3);
+    assert_eq!(plan, Ok(None));
+}
