@@ -2,6 +2,7 @@
 
 mod blending;
 mod chains;
+mod chains_least;
 mod changing;
 mod coordinates;
 mod coupled;
