@@ -89,6 +89,11 @@ impl IdealDrive {
         Ok(())
     }
 
+    /// The scans from a command to the actual position.
+    pub fn delay(&self) -> usize {
+        self.delay
+    }
+
     /// Whether the power stage is on.
     pub fn is_enabled(&self) -> bool {
         self.enabled

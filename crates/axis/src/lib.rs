@@ -29,7 +29,7 @@ mod state;
 pub mod steps;
 
 pub use axis::{
-    Axis, Beside, CamFit, CamLaid, CamTrack, Coupled, Factors, MotionState, Outlook, Pace, Permission,
+    Axis, Beside, CamFit, CamLaid, CamTrack, Coupled, Factors, Going, MotionState, Outlook, Pace, Permission,
     Profile, ProfileRow, TouchProbe, Way, WorkKind,
 };
 pub use cam_store::{

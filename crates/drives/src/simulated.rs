@@ -324,6 +324,14 @@ impl SimulatedDrive {
         matches!(self.kind, Kind::Cia402(_))
     }
 
+    /// The scans from command to actual position, if it is an ideal drive: what it does then depends on no earlier command.
+    pub fn delay(&self) -> Option<usize> {
+        match &self.kind {
+            Kind::Ideal(drive) => Some(drive.delay()),
+            Kind::Cia402(_) | Kind::Plant(_) => None,
+        }
+    }
+
     /// Raises a drive fault with the drive's own `code`.
     pub fn fail(&mut self, code: u16) {
         match &mut self.kind {

@@ -52,6 +52,15 @@ impl Mode {
     }
 }
 
+/// What a scan without programs serves, see [`Executor::coast`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Served {
+    /// Axes and drives.
+    Drives,
+    /// Axes alone: feedback is not read, and drives get no command.
+    Axes,
+}
+
 /// The instant given to a scan is earlier than that of the last scan. Nothing was executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimeRanBackwards {
@@ -236,6 +245,73 @@ impl Executor {
             overruns: work.overruns,
             mode: self.mode,
         })
+    }
+
+    /// At most `scans` further scans, a base tick apart, in which no program runs, because none of them would do anything
+    /// but what it did in the scan before. That is the host's to know, which is asked after each ([`Programs::idled`]). Axes
+    /// and drives are served as in every scan, or axes alone: actual positions are then those of drives that stand still, and so
+    /// they are for the host to mend. Returns how many scans were done: none unless all tasks are due in every tick.
+    pub fn coast<P: Planner, D: Drive>(
+        &mut self,
+        scans: u64,
+        served: Served,
+        programs: &mut impl Programs<P, D>,
+        machine: &mut Machine<P, D>,
+    ) -> u64 {
+        let Some(mut now_ns) = self.previous_ns.filter(|now| self.is_even(*now)) else {
+            return 0;
+        };
+        let mut done = 0;
+        while done < scans {
+            now_ns = now_ns.saturating_add_unsigned(self.base_tick_ns.get());
+            let time = ScanTime {
+                scan: self.next_scan.saturating_add(done),
+                now_ns,
+            };
+            if served == Served::Drives {
+                machine.read_feedback(time);
+                programs.idle(time, machine);
+            }
+            machine.advance(time);
+            if served == Served::Drives {
+                machine.publish(time);
+            }
+            done += 1;
+            if !programs.idled(time, machine) {
+                break;
+            }
+        }
+        self.pass(done);
+        done
+    }
+
+    /// The same where axes and drives rest, too, so that no scan changes anything: nothing is called, and time passes.
+    /// Returns how many scans have passed.
+    pub fn stand(&mut self, scans: u64) -> u64 {
+        let is_even = self.previous_ns.is_some_and(|now_ns| self.is_even(now_ns));
+        let scans = if is_even { scans } else { 0 };
+        self.pass(scans);
+        scans
+    }
+
+    /// Whether programs run in every tick, and the last scan, at this instant, was neither early nor late.
+    fn is_even(&self, now_ns: i64) -> bool {
+        let Some((start_ns, tick)) = self.grid else {
+            return false;
+        };
+        let is_on_tick = Some(now_ns.abs_diff(start_ns)) == tick.checked_mul(self.base_tick_ns.get());
+        let are_even = self.tasks.iter().all(|task| task.is_even(tick));
+        is_on_tick && are_even && self.mode == Mode::Running && self.free_from <= tick
+    }
+
+    /// So many scans were done, a base tick apart.
+    fn pass(&mut self, scans: u64) {
+        let ns = self.base_tick_ns.get().saturating_mul(scans);
+        self.next_scan = self.next_scan.saturating_add(scans);
+        self.previous_ns = self.previous_ns.map(|now| now.saturating_add_unsigned(ns));
+        self.grid = self.grid.map(|(start, tick)| (start, tick.saturating_add(scans)));
+        self.tasks.iter_mut().for_each(|task| task.go_on(scans));
+        self.free_from = self.free_from.saturating_add(scans);
     }
 
     /// Whether programs run.

@@ -99,4 +99,12 @@ pub trait Programs<P: Planner, D: Drive> {
 
     /// The scan is over; set-points are those the drives were given.
     fn published(&mut self, _time: ScanTime, _machine: &Machine<P, D>) {}
+
+    /// In a scan of [`crate::Executor::coast`], instead of all that is called between feedback and the motion step.
+    fn idle(&mut self, _time: ScanTime, _machine: &mut Machine<P, D>) {}
+
+    /// The same after the scan. Returns whether programs may be left out of the next scan, too.
+    fn idled(&mut self, _time: ScanTime, _machine: &Machine<P, D>) -> bool {
+        false
+    }
 }

@@ -27,6 +27,7 @@
 //! | [`profile`], [`torque`], [`jog`], [`homing`] | curves through points, torques, MC_Jog, the search for the reference |
 //! | [`power`], [`permission`], [`limit_switches`], [`software_limits`], [`supervision`] | feedback, power, faults and resets; directions, switches, limits, following error |
 //! | [`coordinates`], [`reading`], [`outputs`], [`probe`] | moved coordinates, values for reading blocks, inputs and outputs, positions at edges |
+//! | [`going`] | scans in which nothing but the set-point changes |
 
 mod accept;
 mod blend;
@@ -38,6 +39,7 @@ mod factors;
 mod failure;
 mod feedback;
 mod frame;
+mod going;
 mod guard;
 mod homing;
 mod inside;
@@ -80,6 +82,7 @@ pub(crate) use coupling::{Future, Part, Seen, Turn, Values, View};
 pub use factors::Factors;
 use feedback::Feedback;
 use frame::Frame;
+pub use going::Going;
 use modulo::Modulo;
 use mover::{Motion, Mover};
 pub use outputs::CamTrack;

@@ -41,7 +41,7 @@ impl<P: Planner> Axis<P> {
 
     /// An endless motion has come to its velocity, or is about to, and nobody waits for that.
     #[inline]
-    fn is_cruising(&self) -> bool {
+    pub(super) fn is_cruising(&self) -> bool {
         let is_endless = self.owner.as_ref().is_some_and(Entry::is_endless);
         is_endless && self.queue.is_empty() && !self.is_held_up()
     }

@@ -66,6 +66,8 @@ pub struct Host {
     pub act: Act,
     /// SINGLE by scan and task.
     pub single: fn(u64, TaskId) -> bool,
+    /// Whether programs may be left out further.
+    pub idles: bool,
     scan: u64,
     pub failed: Vec<Fault>,
 }
@@ -117,6 +119,15 @@ impl Programs<Standard, TapeDrive> for Host {
     fn published(&mut self, _time: ScanTime, _machine: &TestMachine) {
         self.note("published".into());
     }
+
+    fn idle(&mut self, time: ScanTime, _machine: &mut TestMachine) {
+        self.note(format!("idle {}", time.scan));
+    }
+
+    fn idled(&mut self, time: ScanTime, _machine: &TestMachine) -> bool {
+        self.note(format!("idled {}", time.now_ns));
+        self.idles
+    }
 }
 
 /// Executor, machine and host together.
@@ -152,6 +163,7 @@ impl Rig {
                 script: Box::new(|_, _| Ok(0)),
                 act: |_, _| Ok(()),
                 single: |_, _| false,
+                idles: true,
                 scan: 0,
                 failed: Vec::new(),
             },

@@ -1,0 +1,75 @@
+//! Scans without programs.
+
+use crate::common::{MS, Rig, task};
+use standstill_scan::{ProgramConfig, Served, TaskId};
+
+/// A task in every tick, and one axis.
+fn rig() -> Rig {
+    Rig::new(
+        &[task("main", 1, 0)],
+        &[ProgramConfig::with("main", "main")],
+        &["X"],
+    )
+}
+
+fn coast(rig: &mut Rig, scans: u64, served: Served) -> u64 {
+    rig.executor.coast(scans, served, &mut rig.host, &mut rig.machine)
+}
+
+#[test]
+fn they_count_as_scans_with_programs() {
+    let (mut one, mut other) = (rig(), rig());
+    one.runs(0..20);
+    other.runs(0..5);
+    assert_eq!(coast(&mut other, 7, Served::Drives), 7);
+    assert_eq!(other.executor.stand(3), 3);
+    assert_eq!(coast(&mut other, 5, Served::Axes), 5);
+    assert_eq!(
+        one.executor.counts(TaskId(0)),
+        other.executor.counts(TaskId(0)),
+        "as often as if it had run"
+    );
+    for tick in [20, 21, 25] {
+        let now_ns = tick * MS as i64;
+        assert_eq!(one.scan_at(now_ns), other.scan_at(now_ns));
+    }
+}
+
+#[test]
+fn drives_are_served_in_the_order_of_a_scan_or_left_alone() {
+    let mut rig = rig();
+    rig.runs(0..2);
+    rig.taken_tape();
+    coast(&mut rig, 1, Served::Drives);
+    let served = ["read X", "idle 2", "write X", "idled 2000000"];
+    assert_eq!(rig.taken_tape(), served);
+    coast(&mut rig, 1, Served::Axes);
+    assert_eq!(rig.taken_tape(), ["idled 3000000"]);
+}
+
+#[test]
+fn they_end_when_the_host_says_so() {
+    let mut rig = rig();
+    rig.runs(0..2);
+    rig.host.idles = false;
+    assert_eq!(coast(&mut rig, 9, Served::Drives), 1);
+    assert_eq!(coast(&mut rig, 0, Served::Drives), 0);
+}
+
+#[test]
+fn there_are_none_where_a_program_is_not_due_in_every_tick() {
+    let mut before = rig();
+    assert_eq!(coast(&mut before, 9, Served::Drives), 0, "nothing has run yet");
+    let mut slow = Rig::of_tasks(&[task("fast", 1, 0), task("slow", 2, 0)]);
+    slow.runs(0..4);
+    assert_eq!(coast(&mut slow, 9, Served::Drives), 0);
+    let mut late = rig();
+    late.runs(0..4);
+    late.scan_at(4 * MS as i64 + 1);
+    assert_eq!(coast(&mut late, 9, Served::Drives), 0, "the last scan was late");
+    assert_eq!(late.executor.stand(9), 0);
+    let mut stopped = rig();
+    stopped.runs(0..4);
+    stopped.executor.stop(&mut stopped.host, &mut stopped.machine);
+    assert_eq!(coast(&mut stopped, 9, Served::Drives), 0);
+}
