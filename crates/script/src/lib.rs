@@ -40,8 +40,8 @@ pub use read::{
     CELLS_MAX, ENTITIES_MAX, GUEST_MEMORY, LOOKS_MAX, SCANS_MAX, VERSION, read, read_with, read_with_programs,
 };
 pub use run::{
-    Change, Counted, Ordered, Outcome, ROWS_MAX, RecordingError, RunError, Session, Shown, judge_recording,
-    keeps_rows, run, run_with,
+    Ahead, Change, Counted, Ordered, Outcome, ROWS_MAX, RecordingError, RunError, Session, Shown,
+    judge_recording, keeps_rows, run, run_with,
 };
 pub use schema::schema;
 pub use schema_machine::machine_schema;

@@ -5,7 +5,7 @@
 use serde_json::{Value, json};
 use standstill_script::model::Script;
 use standstill_script::suite::{Allowed, find, read_given, read_text};
-use standstill_script::{Outcome, SCANS_MAX, Session, Verdict, keeps_rows, run};
+use standstill_script::{Ahead, Outcome, SCANS_MAX, Session, Verdict, keeps_rows};
 use standstill_testkit::Random;
 use standstill_trace::{Event, EventLog, Extremes, digest, events, extremes_text};
 use std::path::Path;
@@ -21,7 +21,9 @@ struct Told {
 }
 
 fn whole(script: &Script) -> Option<Told> {
-    let Outcome { trace, verdicts, .. } = run(script).ok()?;
+    let mut session = Session::new(script).ok()?;
+    while session.advance().ok()? {}
+    let Outcome { trace, verdicts, .. } = session.finish();
     Some(Told {
         verdicts,
         scans: trace.scans(),
@@ -33,12 +35,35 @@ fn whole(script: &Script) -> Option<Told> {
 
 /// The same, rows being forgotten after every `every` scans.
 fn streamed(script: &Script, every: u64) -> Option<Told> {
+    streamed_by(script, every, |session, _| session.advance().ok().map(u64::from))
+}
+
+/// The same, with programs left out where they rest.
+fn streamed_far(script: &Script, every: u64) -> Option<Told> {
+    streamed_by(script, every, |session, room| {
+        match session.advance_far(room).ok()? {
+            Ahead::Scans(scans) => Some(scans),
+            Ahead::Broken => panic!("nothing in a scan test is unforeseen"),
+        }
+    })
+}
+
+/// `advance` is told how many scans it may do at most.
+fn streamed_by<'s>(
+    script: &'s Script,
+    every: u64,
+    advance: impl Fn(&mut Session<'s>, u64) -> Option<u64>,
+) -> Option<Told> {
     let mut session = Session::long(script).ok()?;
     let mut digest = digest::Whole::default();
     let mut extremes = Extremes::new(session.trace());
     let mut log = EventLog::default();
     let mut events = Vec::new();
-    while session.advance().ok()? {
+    loop {
+        let room = every - session.scans() % every;
+        if advance(&mut session, room)? == 0 {
+            break;
+        }
         if session.scans() % every == 0 || session.is_over() {
             digest.look(session.trace());
             extremes.look(session.trace());
@@ -118,6 +143,12 @@ fn claims_are_judged_the_same_with_few_rows_at_a_time() {
             streamed(&script, every),
             expected,
             "{} by {every}",
+            path.display()
+        );
+        assert_eq!(
+            streamed_far(&script, every),
+            expected,
+            "{} far by {every}",
             path.display()
         );
         assert_eq!(

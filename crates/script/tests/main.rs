@@ -5,6 +5,7 @@ mod claims;
 mod coupling_rows;
 mod couplings;
 mod empty_tests;
+mod far_runs;
 mod follows;
 mod hints;
 mod long_runs;

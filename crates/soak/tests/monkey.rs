@@ -31,6 +31,36 @@ fn minutes_repeat_an_episode_and_are_a_script() {
     assert_ne!(play(3, 5, 600).seen.digest, play(4, 5, 600).seen.digest);
 }
 
+/// A run that leaves programs out of scans in which they would do nothing new has the same rows.
+#[test]
+fn programs_that_rest_may_be_left_out() {
+    use standstill_script::{Ahead, Session};
+    for number in 0..40 {
+        let text = record(5, number, 400).2.script(None);
+        let script = standstill_script::read(&text, "random.scan.json", &[])
+            .unwrap_or_else(|error| panic!("{error:?}\n{text}"));
+        let mut by_scan = Session::new(&script).expect("a run");
+        while by_scan.advance().expect("a scan") {}
+        let mut far = Session::new(&script).expect("a run");
+        loop {
+            match far.advance_far(100).expect("a scan") {
+                Ahead::Broken => panic!("episode {number} was left out too long"),
+                Ahead::Scans(0) => break,
+                Ahead::Scans(_) => {}
+            }
+        }
+        let (by_scan, far) = (by_scan.finish(), far.finish());
+        assert_eq!(far.trace.scans(), by_scan.trace.scans());
+        for scan in 0..far.trace.scans() {
+            // By their text: a NaN is no other than itself.
+            let row =
+                |of: &standstill_script::Outcome| format!("{:?}", of.trace.row(scan).collect::<Vec<_>>());
+            assert_eq!(row(&far), row(&by_scan), "episode {number}, scan {scan}");
+        }
+        assert_eq!(far.trace.notes(), by_scan.trace.notes(), "episode {number}");
+    }
+}
+
 /// A block of the standard or of ours that moves something is played, and the rules know what it is: a new one that nobody told
 /// them of fails here.
 #[test]

@@ -35,36 +35,50 @@ impl Figure {
     /// Reads the rows that the trace has got since the last call.
     pub(crate) fn look(&mut self, trace: &Trace) {
         let Some(column) = self.column else { return };
-        for scan in self.scans..trace.scans() {
-            let Some(cell) = trace.cell(scan, column) else {
-                continue;
-            };
-            match (self.take, cell) {
-                (Take::First | Take::Count, Cell::Bool(true)) => {
-                    self.first.get_or_insert(scan);
-                    self.count += 1;
+        let next = self.scans..trace.scans();
+        self.scans = next.end;
+        // From here on all are the same.
+        let same = trace.same_since(column).clamp(next.start, next.end);
+        match self.take {
+            Take::Last => self.last = last(trace, column).map(cell_text).unwrap_or_default(),
+            Take::First | Take::Count => {
+                for scan in next.start..same {
+                    if trace.cell(scan, column) == Some(Cell::Bool(true)) {
+                        self.first.get_or_insert(scan);
+                        self.count += 1;
+                    }
                 }
-                (Take::Max, cell) => self.rank(cell, |value| value),
-                (Take::Min, cell) => self.rank(cell, |value| -value),
-                (Take::AbsMax, cell) => self.rank(magnitude(cell), |value| value),
-                (Take::Last | Take::First | Take::Count, _) => {}
+                if same < next.end && last(trace, column) == Some(Cell::Bool(true)) {
+                    self.first.get_or_insert(same);
+                    self.count += next.end - same;
+                }
+            }
+            Take::Max | Take::Min | Take::AbsMax => {
+                let rows = next.start..next.end.min(same + 1);
+                let numbers = trace.reals_from(column, rows.start).take(rows.len());
+                if numbers.len() > 0 {
+                    numbers.for_each(|number| self.rank(Cell::Real(number)));
+                } else {
+                    // A column of whole numbers.
+                    rows.filter_map(|scan| trace.cell(scan, column))
+                        .for_each(|cell| self.rank(cell));
+                }
             }
         }
-        self.scans = trace.scans();
-        let last = self
-            .scans
-            .checked_sub(1)
-            .and_then(|scan| trace.cell(scan, column));
-        self.last = last.map(cell_text).unwrap_or_default();
     }
 
     /// A NaN ranks before all, so that it is not overlooked.
-    fn rank(&mut self, cell: Cell<'_>, rank: impl Fn(f64) -> f64) {
-        let (value, cell) = match cell {
-            Cell::Real(value) => (rank(value), Cell::Real(value)),
-            Cell::Integer(value) => (rank(value as f64), Cell::Integer(value)),
+    fn rank(&mut self, cell: Cell<'_>) {
+        let (value, cell) = match if self.take == Take::AbsMax {
+            magnitude(cell)
+        } else {
+            cell
+        } {
+            Cell::Real(value) => (value, Cell::Real(value)),
+            Cell::Integer(value) => (value as f64, Cell::Integer(value)),
             Cell::Bool(_) | Cell::Name(_) => return,
         };
+        let value = if self.take == Take::Min { -value } else { value };
         let beaten = |(best, _): (f64, Cell<'_>)| !best.is_nan() && (value.is_nan() || value > best);
         if self.best.is_none_or(beaten) {
             self.best = Some((value, cell));
@@ -83,6 +97,11 @@ impl Figure {
             Take::Count => self.count.to_string(),
         }
     }
+}
+
+/// The cell of the last row.
+fn last(trace: &Trace, column: usize) -> Option<Cell<'_>> {
+    trace.cell(trace.scans().checked_sub(1)?, column)
 }
 
 fn magnitude(cell: Cell<'_>) -> Cell<'_> {

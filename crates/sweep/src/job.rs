@@ -4,7 +4,7 @@ use crate::figure::Figure;
 use standstill_script::model::Script;
 use standstill_script::suite::{self, Allowed, SuiteError, Texts};
 use standstill_script::sweep::Sweep;
-use standstill_script::{Failure, Outcome, RunError, ScriptError, Session, Verdict, read_sweep, run};
+use standstill_script::{Ahead, Failure, Outcome, RunError, ScriptError, Session, Verdict, read_sweep, run};
 use standstill_trace::{Extreme, Extremes, digest, shortest};
 use std::path::{Path, PathBuf};
 
@@ -213,27 +213,40 @@ impl Job {
     }
 
     /// Runs a script and takes the values for a table. If no digest is in the table, only the columns
-    /// that are read are written, and a case that fails is run again with all of them. The texts about
-    /// the failure are then the same.
+    /// that are read are written.
     fn ran(&self, script: &Script) -> Result<Ran, RunError> {
-        if !self.sweep.has_digest {
-            let ran = self.take(Session::lean(script, &self.signals)?)?;
-            if ran.failure().is_none() {
-                return Ok(ran);
-            }
+        let session = || match self.sweep.has_digest {
+            true => Session::new(script),
+            false => Session::lean(script, &self.signals),
+        };
+        if let Some(ran) = self.take(session()?, Session::advance_far)? {
+            return Ok(ran);
         }
-        self.take(Session::new(script)?)
+        let by_scan = |session: &mut Session<'_>, _| Ok(Ahead::Scans(session.advance()?.into()));
+        let ran = self.take(session()?, by_scan)?;
+        ran.ok_or_else(|| RunError::Internal("a run scan by scan did not go on".to_owned()))
     }
 
-    /// Takes the values for a table; rows are dropped on the way.
-    fn take(&self, mut session: Session<'_>) -> Result<Ran, RunError> {
+    /// Takes the values for a table; rows are dropped on the way. None if `advance`, which is asked for at most so many scans,
+    /// cannot run this script.
+    fn take<'s>(
+        &self,
+        mut session: Session<'s>,
+        advance: impl Fn(&mut Session<'s>, u64) -> Result<Ahead, RunError>,
+    ) -> Result<Option<Ran>, RunError> {
         let mut digest = self.sweep.has_digest.then(digest::Whole::default);
         let mut extremes = Extremes::new(session.trace());
         let measures = self.sweep.measures().iter();
         let mut figures: Vec<Figure> = measures
             .map(|measure| Figure::new(measure, session.trace()))
             .collect();
-        while session.advance()? {
+        loop {
+            let room = ROWS_HELD - session.scans() % ROWS_HELD;
+            match advance(&mut session, room)? {
+                Ahead::Broken => return Ok(None),
+                Ahead::Scans(0) => break,
+                Ahead::Scans(_) => {}
+            }
             if session.scans() % ROWS_HELD == 0 || session.is_over() {
                 let trace = session.trace();
                 if let Some(digest) = &mut digest {
@@ -245,13 +258,13 @@ impl Job {
             }
         }
         let Outcome { trace, verdicts, .. } = session.finish();
-        Ok(Ran {
+        Ok(Some(Ran {
             scans: trace.scans(),
             verdicts,
             extremes: extremes.all().collect(),
             figures: figures.iter().map(Figure::text).collect(),
             digest: digest.map(|digest| digest.finish()),
-        })
+        }))
     }
 
     /// Whether the row has a field for every column, and the parameters of this case.

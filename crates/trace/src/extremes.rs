@@ -1,6 +1,7 @@
 //! The extremes of an axis, and the part of its limits that it used.
 
 use std::fmt::Write;
+use std::ops::RangeInclusive;
 
 use crate::column::Kind;
 use crate::header::Axis;
@@ -61,10 +62,8 @@ impl Extremes {
 
     /// Reads the rows that the trace has got since the last call.
     pub fn look(&mut self, trace: &Trace) {
-        for (scan, row) in (self.scans..).zip(trace.words_from(self.scans)) {
-            for axis in &mut self.axes {
-                axis.look(scan, row);
-            }
+        for axis in &mut self.axes {
+            axis.look(trace, self.scans);
         }
         self.scans = trace.scans();
     }
@@ -161,33 +160,27 @@ impl OfAxis {
         self.axis.limits.acceleration == self.axis.limits.deceleration
     }
 
-    fn look(&mut self, scan: usize, row: &[u64]) {
-        let value = |column: Option<usize>| Some(f64::from_bits(*row.get(column?)?));
-        let [position, velocity, acceleration, jerk, snap] = self.columns.map(value);
-        if let Some(position) = position {
-            self.least.look(scan, -position);
-            self.greatest.look(scan, position);
-        }
-        let magnitudes = [
-            (&mut self.velocity, velocity),
-            (&mut self.jerk, jerk),
-            (&mut self.snap, snap),
-        ];
-        for (peak, value) in magnitudes {
-            if let Some(value) = value {
-                peak.look(scan, value.abs());
-            }
-        }
-        match (velocity, acceleration) {
-            (_, Some(acceleration)) if self.has_one_limit() => {
-                self.acceleration.look(scan, acceleration.abs());
-            }
-            (Some(velocity), Some(acceleration)) => {
+    /// Reads the rows from a scan on.
+    fn look(&mut self, trace: &Trace, from: usize) {
+        let [position, velocity, acceleration, jerk, snap] = self.columns;
+        self.least
+            .look(numbers(trace, from, position), |position| -position);
+        self.greatest
+            .look(numbers(trace, from, position), |position| position);
+        self.velocity.look(numbers(trace, from, velocity), f64::abs);
+        self.jerk.look(numbers(trace, from, jerk), f64::abs);
+        self.snap.look(numbers(trace, from, snap), f64::abs);
+        if self.has_one_limit() {
+            self.acceleration
+                .look(numbers(trace, from, acceleration), f64::abs);
+        } else if let (Some(velocity), Some(acceleration)) = (velocity, acceleration) {
+            let velocities = trace.reals_from(velocity, from);
+            let rows = (from.max(trace.first())..).zip(velocities.zip(trace.reals_from(acceleration, from)));
+            for (scan, (velocity, acceleration)) in rows {
                 let [speeding, slowing] = by_sense(velocity, acceleration);
-                self.acceleration.look(scan, speeding);
-                self.deceleration.look(scan, slowing);
+                self.acceleration.look([(scan, speeding)], |size| size);
+                self.deceleration.look([(scan, slowing)], |size| size);
             }
-            _ => {}
         }
     }
 
@@ -216,6 +209,15 @@ impl OfAxis {
     }
 }
 
+/// The numbers of a column from a scan on, without those at the end that are all the same but the first of them.
+fn numbers(trace: &Trace, from: usize, column: Option<usize>) -> impl Iterator<Item = (usize, f64)> {
+    let scans = match column {
+        Some(column) => from.max(trace.first())..=trace.same_since(column).max(from),
+        None => RangeInclusive::new(1, 0),
+    };
+    scans.zip(trace.reals_from(column.unwrap_or(usize::MAX), from))
+}
+
 /// The magnitude of an acceleration that speeds up (or starts from rest), and of one that slows down; the other is 0.
 fn by_sense(velocity: f64, acceleration: f64) -> [f64; 2] {
     let slows = (velocity > 0.0 && acceleration < 0.0) || (velocity < 0.0 && acceleration > 0.0);
@@ -228,10 +230,15 @@ fn by_sense(velocity: f64, acceleration: f64) -> [f64; 2] {
 struct Peak(Option<(f64, usize)>);
 
 impl Peak {
-    fn look(&mut self, scan: usize, value: f64) {
-        let beaten = |(peak, _): (f64, usize)| !peak.is_nan() && (value.is_nan() || value > peak);
-        if self.0.is_none_or(beaten) {
-            self.0 = Some((value, scan));
+    /// Reads the numbers of scans, of which `rank` says how great they are.
+    #[inline]
+    fn look(&mut self, numbers: impl IntoIterator<Item = (usize, f64)>, rank: impl Fn(f64) -> f64) {
+        for (scan, number) in numbers {
+            let value = rank(number);
+            let beaten = |(peak, _): (f64, usize)| !peak.is_nan() && (value.is_nan() || value > peak);
+            if self.0.is_none_or(beaten) {
+                self.0 = Some((value, scan));
+            }
         }
     }
 }

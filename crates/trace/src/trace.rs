@@ -59,8 +59,14 @@ pub struct Trace {
     by_name: BTreeMap<String, usize>,
     /// The scan of the first row that is held.
     first: usize,
+    /// The scan of the next row.
+    end: usize,
     /// Row after row, one word a cell; the column's kind gives the meaning of the word.
     bits: Vec<u64>,
+    /// The next row so far; it begins as the last one.
+    next: Vec<u64>,
+    /// For each column, a row from which on all have the same word.
+    since: Vec<usize>,
     names: Names,
     notes: Vec<Note>,
     /// Notes that were forgotten.
@@ -75,10 +81,11 @@ impl Trace {
         Self::with_columns(header, columns)
     }
 
-    /// An empty trace with only those columns of the header that are kept, given by their indices.
+    /// An empty trace with only those columns of the header that are kept, told by their places in `all` of them
+    /// ([`Header::columns`]).
     #[must_use]
-    pub fn with_some(header: Header, kept: impl Fn(usize) -> bool) -> Self {
-        let columns = (0..).zip(header.columns());
+    pub fn with_some(header: Header, all: Vec<Column>, kept: impl Fn(usize) -> bool) -> Self {
+        let columns = (0..).zip(all);
         let columns = columns.filter(|(place, _)| kept(*place));
         let columns = columns.map(|(_, column)| column).collect();
         Self::with_columns(header, columns)
@@ -99,9 +106,12 @@ impl Trace {
             .collect();
         Self {
             header,
+            next: vec![0; columns.len()],
+            since: vec![0; columns.len()],
             columns,
             by_name,
             first: 0,
+            end: 0,
             bits: Vec::new(),
             names: Names::default(),
             notes: Vec::new(),
@@ -169,8 +179,8 @@ impl Trace {
 
     /// Number of rows: scans 0 to `scans() - 1`, including those that were forgotten.
     #[must_use]
-    pub fn scans(&self) -> usize {
-        self.first + self.bits.len().checked_div(self.columns.len()).unwrap_or(0)
+    pub const fn scans(&self) -> usize {
+        self.end
     }
 
     /// The first scan whose row is held; others before it were forgotten.
@@ -226,8 +236,24 @@ impl Trace {
         let pushed = self.push_checked(cells.into_iter());
         if pushed.is_err() {
             self.bits.truncate(before);
+        } else {
+            self.begin_next();
         }
         pushed
+    }
+
+    /// Begins the next row as the last one, after rows were added or taken out; the last one was not compared with those before.
+    fn begin_next(&mut self) {
+        let rows = self.bits.len().checked_div(self.next.len()).unwrap_or(0);
+        self.end = self.first + rows;
+        match rows
+            .checked_sub(1)
+            .and_then(|last| self.bits.get(last * self.next.len()..))
+        {
+            Some(last) => self.next.copy_from_slice(last),
+            None => self.next.fill(0),
+        }
+        self.since.fill(self.end.saturating_sub(1));
     }
 
     fn push_checked<'c>(&mut self, cells: impl Iterator<Item = Cell<'c>>) -> Result<(), RowError> {
@@ -257,34 +283,82 @@ impl Trace {
         })
     }
 
-    /// The word with which a row stores a cell of the column at this index; see [`Trace::push_words`].
+    /// Sets a cell of the next row, which begins as a copy of the last one; see [`Trace::push_next`].
     ///
     /// # Errors
     /// Those of [`Trace::push_row`]; for an index without a column, [`RowError::Length`].
-    pub fn word_of(&mut self, place: usize, cell: Cell<'_>) -> Result<u64, RowError> {
+    pub fn set_next(&mut self, place: usize, cell: Cell<'_>) -> Result<(), RowError> {
         let Some(column) = self.columns.get(place) else {
             return Err(RowError::Length {
                 expected: self.columns.len(),
                 found: place + 1,
             });
         };
-        word_of(&mut self.names, column, cell)
+        let word = word_of(&mut self.names, column, cell)?;
+        self.set_next_word(place, word);
+        Ok(())
     }
 
-    /// As [`Trace::push_row`], for words that [`Trace::word_of`] returned for the columns in their order.
-    /// Use it for rows with few changed cells.
-    ///
-    /// # Errors
-    /// A row of wrong length; the trace is then as it was before.
-    pub fn push_words(&mut self, words: &[u64]) -> Result<(), RowError> {
-        if words.len() != self.columns.len() {
-            return Err(RowError::Length {
-                expected: self.columns.len(),
-                found: words.len(),
-            });
+    /// Sets a number of the next row, as [`Trace::set_next`] does, if that column is one of reals.
+    // Called in every scan by other crates.
+    #[inline]
+    pub fn set_next_real(&mut self, place: usize, value: f64) {
+        if self
+            .columns
+            .get(place)
+            .is_some_and(|column| column.kind == Kind::Real)
+        {
+            self.set_next_word(place, canonical_bits(value));
         }
-        self.bits.extend_from_slice(words);
-        Ok(())
+    }
+
+    #[inline]
+    fn set_next_word(&mut self, place: usize, word: u64) {
+        if let Some(next) = self.next.get_mut(place)
+            && *next != word
+        {
+            *next = word;
+            let scan = self.scans();
+            if let Some(since) = self.since.get_mut(place) {
+                *since = scan;
+            }
+        }
+    }
+
+    /// Appends the next row so many times. Use it for rows with few changed cells: only these are set
+    /// ([`Trace::set_next`]).
+    #[inline]
+    pub fn push_next(&mut self, times: usize) {
+        for _ in 0..times {
+            self.bits.extend_from_slice(&self.next);
+        }
+        // Rows are counted by their cells.
+        self.end += if self.next.is_empty() { 0 } else { times };
+    }
+
+    /// A scan from which on all rows have the same value in this column; the number of rows if that is not known.
+    #[must_use]
+    pub fn same_since(&self, column: usize) -> usize {
+        self.since.get(column).copied().unwrap_or(self.scans())
+    }
+
+    /// The numbers of a column of reals from a scan on, or from the first row that is held; none for another column.
+    // Read in every scan by other crates.
+    #[inline]
+    pub fn reals_from(
+        &self,
+        column: usize,
+        scan: usize,
+    ) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator {
+        let is_real = self
+            .columns
+            .get(column)
+            .is_some_and(|column| column.kind == Kind::Real);
+        let width = self.columns.len().max(1);
+        let rows = scan.saturating_sub(self.first);
+        let from = rows.saturating_mul(width).saturating_add(column);
+        let words = self.bits.get(from..).filter(|_| is_real).unwrap_or_default();
+        words.iter().step_by(width).map(|word| f64::from_bits(*word))
     }
 
     /// The word in the last row at the place of the next word.
@@ -397,6 +471,7 @@ impl Trace {
             }
         }
         trace.bits = bits;
+        trace.begin_next();
         Some(trace)
     }
 
@@ -421,7 +496,9 @@ impl Trace {
     /// returns them.
     #[must_use]
     pub fn take_words(&mut self) -> Vec<u64> {
-        std::mem::take(&mut self.bits)
+        let words = std::mem::take(&mut self.bits);
+        self.begin_next();
+        words
     }
 
     /// Returns the rows that [`Trace::take_words`] took; an incomplete row at the end is dropped.
@@ -429,6 +506,7 @@ impl Trace {
         let width = self.columns.len();
         words.truncate(words.len() - words.len().checked_rem(width).unwrap_or(words.len()));
         self.bits = words;
+        self.begin_next();
     }
 
     /// The names that occur in rows.

@@ -72,8 +72,8 @@ impl Demand<'_> {
     }
 
     fn seek(&mut self, rows: &Rows<'_>, next: &ops::Range<u64>) {
-        let condition = self.condition;
-        self.nearest.look(next, |scan| rows.holds(condition, scan));
+        let conditions = std::slice::from_ref(self.condition);
+        self.nearest.look(rows, next, conditions);
     }
 
     /// `FALSE at scan 551, expected TRUE; it came at 553, 2 later`
@@ -122,7 +122,8 @@ impl Judge for By<'_> {
         if self.held.is_some() {
             return;
         }
-        self.held = stretch.inside.clone().find(|&scan| rows.hold(self.that, scan));
+        let mut may_hold = rows.may_hold(self.that, stretch.inside.clone());
+        self.held = may_hold.find(|&scan| rows.hold(self.that, scan));
         if self.held.is_some() {
             return;
         }
@@ -130,8 +131,7 @@ impl Judge for By<'_> {
         if let Some(deadline) = stretch.deadline.filter(|scan| stretch.next.contains(scan)) {
             self.unmet = self.unmet(rows, deadline);
         }
-        self.nearest
-            .look(&stretch.next, |scan| rows.hold(self.that, scan));
+        self.nearest.look(rows, &stretch.next, self.that);
     }
 
     fn failures(&self, rows: &Rows<'_>, path: &str, range: Range) -> Vec<Failure> {
@@ -184,13 +184,13 @@ impl<'a> Always<'a> {
 
 impl Judge for Always<'_> {
     fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
-        for scan in stretch.inside.clone() {
-            if !rows.hold(self.during, scan) {
-                continue;
-            }
-            for (demand, broken) in &mut self.each {
-                let signal = &demand.condition.signal;
-                if rows.holds(demand.condition, scan) || rows.too_early(signal, scan) {
+        for (demand, broken) in &mut self.each {
+            let signal = &demand.condition.signal;
+            for scan in rows.may_fail(demand.condition, stretch.inside.clone()) {
+                if rows.holds(demand.condition, scan)
+                    || rows.too_early(signal, scan)
+                    || !rows.hold(self.during, scan)
+                {
                     continue;
                 }
                 if demand.unmet.is_none() {
@@ -199,8 +199,6 @@ impl Judge for Always<'_> {
                 }
                 broken.add(scan);
             }
-        }
-        for (demand, _) in &mut self.each {
             demand.seek(rows, &stretch.next);
         }
     }
@@ -239,7 +237,7 @@ impl<'a> Never<'a> {
 
 impl Judge for Never<'_> {
     fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
-        for scan in stretch.inside.clone() {
+        for scan in rows.may_hold(self.that, stretch.inside.clone()) {
             if !rows.hold(self.during, scan) || !rows.hold(self.that, scan) {
                 continue;
             }
@@ -284,15 +282,13 @@ impl<'a> Once<'a> {
 
 impl Judge for Once<'_> {
     fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
-        let held = |scan: &u64| rows.hold(self.that, *scan);
-        stretch
-            .inside
-            .clone()
-            .filter(held)
+        let may_hold = rows.may_hold(self.that, stretch.inside.clone());
+        may_hold
+            .filter(|scan| rows.hold(self.that, *scan))
             .for_each(|scan| self.held.add(scan));
         if self.held.first().is_none() {
             self.nearest.to = stretch.deadline;
-            self.nearest.look(&stretch.next, |scan| held(&scan));
+            self.nearest.look(rows, &stretch.next, self.that);
         }
     }
 
@@ -345,7 +341,13 @@ impl<'a> Exclusive<'a> {
 
 impl Judge for Exclusive<'_> {
     fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
-        for scan in stretch.inside.clone() {
+        let same_since = self.points.iter().map(|(_, point)| rows.point_same_since(*point));
+        let mut inside = stretch.inside.clone();
+        if same_since.max().unwrap_or(0) <= inside.start && raised(rows, self.points, inside.start).len() <= 1
+        {
+            inside.end = inside.start;
+        }
+        for scan in inside {
             let raised = raised(rows, self.points, scan);
             if raised.len() > 1 {
                 self.first.get_or_insert_with(|| (scan, raised.join(" and ")));
@@ -421,7 +423,9 @@ impl Nearest {
     }
 
     /// Reads the next rows. Cost: the rows between the scan and the nearest ones.
-    pub(super) fn look(&mut self, next: &ops::Range<u64>, holds: impl Fn(u64) -> bool) {
+    pub(super) fn look(&mut self, rows: &Rows<'_>, next: &ops::Range<u64>, conditions: &[Condition]) {
+        let next = rows.may_hold(conditions, next.clone());
+        let holds = |scan: u64| rows.hold(conditions, scan);
         let to = self.to.unwrap_or(u64::MAX);
         let mut before = next.start..next.end.min(to);
         self.earlier = before.rfind(|&scan| holds(scan)).or(self.earlier);

@@ -27,10 +27,12 @@ impl Place {
     /// Searches begin and end in the next rows.
     pub(super) fn look(&mut self, rows: &Rows<'_>, claim: &Claim, next: &ops::Range<u64>) {
         if let (None, Some(begin)) = (self.from, &claim.window.from) {
-            self.from = next.clone().find(|&scan| rows.hold(begin, scan));
+            let mut may_hold = rows.may_hold(begin, next.clone());
+            self.from = may_hold.find(|&scan| rows.hold(begin, scan));
         }
         if let (Some(from), None, Some(end)) = (self.from, self.to, &claim.window.to) {
-            self.to = (next.start.max(from)..next.end).find(|&scan| rows.hold(end, scan));
+            let mut may_hold = rows.may_hold(end, next.start.max(from)..next.end);
+            self.to = may_hold.find(|&scan| rows.hold(end, scan));
         }
     }
 

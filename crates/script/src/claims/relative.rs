@@ -6,7 +6,7 @@ use super::{Failure, Judge, describe};
 use crate::model::{Bounds, Claim, ClaimKind, Condition, Range};
 use crate::run::Rows;
 use std::collections::VecDeque;
-use std::ops::RangeInclusive;
+use std::ops::{self, RangeInclusive};
 
 /// The failure of a claim whose window never begins: those fail that require an event.
 pub(super) fn without_scans(rows: &Rows<'_>, claim: &Claim, place: &Place) -> Vec<Failure> {
@@ -86,6 +86,16 @@ fn rises(rows: &Rows<'_>, conditions: &[Condition], scan: u64) -> bool {
             .is_none_or(|before| !rows.hold(conditions, before))
 }
 
+/// Whether conditions may rise in one of these scans, which are the last ones so far.
+fn may_rise(rows: &Rows<'_>, conditions: &[Condition], scans: &ops::Range<u64>) -> bool {
+    let since = conditions
+        .iter()
+        .map(|condition| rows.same_since(condition))
+        .max();
+    // What rises has changed; in row 0 there is nothing before it.
+    scans.start == 0 || since.unwrap_or(0) >= scans.start
+}
+
 /// After each rising, or the first, there is an answer in time.
 pub(super) struct Answered<'a> {
     during: &'a [Condition],
@@ -138,7 +148,8 @@ impl<'a> Answered<'a> {
 
 impl Judge for Answered<'_> {
     fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
-        for scan in stretch.next.clone() {
+        let waits = !self.waiting.is_empty() || may_rise(rows, self.when, &stretch.next);
+        for scan in stretch.next.clone().filter(|_| waits) {
             while let Some(rose) = self
                 .waiting
                 .front()
@@ -157,8 +168,7 @@ impl Judge for Answered<'_> {
                 self.waiting.clear();
             }
         }
-        self.nearest
-            .look(&stretch.next, |scan| rows.hold(self.that, scan));
+        self.nearest.look(rows, &stretch.next, self.that);
     }
 
     fn failures(&self, rows: &Rows<'_>, path: &str, _: Range) -> Vec<Failure> {
@@ -209,6 +219,10 @@ impl<'a> NeverFor<'a> {
 
 impl Judge for NeverFor<'_> {
     fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
+        if !stretch.inside.is_empty() && rows.may_hold(self.that, stretch.inside.clone()).is_empty() {
+            self.on_end = 0;
+            return;
+        }
         for scan in stretch.inside.clone() {
             if self.too_long.is_some() {
                 return;
@@ -282,6 +296,9 @@ impl<'a> Duration<'a> {
 impl Judge for Duration<'_> {
     fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
         let [begin, end] = self.ends;
+        if !may_rise(rows, begin, &stretch.next) && !may_rise(rows, end, &stretch.next) {
+            return;
+        }
         for scan in stretch.next.clone() {
             if self.wrong.is_some() {
                 return;
@@ -342,6 +359,9 @@ impl<'a> Count<'a> {
 
 impl Judge for Count<'_> {
     fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
+        if !may_rise(rows, self.that, &stretch.inside) {
+            return;
+        }
         for scan in stretch.inside.clone() {
             if rises(rows, self.that, scan) && rows.hold(self.during, scan) {
                 self.found.add(scan);

@@ -8,15 +8,16 @@ use super::formulas::{self, Formulas, Reading, Truths};
 use super::guests::Guests;
 use super::layout::Layout;
 use super::notes::Notes;
+use super::rest::Rest;
 use super::row::{RowWriter, Source};
 use super::rows::{ROWS_KEPT, Rows, Shift};
 use super::schedule::Schedule;
 use super::values::Values;
-use crate::model::{Action, FaultKind, FormulaInput, Point, Script, Signal, Variable, Wire};
+use crate::model::{Action, AxisNumber, FaultKind, FormulaInput, Point, Script, Signal, Variable, Wire};
 use standstill_axis::{Axis, AxisId, AxisState, ErrorId, InstanceId, Standard};
 use standstill_fb::{Context, Value};
 use standstill_scan::{Machine, ProgramFault, ProgramId, Programs, RUNTIME, ScanTime, TaskId};
-use standstill_trace::{Note, Trace};
+use standstill_trace::{Note, RowError, Trace};
 
 /// The machine of a script: Standard planners over simulated drives.
 pub(crate) type ScriptMachine = Machine<Standard, ScriptDrive>;
@@ -30,7 +31,14 @@ pub(crate) fn instance_id(index: usize) -> InstanceId {
 pub(crate) fn machine(script: &Script) -> Result<ScriptMachine, RunError> {
     let mut machine = Machine::new();
     machine.tables_mut().clone_from(&script.tables);
-    machine.set_cam_store(script.cams.0, script.cams.1);
+    // Nobody else puts a cam there.
+    let selects = script
+        .blocks
+        .iter()
+        .any(|instance| instance.block.name == "MC_CamTableSelect");
+    if selects || !script.programs.is_empty() {
+        machine.set_cam_store(script.cams.0, script.cams.1);
+    }
     let planner = Standard::new(script.cycle_ns as f64 / 1e9);
     for axis in &script.axes {
         let drive =
@@ -124,6 +132,10 @@ pub(crate) struct Bench<'a> {
     tasks: Vec<OfTask>,
     writer: RowWriter,
     schedule: Schedule,
+    /// Whether the programs rest; none if they may do something new in any scan.
+    rest: Option<Rest>,
+    /// While they were taken to rest something happened that nobody could foresee.
+    rest_broken: bool,
     /// Axis states after all blocks were called, before the motion step.
     states: Vec<AxisState>,
     notes: Notes,
@@ -157,9 +169,14 @@ impl<'a> Bench<'a> {
             .ok_or_else(|| RunError::Internal("the script was not checked before its run".to_owned()))?;
         let guests = Guests::new(script)?;
         values.symbols = guests.values(script)?;
+        let rest = Rest::new(script);
+        let mut writer = RowWriter::new(script, &layout);
+        writer.mind(rest.as_ref().map_or(&[], Rest::readers));
         Ok(Self {
             script,
-            writer: RowWriter::new(script, &layout),
+            writer,
+            rest,
+            rest_broken: false,
             layout,
             guests,
             formulas: Formulas::new(script)?,
@@ -287,6 +304,57 @@ impl<'a> Bench<'a> {
         self.shifts.drain(..old);
     }
 
+    /// How many scans after the last one, `scan`, the programs would rest, as far as is known.
+    pub(crate) fn rests_after(&mut self, scan: u64, machine: &ScriptMachine) -> u64 {
+        let Some(rest) = &mut self.rest else { return 0 };
+        let is_disturbed = !self.faults.is_empty() || !self.changes.is_empty();
+        if is_disturbed || !rest.begins(scan, &self.values, machine) {
+            return 0;
+        }
+        let left = self.last_scan.map_or(u64::MAX, |last| last.saturating_sub(scan));
+        self.schedule.free_from(scan + 1).min(left)
+    }
+
+    /// So many scans were done without the programs.
+    pub(crate) fn went_on(&mut self, scans: u64) {
+        if let Some(rest) = &mut self.rest {
+            rest.went_on(scans);
+        }
+    }
+
+    /// Whether all axes rest.
+    pub(crate) fn is_still(&self) -> bool {
+        self.rest.as_ref().is_some_and(Rest::is_still)
+    }
+
+    /// How many of the next scans could be left to the axes, without their drives.
+    pub(crate) fn moves_alone(&self, machine: &ScriptMachine) -> u64 {
+        let shown = (0..self.script.axes.len()).any(|axis| {
+            let column = self.layout.number(axis, AxisNumber::ActualPosition);
+            column.is_some()
+        });
+        let is_watched = self.schedule.watches() || self.script.stop_when.is_some();
+        match &self.rest {
+            Some(rest) if !shown && !is_watched => rest.moves_alone(machine),
+            _ => 0,
+        }
+    }
+
+    /// Adds rows that are all as the last one.
+    pub(crate) fn repeat_row(&mut self, scans: u64) {
+        self.trace.push_next(usize::try_from(scans).unwrap_or_default());
+    }
+
+    /// Whether something has happened in scans without the programs that they should have seen.
+    pub(crate) const fn is_rest_broken(&self) -> bool {
+        self.rest_broken
+    }
+
+    /// Such a thing has happened.
+    pub(crate) fn break_rest(&mut self) {
+        self.rest_broken = true;
+    }
+
     /// Makes room for `scans` more rows.
     pub(crate) fn reserve(&mut self, scans: usize) {
         self.trace.reserve(scans);
@@ -330,6 +398,58 @@ impl<'a> Bench<'a> {
         }
     }
 
+    /// Writes the row of a scan by `write`.
+    fn write_row(
+        &mut self,
+        scan: u64,
+        machine: &ScriptMachine,
+        write: impl FnOnce(&mut RowWriter, &Source<'_>, &mut Trace) -> Result<(), RowError>,
+    ) {
+        let source = Source {
+            script: self.script,
+            values: &self.values,
+            machine,
+            states: &self.states,
+            scan,
+        };
+        if let Err(error) = write(&mut self.writer, &source, &mut self.trace) {
+            self.stop(RunError::Internal(error.to_string()));
+        }
+    }
+
+    /// Looks for what expressions, steps and the end of the run wait for on the row of a scan.
+    fn watch_row(&mut self, scan: u64) {
+        let script = self.script;
+        if script.formulas.is_empty() && script.stop_when.is_none() && !self.schedule.watches() {
+            return;
+        }
+        let mut truths = std::mem::take(&mut self.truths);
+        let rows = Rows {
+            script,
+            layout: &self.layout,
+            trace: &self.trace,
+            shifts: &self.shifts,
+            // Expressions do not read each other.
+            truths: &Truths::default(),
+        };
+        self.formulas.look(&rows, scan, &mut truths);
+        let rows = Rows {
+            truths: &truths,
+            ..rows
+        };
+        self.schedule.look(&rows, scan);
+        if self.schedule.is_full() {
+            self.error.get_or_insert(RunError::Pending { scan });
+        }
+        if self.last_scan.is_none()
+            && let Some((conditions, after)) = &script.stop_when
+            && rows.hold(conditions, scan)
+        {
+            self.last_scan = Some(scan.saturating_add(*after));
+        }
+        self.truths = truths;
+    }
+
     /// Feeds the wired inputs of an instance, in pin order.
     fn feed(&mut self, instance: usize, wires: &[(usize, Wire)], scan: u64) {
         for (pin, wire) in wires {
@@ -361,6 +481,13 @@ impl<'a> Bench<'a> {
 impl Programs<Standard, ScriptDrive> for Bench<'_> {
     fn latch(&mut self, time: ScanTime, machine: &mut ScriptMachine) {
         let script = self.script;
+        if let Some(rest) = &mut self.rest {
+            let is_due = self.schedule.free_from(time.scan) == 0;
+            rest.begin(
+                machine,
+                is_due || !self.faults.is_empty() || !self.changes.is_empty(),
+            );
+        }
         self.cams.look(machine, &mut self.trace);
         while let Some(index) = self.schedule.take(time.scan) {
             let actions = script.steps.get(index).map_or(&[][..], |step| &step.actions);
@@ -440,46 +567,37 @@ impl Programs<Standard, ScriptDrive> for Bench<'_> {
         self.notes.collect(machine.log());
         self.states.clear();
         self.states.extend(machine.axes().iter().map(|axis| axis.state()));
+        if let Some(rest) = &mut self.rest {
+            rest.called(machine);
+        }
+    }
+
+    fn idle(&mut self, time: ScanTime, machine: &mut ScriptMachine) {
+        self.time = time;
+        let Some(rest) = &self.rest else { return };
+        for &index in rest.readers() {
+            let mut context = machine.context(time, instance_id(index));
+            if let Some(instance) = self.values.instances.get_mut(index) {
+                instance.call(&mut context);
+            }
+        }
+    }
+
+    fn idled(&mut self, time: ScanTime, machine: &ScriptMachine) -> bool {
+        self.write_row(time.scan, machine, RowWriter::write_resting);
+        self.watch_row(time.scan);
+        let lasts = self.rest.as_ref().is_some_and(|rest| rest.lasts(machine));
+        let is_broken = |rest: &Rest| rest.is_broken(machine);
+        self.rest_broken |= !lasts && self.rest.as_ref().is_none_or(is_broken);
+        let is_awaited = self.schedule.free_from(time.scan + 1) == 0 || self.is_over(time.scan);
+        lasts && !is_awaited && self.error.is_none()
     }
 
     fn published(&mut self, time: ScanTime, machine: &ScriptMachine) {
-        let source = Source {
-            script: self.script,
-            values: &self.values,
-            machine,
-            states: &self.states,
-            scan: time.scan,
-        };
-        if let Err(error) = self.writer.write(&source, &mut self.trace) {
-            self.stop(RunError::Internal(error.to_string()));
-        }
+        self.write_row(time.scan, machine, RowWriter::write);
         self.guests
             .take_told(self.script, &mut self.notes, &mut self.trace);
         self.notes.take(machine, &mut self.trace, &mut self.shifts);
-        let mut truths = std::mem::take(&mut self.truths);
-        let rows = Rows {
-            script: self.script,
-            layout: &self.layout,
-            trace: &self.trace,
-            shifts: &self.shifts,
-            // Expressions do not read each other.
-            truths: &Truths::default(),
-        };
-        self.formulas.look(&rows, time.scan, &mut truths);
-        let rows = Rows {
-            truths: &truths,
-            ..rows
-        };
-        self.schedule.look(&rows, time.scan);
-        if self.schedule.is_full() {
-            self.error.get_or_insert(RunError::Pending { scan: time.scan });
-        }
-        if self.last_scan.is_none()
-            && let Some((conditions, after)) = &self.script.stop_when
-            && rows.hold(conditions, time.scan)
-        {
-            self.last_scan = Some(time.scan.saturating_add(*after));
-        }
-        self.truths = truths;
+        self.watch_row(time.scan);
     }
 }

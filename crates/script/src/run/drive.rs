@@ -56,6 +56,11 @@ impl ScriptDrive {
         self.told = Some(position);
     }
 
+    /// The scans after which it depends on no earlier command, if it is ideal and no host leads it.
+    pub(crate) fn delay(&self) -> Option<usize> {
+        self.simulated.delay().filter(|_| self.told.is_none())
+    }
+
     /// Its last order; before the first scan its start.
     pub(crate) fn ordered(&self) -> Ordered {
         let position = match (self.commanded, self.scaling) {

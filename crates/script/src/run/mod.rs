@@ -10,6 +10,7 @@ mod layout;
 mod needed;
 mod notes;
 mod recorded;
+mod rest;
 mod row;
 mod rows;
 mod schedule;
@@ -23,7 +24,7 @@ pub use guests::Counted;
 pub use recorded::{RecordingError, judge_recording};
 pub(crate) use rows::{Derivatives, Rows};
 use schedule::PENDING_MAX;
-pub use session::{Change, Session};
+pub use session::{Ahead, Change, Session};
 pub use variables::Shown;
 
 use crate::CELLS_MAX;
@@ -139,14 +140,36 @@ pub fn run(script: &Script) -> Result<Outcome, RunError> {
 /// # Errors
 /// As [`run`].
 pub fn run_with(script: &Script, mut progress: impl FnMut(u64)) -> Result<Outcome, RunError> {
+    if let Some(outcome) = run_by(script, &mut progress, |session| {
+        session.advance_far(PROGRESS_EVERY)
+    })? {
+        return Ok(outcome);
+    }
+    let by_scan = |session: &mut Session<'_>| Ok(Ahead::Scans(session.advance()?.into()));
+    let outcome = run_by(script, &mut progress, by_scan)?;
+    outcome.ok_or_else(|| RunError::Internal("a run scan by scan did not go on".to_owned()))
+}
+
+/// A run that goes on by `advance`; none if that cannot run the script.
+fn run_by<'s>(
+    script: &'s Script,
+    progress: &mut impl FnMut(u64),
+    advance: impl Fn(&mut Session<'s>) -> Result<Ahead, RunError>,
+) -> Result<Option<Outcome>, RunError> {
     let mut session = Session::new(script)?;
-    while session.advance()? {
-        let scans = session.scans();
-        if scans % PROGRESS_EVERY == 0 {
-            progress(scans);
+    let mut told = 0;
+    loop {
+        match advance(&mut session)? {
+            Ahead::Broken => return Ok(None),
+            Ahead::Scans(0) => return Ok(Some(session.finish())),
+            Ahead::Scans(_) => {}
+        }
+        let now = session.scans() / PROGRESS_EVERY;
+        if now > told {
+            told = now;
+            progress(session.scans());
         }
     }
-    Ok(session.finish())
 }
 
 /// Whether the rows of a script's run fit into memory and can be read by a person: at most [`ROWS_MAX`]

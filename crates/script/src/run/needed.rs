@@ -1,12 +1,13 @@
 //! The columns that claims and steps read. A recording must have them to be judged, and a run without a
 //! reader needs to keep no others.
 
-use super::layout::{self, Layout};
+use super::layout::Layout;
 use crate::model::{AxisNumber, Claim, ClaimKind, Comparison, Condition, Point, Script, Signal, Test, When};
+use standstill_trace::Column;
 use std::collections::BTreeSet;
 
-/// The columns of a script's own trace that its claims, its steps and its end read, and those of these names.
-pub(super) fn columns(script: &Script, names: &[String]) -> BTreeSet<usize> {
+/// The columns that its claims, its steps and its end read, and those of these names, of `all` of a script's own trace.
+pub(super) fn columns(script: &Script, all: &[Column], names: &[String]) -> BTreeSet<usize> {
     let mut read = Vec::new();
     for step in &script.steps {
         if let When::Holds { conditions, .. } = &step.when {
@@ -27,7 +28,7 @@ pub(super) fn columns(script: &Script, names: &[String]) -> BTreeSet<usize> {
     let formulas = script.formulas.iter().filter(|formula| formula.in_rows);
     read.extend(formulas.flat_map(|formula| formula.inputs.iter().map(|input| input.signal.clone())));
     let layout = Layout::new(script);
-    let named = (0..).zip(layout::header(script).columns());
+    let named = (0..).zip(all);
     let named = named.filter(|(_, column)| names.contains(&column.name));
     let read = read.iter().filter_map(|signal| column(&layout, signal));
     let mut columns: BTreeSet<usize> = read.chain(named.map(|(place, _)| place)).collect();

@@ -18,8 +18,6 @@ const SLAVE_WORDS: usize = 7;
 /// Writes the rows of a script's run.
 pub(super) struct RowWriter {
     parts: Vec<Part>,
-    /// The last row.
-    row: Vec<u64>,
     /// Words of the part that is being read.
     words: Vec<u64>,
     cells: Cells,
@@ -29,10 +27,14 @@ pub(super) struct RowWriter {
 struct Part {
     of: Of,
     columns: Vec<Column>,
+    /// The place of its first column in the trace.
+    first: usize,
     /// How many words it has.
     count: usize,
     /// Its words in the last row; none before the first one.
     words: Vec<u64>,
+    /// It may change while programs rest.
+    moves: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -82,48 +84,105 @@ impl RowWriter {
             });
         }
         all.retain(|part| !part.columns.is_empty());
-        let columns = all.iter().map(|part| part.columns.len()).sum();
+        let mut first = 0;
+        for part in &mut all {
+            part.first = first;
+            first += part.columns.len();
+        }
         Self {
             words: vec![0; all.iter().map(|part| part.count).max().unwrap_or(0)],
             parts: all,
-            row: vec![0; columns],
             cells: cells::cells(script),
+        }
+    }
+
+    /// These instances may change while programs rest, as axes do.
+    pub(super) fn mind(&mut self, instances: &[usize]) {
+        for part in &mut self.parts {
+            part.moves |= matches!(part.of, Of::Instance(index) if instances.contains(&index));
         }
     }
 
     /// Writes the row of a scan. It takes no memory except that of the trace, and that for new texts.
     pub(super) fn write(&mut self, source: &Source<'_>, trace: &mut Trace) -> Result<(), RowError> {
-        let mut first = 0;
         for part in &mut self.parts {
-            let own = first..first + part.columns.len();
-            first = own.end;
-            let words = self.words.get_mut(..part.count).unwrap_or_default();
-            source.put(part.of, words);
-            if *words == *part.words {
-                continue;
+            part.write(source, (&mut self.words, &mut self.cells), trace)?;
+        }
+        trace.push_next(1);
+        Ok(())
+    }
+
+    /// The same for a scan in which programs rested.
+    pub(super) fn write_resting(&mut self, source: &Source<'_>, trace: &mut Trace) -> Result<(), RowError> {
+        for part in self.parts.iter_mut().filter(|part| part.moves) {
+            match part.of {
+                Of::Axis(axis) => part.write_motion(source, axis, trace),
+                _ => part.write(source, (&mut self.words, &mut self.cells), trace)?,
             }
-            for (at, column) in own.zip(&part.columns) {
-                let word = words.get(column.place);
-                if let (Some(&word), Some(cell)) = (word, self.row.get_mut(at))
-                    && part.words.get(column.place) != Some(&word)
-                {
-                    *cell = match column.told {
-                        Told::State => trace.word_of(at, Cell::Name(state(word)))?,
-                        Told::Pin(ty) => {
-                            let value = ty.value(word);
-                            self.cells.prepare(ty, value);
-                            trace.word_of(at, self.cells.cell(ty, value))?
-                        }
-                        Told::Symbol(program) => {
-                            source.symbol(program, column.place, |cell| trace.word_of(at, cell))?
-                        }
-                    };
+        }
+        trace.push_next(1);
+        Ok(())
+    }
+}
+
+impl Part {
+    /// Writes those cells whose words have changed.
+    fn write(
+        &mut self,
+        source: &Source<'_>,
+        (words, cells): (&mut [u64], &mut Cells),
+        trace: &mut Trace,
+    ) -> Result<(), RowError> {
+        let words = words.get_mut(..self.count).unwrap_or_default();
+        source.put(self.of, words);
+        if *words == *self.words {
+            return Ok(());
+        }
+        for (at, column) in (self.first..).zip(&self.columns) {
+            let word = words.get(column.place);
+            if let Some(&word) = word
+                && self.words.get(column.place) != Some(&word)
+            {
+                match column.told {
+                    Told::State => trace.set_next(at, Cell::Name(state(word)))?,
+                    Told::Pin(PinType::Lreal) => trace.set_next_real(at, f64::from_bits(word)),
+                    Told::Pin(ty) => {
+                        let value = ty.value(word);
+                        cells.prepare(ty, value);
+                        trace.set_next(at, cells.cell(ty, value))?;
+                    }
+                    Told::Symbol(program) => {
+                        source.symbol(program, column.place, |cell| trace.set_next(at, cell))?;
+                    }
                 }
             }
-            part.words.clear();
-            part.words.extend_from_slice(words);
         }
-        trace.push_words(&self.row)
+        self.words.clear();
+        self.words.extend_from_slice(words);
+        Ok(())
+    }
+
+    /// Writes the cells of an axis that change while it only goes on: the numbers of its motion.
+    fn write_motion(&mut self, source: &Source<'_>, axis: usize, trace: &mut Trace) {
+        let Some(axis) = source.machine.axes().get(axis) else {
+            return;
+        };
+        let setpoint = axis.setpoint();
+        for (at, column) in (self.first..).zip(&self.columns) {
+            // In the order of `write_axis`.
+            let number = match column.place {
+                1 => setpoint.position,
+                2 => setpoint.velocity,
+                3 => setpoint.acceleration,
+                4 => setpoint.jerk,
+                5 => setpoint.snap,
+                6 => axis.actual_position(),
+                _ => continue,
+            };
+            trace.set_next_real(at, number);
+        }
+        // The next whole row has all of its cells written anew.
+        self.words.clear();
     }
 }
 
@@ -245,8 +304,10 @@ impl Part {
         Self {
             of,
             columns,
+            first: 0,
             count,
             words: Vec::new(),
+            moves: matches!(of, Of::Axis(_)),
         }
     }
 

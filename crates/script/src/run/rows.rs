@@ -7,6 +7,7 @@ use crate::model::{AxisNumber, Comparison, Condition, Point, Script, Signal, Tes
 use standstill_fb::{PinType, Value};
 use standstill_record::told::enum_number;
 use standstill_trace::{Cell, Trace};
+use std::ops::Range;
 
 /// Rows before the next ones that conditions, claims and events may read: a difference of order 4, and
 /// that of the last scan, take six.
@@ -155,6 +156,92 @@ impl<'a> Rows<'a> {
         })
     }
 
+    /// Of these scans, which are the last ones so far, those from the first to the last in which the conditions may hold
+    /// together. There are no others, but it may be all that are asked for.
+    ///
+    /// Cost: where nothing of what a condition reads changes, one row is read.
+    pub(crate) fn may_hold(&self, conditions: &[Condition], scans: Range<u64>) -> Range<u64> {
+        let each = conditions.iter();
+        each.fold(scans, |scans, condition| self.narrowed(condition, scans, true))
+    }
+
+    /// The same of those in which a condition may not hold.
+    pub(crate) fn may_fail(&self, condition: &Condition, scans: Range<u64>) -> Range<u64> {
+        self.narrowed(condition, scans, false)
+    }
+
+    /// The same of those in which it holds or does not, as `wanted`.
+    fn narrowed(&self, condition: &Condition, scans: Range<u64>, wanted: bool) -> Range<u64> {
+        if scans.is_empty() {
+            return scans;
+        }
+        if self.same_since(condition) <= scans.start {
+            let is_wanted = self.holds(condition, scans.start) == wanted;
+            return scans.start..if is_wanted { scans.end } else { scans.start };
+        }
+        let (Signal::Axis(axis, number), Test::Compare(comparisons)) = (&condition.signal, &condition.test)
+        else {
+            return scans;
+        };
+        let Some(values) = self.layout.number(*axis, *number).and_then(|column| {
+            let first = usize::try_from(scans.start).ok()?;
+            let values = self.trace.reals_from(column, first);
+            (first >= self.trace.first() && values.len() as u64 >= scans.end - scans.start).then_some(values)
+        }) else {
+            return scans;
+        };
+        if !comparisons.iter().all(Comparison::is_alone) {
+            return scans;
+        }
+        let is_wanted = |value: &f64| {
+            let meets = |comparison: &Comparison| comparison.meets(*value) == Some(true);
+            comparisons.iter().all(meets) == wanted
+        };
+        let mut found = scans.clone().zip(values).filter(|(_, value)| is_wanted(value));
+        let Some((from, _)) = found.next() else {
+            return scans.start..scans.start;
+        };
+        let to = found.last().map_or(from, |(to, _)| to);
+        from..to + 1
+    }
+
+    /// A scan from which on a condition reads the same in all rows so far; the number of rows if that is not known.
+    pub(crate) fn same_since(&self, condition: &Condition) -> u64 {
+        let own = self.signal_same_since(&condition.signal);
+        own.max(self.test_same_since(&condition.test))
+    }
+
+    fn test_same_since(&self, test: &Test) -> u64 {
+        let Test::Compare(comparisons) = test else {
+            return 0;
+        };
+        let each = comparisons.iter().map(|comparison| match comparison {
+            Comparison::SameAs(_, other) | Comparison::NearTo { of: other, .. } => {
+                self.signal_same_since(other)
+            }
+            Comparison::Ne(test) => self.test_same_since(test),
+            _ => 0,
+        });
+        each.max().unwrap_or(0)
+    }
+
+    /// The same for a variable or pin.
+    pub(crate) fn point_same_since(&self, point: Point) -> u64 {
+        self.signal_same_since(&Signal::Point(point))
+    }
+
+    fn signal_same_since(&self, signal: &Signal) -> u64 {
+        let column = match *signal {
+            Signal::Point(point) => self.layout.point(point),
+            Signal::State(axis) => self.layout.state(axis),
+            Signal::Master(axis, which) => self.layout.master(axis, which),
+            Signal::Axis(axis, number) => self.layout.number(axis, number),
+            // They depend on more than a row.
+            Signal::Difference(..) | Signal::Formula(_) => None,
+        };
+        column.map_or(self.count(), |column| self.trace.same_since(column) as u64)
+    }
+
     /// Whether all conditions hold on the row of `scan`.
     pub(crate) fn hold(&self, conditions: &[Condition], scan: u64) -> bool {
         conditions.iter().all(|condition| self.holds(condition, scan))
@@ -200,21 +287,15 @@ impl<'a> Rows<'a> {
     }
 
     fn compares(&self, signal: &Signal, comparison: &Comparison, cell: Cell<'_>, scan: u64) -> bool {
-        let is = |test: &dyn Fn(f64) -> bool| number(cell).is_some_and(test);
         match comparison {
-            // Equal infinities have no difference.
-            Comparison::Near { near, within } => {
-                is(&|value| value == *near || (value - near).abs() <= *within)
-            }
             Comparison::NearTo { of, plus, within, .. } => {
                 let other = self.cell(of, scan).and_then(number).map(|other| other + plus);
-                other.is_some_and(|near| is(&|value| value == near || (value - near).abs() <= *within))
+                let near = other.map(|near| Comparison::Near {
+                    near,
+                    within: *within,
+                });
+                near.is_some_and(|near| number(cell).and_then(|value| near.meets(value)) == Some(true))
             }
-            Comparison::Le(bound) => is(&|value| value <= *bound),
-            Comparison::Ge(bound) => is(&|value| value >= *bound),
-            Comparison::Lt(bound) => is(&|value| value < *bound),
-            Comparison::Gt(bound) => is(&|value| value > *bound),
-            Comparison::AbsLe(bound) => is(&|value| value.abs() <= *bound),
             Comparison::Ne(test) => !self.meets(signal, test, cell, scan),
             Comparison::SameAs(_, other) => match self.cell(other, scan) {
                 Some(other) => match (number(cell), number(other)) {
@@ -227,6 +308,12 @@ impl<'a> Rows<'a> {
                 let whole = self.variable(signal).and_then(|variable| variable.whole_in(cell));
                 whole.is_some_and(|whole| relation.holds(whole, *bound))
             }
+            Comparison::Near { .. }
+            | Comparison::Le(_)
+            | Comparison::Ge(_)
+            | Comparison::Lt(_)
+            | Comparison::Gt(_)
+            | Comparison::AbsLe(_) => number(cell).and_then(|value| comparison.meets(value)) == Some(true),
         }
     }
 
@@ -257,6 +344,27 @@ impl<'a> Rows<'a> {
             | Signal::Difference(..)
             | Signal::Formula(_) => None,
         }
+    }
+}
+
+impl Comparison {
+    /// Whether it is met by a number alone.
+    fn is_alone(&self) -> bool {
+        self.meets(0.0).is_some()
+    }
+
+    /// Whether a number meets it; none if more than the number counts.
+    fn meets(&self, value: f64) -> Option<bool> {
+        Some(match self {
+            // Equal infinities have no difference.
+            Self::Near { near, within } => value == *near || (value - near).abs() <= *within,
+            Self::Le(bound) => value <= *bound,
+            Self::Ge(bound) => value >= *bound,
+            Self::Lt(bound) => value < *bound,
+            Self::Gt(bound) => value > *bound,
+            Self::AbsLe(bound) => value.abs() <= *bound,
+            Self::NearTo { .. } | Self::Ne(_) | Self::SameAs(..) | Self::Whole(..) => return None,
+        })
     }
 }
 

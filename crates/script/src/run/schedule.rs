@@ -15,6 +15,8 @@ pub(crate) struct Schedule {
     due: BinaryHeap<Reverse<(u64, usize)>>,
     /// For each step: it applies when its conditions next hold.
     armed: Vec<bool>,
+    /// Some steps wait for conditions.
+    watches: bool,
 }
 
 impl Schedule {
@@ -29,7 +31,16 @@ impl Schedule {
         Self {
             due,
             armed: vec![true; script.steps.len()],
+            watches: script
+                .steps
+                .iter()
+                .any(|step| matches!(step.when, When::Holds { .. })),
         }
+    }
+
+    /// Whether rows are looked at for steps.
+    pub(crate) const fn watches(&self) -> bool {
+        self.watches
     }
 
     /// The next step of this scan, in file order; each is given once.
@@ -40,6 +51,13 @@ impl Schedule {
         }
         let Reverse((_, index)) = self.due.pop()?;
         Some(index)
+    }
+
+    /// How many scans from this one on have no step, as far as is known.
+    pub(crate) fn free_from(&self, scan: u64) -> u64 {
+        self.due
+            .peek()
+            .map_or(u64::MAX, |Reverse((due, _))| due.saturating_sub(scan))
     }
 
     /// Whether more steps wait than may.

@@ -11,7 +11,7 @@ use crate::model::{FaultKind, Point, Script, Variable};
 use crate::read::time;
 use crate::why;
 use standstill_fb::{Direction, PinType, Value};
-use standstill_scan::Executor;
+use standstill_scan::{Executor, Served};
 use standstill_trace::{Trace, shortest};
 
 /// Whether a trace with this many columns has room for the rows of a script.
@@ -23,6 +23,9 @@ fn fits(script: &Script, columns: usize) -> Result<(), RunError> {
     Ok(())
 }
 
+/// Scans with the same commands, beyond the delay of the drives, after which neither an axis nor a drive knows earlier ones.
+const REMEMBERED: u64 = 6;
+
 /// A run of a script that advances on request.
 pub struct Session<'a> {
     script: &'a Script,
@@ -31,6 +34,8 @@ pub struct Session<'a> {
     bench: Bench<'a>,
     /// Scans done.
     scans: u64,
+    /// Those at the end of them in which nothing moved.
+    still: u64,
     over: bool,
     /// Programs no longer run; the axes stop and switch off.
     stopping: bool,
@@ -52,6 +57,15 @@ pub struct Change {
     pub json: String,
 }
 
+/// How far [`Session::advance_far`] came.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ahead {
+    /// Scans done.
+    Scans(u64),
+    /// The run cannot go on: its last rows lack something.
+    Broken,
+}
+
 impl<'a> Session<'a> {
     /// A run before its first scan.
     ///
@@ -69,12 +83,13 @@ impl<'a> Session<'a> {
     /// # Errors
     /// Those of [`Session::new`].
     pub fn lean(script: &'a Script, names: &[String]) -> Result<Self, RunError> {
-        let columns = needed::columns(script, names);
         let header = layout::header(script);
-        let all = header.columns().len();
-        let trace = Trace::with_some(header, |place| columns.contains(&place));
+        let all = header.columns();
+        let columns = needed::columns(script, &all, names);
+        let count = all.len();
+        let trace = Trace::with_some(header, all, |place| columns.contains(&place));
         let session = Self::with(script, Layout::of_some(script, &columns), trace)?;
-        fits(script, all)?;
+        fits(script, count)?;
         Ok(session)
     }
 
@@ -94,6 +109,7 @@ impl<'a> Session<'a> {
             executor: executor(script)?,
             bench: Bench::new(script, layout, trace)?,
             scans: 0,
+            still: 0,
             over: script.scans == 0,
             stopping: false,
             changes: Vec::new(),
@@ -147,6 +163,88 @@ impl<'a> Session<'a> {
             self.bench.is_over(scan) || self.scans >= self.script.scans
         };
         Ok(true)
+    }
+
+    /// Runs the next scan, and at once those behind it in which the programs would do nothing new, at most `most` scans in all;
+    /// the rows are the same as with [`Session::advance`]. Returns how many; 0 if the run was over before.
+    ///
+    /// # Errors
+    /// [`RunError`]; the run is over then. With [`Ahead::Broken`] something happened that only a run by [`Session::advance`] shows.
+    pub fn advance_far(&mut self, most: u64) -> Result<Ahead, RunError> {
+        if !self.advance()? {
+            return Ok(Ahead::Scans(0));
+        }
+        let left = self
+            .script
+            .scans
+            .saturating_sub(self.scans)
+            .min(most.saturating_sub(1));
+        if self.over || self.stopping || left == 0 {
+            return Ok(Ahead::Scans(1));
+        }
+        let rests = self.bench.rests_after(self.scans - 1, &self.machine).min(left);
+        let done = self.go_on(rests);
+        self.bench.check()?;
+        self.bench.went_on(done);
+        self.scans += done;
+        self.over = self.bench.is_over(self.scans - 1) || self.scans >= self.script.scans;
+        if self.bench.is_rest_broken() {
+            self.over = true;
+            return Ok(Ahead::Broken);
+        }
+        Ok(Ahead::Scans(done + 1))
+    }
+
+    /// Does the next scans, in which the programs rest. Returns how many: all of them, unless the rest is over before, or
+    /// programs do not run in every tick.
+    fn go_on(&mut self, scans: u64) -> u64 {
+        let mut drives = self.machine.drives().iter();
+        let delay = drives.try_fold(0, |most, drive| Some(drive.delay()?.max(most)));
+        let settles_in = delay.map(|delay| delay as u64 + REMEMBERED);
+        match settles_in {
+            Some(settles_in) if scans > 0 && self.bench.is_still() => self.stand(scans, settles_in),
+            Some(settles_in) => {
+                self.still = 0;
+                self.move_on(scans, settles_in)
+            }
+            None => {
+                self.still = 0;
+                self.coast(scans, Served::Drives)
+            }
+        }
+    }
+
+    fn coast(&mut self, scans: u64, served: Served) -> u64 {
+        self.executor
+            .coast(scans, served, &mut self.bench, &mut self.machine)
+    }
+
+    /// The same where all axes rest, over drives that have settled after so many scans.
+    fn stand(&mut self, scans: u64, settles_in: u64) -> u64 {
+        let settling = settles_in.saturating_sub(self.still).min(scans);
+        let done = self.coast(settling, Served::Drives);
+        self.still += done;
+        if done < settling {
+            return done;
+        }
+        let stood = self.executor.stand(scans - done);
+        self.bench.repeat_row(stood);
+        done + stood
+    }
+
+    /// The same where axes move: without drives, as long as enough scans are left for these to settle.
+    fn move_on(&mut self, scans: u64, settles_in: u64) -> u64 {
+        let alone = self.bench.moves_alone(&self.machine).min(scans);
+        let alone = alone.saturating_sub(settles_in);
+        let done = self.coast(alone, Served::Axes);
+        if done < alone {
+            if done > 0 {
+                // Nothing mends what drives report.
+                self.bench.break_rest();
+            }
+            return done;
+        }
+        done + self.coast(scans - done, Served::Drives)
     }
 
     /// Makes room for the rows of the whole run, so that scans take no memory for them. It takes at most

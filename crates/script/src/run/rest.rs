@@ -1,0 +1,208 @@
+//! Scans in which the programs rest: each block would do what it did in the scan before, so none is called.
+//!
+//! That is so where no step is due, all variables and pins are what they were a scan before, and no axis does anything but
+//! go on ([`Going`]). Two scans with the same values tell that a block would not come to others in a third one, because what
+//! [`manner`] says a block answers to has stayed the same. Blocks that read numbers of an axis are called all the same; no
+//! other block may depend on theirs.
+
+use super::bench::ScriptMachine;
+use super::values::Values;
+use crate::model::{Instance, Point, Script};
+use standstill_axis::Going;
+use standstill_drives::simulated::{DriveSetup, IdealDriveSetup, PlantSetup};
+use standstill_drives::switches::Switches;
+use standstill_fb::AnyInstance;
+use std::collections::BTreeSet;
+
+/// What the outputs and the effects of a block depend on beside its inputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Manner {
+    /// Its memory, the states of axes and commands, and a time that shows at its outputs.
+    Waits,
+    /// The same, and it acts on its axis by the levels of its inputs: two of them would act in turns.
+    Holds,
+    /// Numbers of an axis, which it reads and does not change.
+    Reads,
+}
+
+/// How a block behaves; none if that is not told here, so that it is called in every scan.
+fn manner(block: &str) -> Option<Manner> {
+    Some(match block {
+        "MC_Power" | "MC_SetOverride" => Manner::Holds,
+        "MC_ReadActualPosition"
+        | "MC_ReadActualVelocity"
+        | "MC_ReadActualTorque"
+        | "MC_ReadMotionState"
+        | "MC_ReadAxisInfo" => Manner::Reads,
+        "MC_Reset"
+        | "MC_ReadStatus"
+        | "MC_ReadAxisError"
+        | "MC_Home"
+        | "MC_Stop"
+        | "MC_Halt"
+        | "MC_MoveAbsolute"
+        | "MC_MoveRelative"
+        | "MC_MoveAdditive"
+        | "MC_MoveVelocity"
+        | "MC_MoveContinuousAbsolute"
+        | "MC_MoveContinuousRelative"
+        | "MC_MoveSuperimposed"
+        | "MC_HaltSuperimposed"
+        | "MC_Jog"
+        | "R_TRIG"
+        | "F_TRIG"
+        | "SR"
+        | "RS"
+        | "CTU"
+        | "CTD"
+        | "CTUD"
+        | "TON"
+        | "TOF"
+        | "TP" => Manner::Waits,
+        _ => return None,
+    })
+}
+
+/// Whether the programs of a run rest.
+pub(super) struct Rest {
+    /// The instances that are called all the same.
+    readers: Vec<usize>,
+    /// The other ones.
+    waiting: Vec<usize>,
+    /// What axes did after the calls of the last scan.
+    going: Vec<Going>,
+    /// The records so far, at the begin of the last scan.
+    records: u64,
+    /// Something came to the last scan from outside.
+    disturbed: bool,
+    /// The scan after which these words were taken, and those of the variables and of the instances that wait.
+    taken: Option<u64>,
+    words: Vec<u64>,
+    /// Room for the next ones.
+    next: Vec<u64>,
+}
+
+impl Rest {
+    /// None if the programs of a script, or what surrounds them, may do something new in any scan.
+    pub(super) fn new(script: &Script) -> Option<Self> {
+        let is_told = script.programs.is_empty()
+            && script.formulas.is_empty()
+            && script
+                .axes
+                .iter()
+                .all(|axis| !axis.on_cam && is_quiet(&axis.drive));
+        let called = |index: &usize| script.blocks.get(*index).is_some_and(|it| !it.left_out);
+        let manner_of = |index: &usize| script.blocks.get(*index).and_then(|it| manner(it.block.name));
+        let all: Vec<usize> = (0..script.blocks.len()).filter(called).collect();
+        let is_known = all.iter().all(|index| manner_of(index).is_some());
+        let (readers, waiting): (Vec<usize>, Vec<usize>) =
+            (all.iter()).partition(|index| manner_of(index) == Some(Manner::Reads));
+        let mut holding = waiting
+            .iter()
+            .filter(|index| manner_of(index) == Some(Manner::Holds));
+        let mut held = BTreeSet::new();
+        let act_alone = holding.all(|index| held.insert(script.blocks.get(*index).map(named_axis)));
+        let reads = |point: &Point| matches!(point, Point::Pin(index, _) if readers.contains(index));
+        let wires = script.blocks.iter().flat_map(|it| &it.wires);
+        let are_apart = !wires.flat_map(|(_, wire)| wire.points()).any(reads);
+        (is_told && is_known && act_alone && are_apart).then(|| Self {
+            readers,
+            waiting,
+            going: Vec::with_capacity(script.axes.len()),
+            records: 0,
+            disturbed: true,
+            taken: None,
+            words: Vec::new(),
+            next: Vec::new(),
+        })
+    }
+
+    /// The instances that are called all the same.
+    pub(super) fn readers(&self) -> &[usize] {
+        &self.readers
+    }
+
+    /// A scan begins; `disturbed` says whether something came from outside.
+    pub(super) fn begin(&mut self, machine: &ScriptMachine, disturbed: bool) {
+        self.disturbed = disturbed;
+        self.records = machine.log().total();
+    }
+
+    /// All blocks were called.
+    pub(super) fn called(&mut self, machine: &ScriptMachine) {
+        self.going.clear();
+        self.going.extend(machine.axes().iter().map(|axis| axis.going()));
+    }
+
+    /// After the last `scan`: whether the programs rest from the next one on, as long as that [`Rest::lasts`] and no step is due.
+    pub(super) fn begins(&mut self, scan: u64, values: &Values, machine: &ScriptMachine) -> bool {
+        if self.disturbed || !self.lasts(machine) {
+            return false;
+        }
+        self.next.clear();
+        self.next
+            .extend(values.variables.iter().map(|value| value.word()));
+        for instance in self
+            .waiting
+            .iter()
+            .filter_map(|index| values.instances.get(*index))
+        {
+            let first = self.next.len();
+            self.next.resize(first + instance.info().pins().count(), 0);
+            instance.put_words(self.next.get_mut(first..).unwrap_or_default());
+        }
+        std::mem::swap(&mut self.words, &mut self.next);
+        let before = self.taken.replace(scan);
+        before.is_some_and(|before| before + 1 == scan) && self.words == self.next
+    }
+
+    /// The same scans later, when these were done without the programs.
+    pub(super) fn went_on(&mut self, scans: u64) {
+        self.taken = self.taken.map(|scan| scan + scans);
+    }
+
+    /// Whether something has happened that nobody could foresee, so that the programs did not rest.
+    pub(super) fn is_broken(&self, machine: &ScriptMachine) -> bool {
+        let is_known = machine.axes().iter().all(|axis| axis.going() != Going::Unknown);
+        !is_known || machine.log().total() != self.records
+    }
+
+    /// Whether the rest lasts over the next scan: each axis does what it did before.
+    pub(super) fn lasts(&self, machine: &ScriptMachine) -> bool {
+        let axes = machine.axes().iter();
+        let go_on = axes
+            .zip(&self.going)
+            .all(|(axis, before)| before.is_onward() && axis.going() == *before);
+        go_on && self.going.len() == machine.axes().len() && machine.log().total() == self.records
+    }
+
+    /// All axes rest.
+    pub(super) fn is_still(&self) -> bool {
+        self.going.iter().all(|going| *going == Going::Rests)
+    }
+
+    /// For how many scans the axes could move without their drives: nobody reads what those report, no axis counts turns, and
+    /// the next few scans with drives mend what both remember.
+    pub(super) fn moves_alone(&self, machine: &ScriptMachine) -> u64 {
+        let axes = machine.axes();
+        if !self.readers.is_empty() || axes.iter().any(|axis| axis.config().modulo.is_some()) {
+            return 0;
+        }
+        axes.iter().map(|axis| axis.goes_on_for()).min().unwrap_or(0)
+    }
+}
+
+/// Whether a drive has no news but positions unless a step disturbs it.
+fn is_quiet(drive: &DriveSetup) -> bool {
+    match drive {
+        DriveSetup::Ideal(IdealDriveSetup { switches, .. })
+        | DriveSetup::Plant(PlantSetup { switches, .. }) => *switches == Switches::NONE,
+        DriveSetup::Cia402(_) => false,
+    }
+}
+
+/// The name of a block, and the axis at its first pin.
+fn named_axis(instance: &Instance) -> (&'static str, Option<u64>) {
+    let axis = instance.constants.iter().find(|(pin, _)| *pin == 0);
+    (instance.block.name, axis.map(|(_, value)| value.word()))
+}
