@@ -532,21 +532,25 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// What `entry`, which takes over now, continues of the present owner's way to follow. A command that must not
-    /// interrupt the motion starts beside a command that waits for its start point.
-    pub(super) fn lend_following(&mut self, entry: &Entry, mode: BufferMode) -> Kept<P::Plan> {
-        Kept {
+    /// What `entry`, which takes over now, continues of the present owner's way to follow, if that does. A command that
+    /// must not interrupt the motion starts beside a command that waits for its start point.
+    pub(super) fn lend_following(&mut self, entry: &Entry, mode: BufferMode) -> Option<Kept<P::Plan>> {
+        let follows = self.follows() || self.follower.awaited.is_some();
+        follows.then(|| Kept {
             coupling: self.coupling_kept(entry),
             phasing: self.lend_phasing(entry),
             awaited: self.follower.awaited.take_if(|_| mode != BufferMode::Aborting),
-        }
+        })
     }
 
     /// The owner before has ended; this goes on.
-    pub(super) fn keep_following(&mut self, kept: Kept<P::Plan>) {
-        self.follower.coupling = kept.coupling;
-        self.follower.phasing = kept.phasing;
-        self.follower.awaited = kept.awaited;
+    pub(super) fn keep_following(&mut self, kept: Option<Kept<P::Plan>>) {
+        debug_assert!(self.follows() || self.follower.phasing.is_none());
+        if let Some(kept) = kept {
+            self.follower.coupling = kept.coupling;
+            self.follower.phasing = kept.phasing;
+            self.follower.awaited = kept.awaited;
+        }
     }
 
     /// The axis follows no master any more.
