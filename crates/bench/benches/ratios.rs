@@ -129,6 +129,62 @@ fn main() {
             }
         );
     }
+    println!("\nto a scan of one axis:");
+    print_many("alone", true, ManyAxes::scan_alone);
+    print_many("MC_Power and MC_MoveAbsolute", false, ManyAxes::scan);
+}
+
+/// Axes of the second table, the most one of them may cost alone, in those of a single one.
+const MANY: [(u16, Option<f64>); 4] = [(1, None), (64, None), (512, Some(1.3)), (4096, Some(1.6))];
+
+/// Prints what one of many axes in the same move costs, to what it costs in a scan of one axis.
+fn print_many(what: &str, is_barred: bool, scan: fn(&mut ManyAxes)) {
+    let mut batches = MANY.map(|(count, _)| scan_of_alike(count, scan));
+    let mut times = MANY.map(|_| Vec::new());
+    for _ in 0..ROUNDS {
+        for (batch, times) in batches.iter_mut().zip(&mut times) {
+            times.push(batch());
+        }
+    }
+    let medians = times.map(|mut times| median(&mut times));
+    for ((count, bar), took) in MANY.into_iter().zip(medians) {
+        let ratio = took / medians[0];
+        let bar = bar.filter(|_| is_barred);
+        println!(
+            "{:<56} {took:>9.2} {:>7} {ratio:>7.2} {:>5}{}",
+            format!("scan of {count} axes, {what}, per axis"),
+            "",
+            bar.map_or(String::from("-"), |bar| bar.to_string()),
+            if bar.is_some_and(|bar| ratio > bar) {
+                "  ABOVE"
+            } else {
+                ""
+            }
+        );
+    }
+}
+
+/// A few scans of `count` axes in the same move, in every round.
+fn scan_of_alike(count: u16, scan: fn(&mut ManyAxes)) -> impl FnMut() -> f64 {
+    let scans = (8192 / u64::from(count)).clamp(2, 40);
+    let started = ManyAxes::in_a_move(count).expect("valid");
+    let (mut axes, mut left) = (started.clone(), IN_MOTION);
+    move || {
+        if left <= scans {
+            axes.clone_from(&started);
+            left = IN_MOTION;
+        }
+        left -= scans + 1;
+        // Whatever was measured before has the caches.
+        scan(&mut axes);
+        let took = time(scans * u64::from(count), || {
+            for _ in 0..scans {
+                scan(black_box(&mut axes));
+            }
+        });
+        assert_eq!(axes.moving(), usize::from(count));
+        took
+    }
 }
 
 fn median(values: &mut [f64]) -> f64 {

@@ -58,12 +58,20 @@ impl ManyAxes {
     /// # Errors
     /// None with these constants.
     pub fn at_rest(only: Option<usize>) -> Result<Self, ConfigError> {
-        Self::with_ways(|number| only.unwrap_or(usize::from(number) % WAYS.len()))
+        Self::with_ways(AXES, |number| only.unwrap_or(usize::from(number) % WAYS.len()))
+    }
+
+    /// So many axes, all in motion by MC_MoveAbsolute.
+    ///
+    /// # Errors
+    /// None with these constants.
+    pub fn in_a_move(count: u16) -> Result<Self, ConfigError> {
+        Ok(Self::with_ways(count, |_| 0)?.set_off())
     }
 
     /// Powered, at rest: every axis will move in the kind given for its number. In the kinds [`SLAVE`]
     /// and [`ON_CAM`] it is a slave of the one before it.
-    fn with_ways(way_of: impl Fn(u16) -> usize) -> Result<Self, ConfigError> {
+    fn with_ways(count: u16, way_of: impl Fn(u16) -> usize) -> Result<Self, ConfigError> {
         let mut rig = Self {
             axes: Vec::new(),
             log: Log::default(),
@@ -73,7 +81,7 @@ impl ManyAxes {
             scan: 0,
         };
         let cam = rig.select();
-        for number in 0..AXES {
+        for number in 0..count {
             let way = way_of(number);
             let config = AxisConfig {
                 start: StartState::Standstill,
@@ -102,7 +110,7 @@ impl ManyAxes {
             });
             rig.add(number, "MC_Power", &[("Enable", Value::Bool(true))]);
             // A little apart, so that they do not switch in the same scans.
-            let part = f64::from(number) / f64::from(AXES);
+            let part = f64::from(number) / f64::from(count);
             let velocity = ("Velocity", Value::Lreal(1.0 + 0.2 * part));
             let distance = |times: f64| ("Distance", Value::Lreal(times * (1.4 + 0.1 * part)));
             let position = ("Position", Value::Lreal(1.4 + 0.1 * part));
@@ -209,7 +217,7 @@ impl ManyAxes {
     /// # Errors
     /// None with these constants.
     pub fn chains_at_rest() -> Result<Self, ConfigError> {
-        Self::with_ways(|number| if number % 8 < 4 { 0 } else { SLAVE })
+        Self::with_ways(AXES, |number| if number % 8 < 4 { 0 } else { SLAVE })
     }
 
     /// The same in motion, all slaves in gear.
@@ -225,7 +233,7 @@ impl ManyAxes {
     /// # Errors
     /// None with these constants.
     pub fn on_cams() -> Result<Self, ConfigError> {
-        let rig = Self::with_ways(|number| if number % 2 == 0 { 0 } else { ON_CAM })?;
+        let rig = Self::with_ways(AXES, |number| if number % 2 == 0 { 0 } else { ON_CAM })?;
         Ok(rig.set_off())
     }
 
@@ -300,6 +308,19 @@ impl ManyAxes {
         let Context { axes, scope, .. } = &mut context;
         scope.instance = InstanceId::default();
         steps::advance(axes, scope);
+        for (axis, feedback) in self.axes.iter_mut().zip(&mut self.feedback) {
+            feedback.position = axis.drive_command().position;
+        }
+        self.scan += 1;
+    }
+
+    /// The same without blocks.
+    pub fn scan_alone(&mut self) {
+        let Self { axes, log, .. } = self;
+        for (axis, feedback) in axes.iter_mut().zip(&self.feedback) {
+            axis.follow_feedback(feedback, &mut Scope::new(self.scan, log));
+        }
+        steps::advance(axes, &mut Scope::new(self.scan, log));
         for (axis, feedback) in self.axes.iter_mut().zip(&mut self.feedback) {
             feedback.position = axis.drive_command().position;
         }

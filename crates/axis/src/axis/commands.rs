@@ -486,48 +486,49 @@ impl Work {
     }
 }
 
-/// A command with its number, its sender and its limits.
+/// A command with its number, its sender and its limits. What every scan asks of an owner comes first.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub(super) struct Entry {
+    /// The place where it ends (u); known once the command is planned.
+    pub end: Option<f64>,
     pub id: CommandId,
     pub instance: InstanceId,
+    /// The override holds it at rest. It continues when the factor of the velocity is raised.
+    pub halted: bool,
+    /// It brakes, or is at rest, because MC_Power bars a direction it needs.
+    pub paused: bool,
+    /// MC_Stop: Execute is still TRUE.
+    pub held: bool,
+    /// It has passed its place, and continues with its end velocity.
+    pub passed: bool,
+    /// It was to pass its end in motion, and has passed it while it was held up.
+    pub is_behind: bool,
+    /// No block follows it: its instance was triggered anew and refused.
+    pub orphaned: bool,
     /// What it does; velocities as the override scales them.
     pub work: Work,
     /// Its limits as the override scales them.
     pub limits: Limits,
     /// The values of the program, before the override.
     pub asked: Asked,
-    /// The override holds it at rest. It continues when the factor of the velocity is raised.
-    pub halted: bool,
-    /// It has passed its place, and continues with its end velocity.
-    pub passed: bool,
     /// The place from which its distance counts (u), once it is known (R13).
     pub from: f64,
     /// The sign for mcCurrentDirection of a velocity, taken when the command became active.
     pub sign: f64,
-    /// The way round to a position on a modulo axis. `None` if the position is one of the frame, with its
-    /// turns.
-    pub direction: Option<Direction>,
     /// Whole turns by which the frame of a modulo axis moves on when it begins.
     pub turns: i64,
-    /// How it follows the command before it.
-    pub mode: BufferMode,
-    /// The place where it ends (u); known once the command is planned.
-    pub end: Option<f64>,
     /// How it is to pass its end, for a blended successor.
     pub passage: Passage,
     /// What is one motion with it.
     pub run: Run,
-    /// It was to pass its end in motion, and has passed it while it was held up.
-    pub is_behind: bool,
-    /// MC_Stop: Execute is still TRUE.
-    pub held: bool,
-    /// It brakes, or is at rest, because MC_Power bars a direction it needs.
-    pub paused: bool,
-    /// No block follows it: its instance was triggered anew and refused.
-    pub orphaned: bool,
     /// The command that its instance gave after it and follows now (B19).
     pub heir: Option<CommandId>,
+    /// The way round to a position on a modulo axis. `None` if the position is one of the frame, with its
+    /// turns.
+    pub direction: Option<Direction>,
+    /// How it follows the command before it.
+    pub mode: BufferMode,
     /// The reason why it can't follow its master now; checked before each motion step.
     pub barred: Option<ErrorId>,
 }

@@ -118,8 +118,6 @@ pub(super) struct Follower<Plan> {
     awaited: Option<Awaited>,
     /// The part of its limits that its slaves leave.
     bound: Bound,
-    /// Its place among axes that follow each other.
-    links: Links,
     /// Whether anything is new, where some axis may follow another.
     steady: Steady,
 }
@@ -133,7 +131,6 @@ impl<P: Plan> Default for Follower<P> {
             phasing: Phasing::default(),
             awaited: None,
             bound: Bound::default(),
-            links: Links::default(),
             steady: Steady::default(),
         }
     }
@@ -582,7 +579,7 @@ impl<P: Planner> Axis<P> {
             return self.await_master_on_cam(camming, entry, scope);
         }
         let Work::Gear(gearing) = entry.work else { return };
-        self.follower.links.set_bound(true);
+        self.links.set_bound(true);
         let known = self.follower.coupling.as_ref().map(|coupling| coupling.gearing);
         if known != Some(gearing) {
             for leg in gearing.legs().into_iter().flatten() {
@@ -627,11 +624,11 @@ impl<P: Planner> Axis<P> {
     /// Its place among axes that follow each other.
     #[inline]
     pub(crate) fn links(&self) -> &Links {
-        &self.follower.links
+        &self.links
     }
 
     pub(crate) fn links_mut(&mut self) -> &mut Links {
-        &mut self.follower.links
+        &mut self.links
     }
 
     /// The masters it follows, and those whose place a command of it waits for.
@@ -644,7 +641,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn note_bound(&mut self, entry: &Entry) {
         self.unsettle();
         if matches!(entry.work, Work::Gear(_) | Work::Cam(_)) {
-            self.follower.links.set_bound(true);
+            self.links.set_bound(true);
         }
     }
 
@@ -654,7 +651,7 @@ impl<P: Planner> Axis<P> {
         let couples = |entry: &Entry| matches!(entry.work, Work::Gear(_) | Work::Cam(_));
         let waits = !self.queue.is_empty() && self.queue.iter().any(couples);
         let is_bound = self.is_coupled() || self.is_on_cam() || self.follower.awaited.is_some() || waits;
-        self.follower.links.set_bound(is_bound);
+        self.links.set_bound(is_bound);
         waits
     }
 

@@ -3,16 +3,17 @@
 use standstill_planner::turns::split;
 
 /// The actual position of this scan and of the two before, and the reasons why they may not be comparable
-/// with the next one.
+/// with the next one. What every scan looks at comes last, beside more of that in an axis.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub(super) struct Feedback {
+    seam: Option<Seam>,
     /// As last latched (u).
     position: f64,
     /// The actual position of the last scan (u).
     before: f64,
     /// The actual position of the scan before the last (u).
     earlier: f64,
-    seam: Option<Seam>,
 }
 
 /// A change between the last latched position and the next one.

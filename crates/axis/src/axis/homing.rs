@@ -213,7 +213,7 @@ impl<P: Planner> Axis<P> {
     /// The switch to search for; `up`: the last approach goes towards larger positions.
     fn home_signal(&self, up: bool) -> bool {
         match self.config.homing.procedure {
-            Procedure::AbsoluteSwitch => self.beside.signals.home_switch,
+            Procedure::AbsoluteSwitch => self.signals.home_switch,
             Procedure::LimitSwitch => self.is_on_limit_switch(up),
             Procedure::Direct | Procedure::ReferencePulse | Procedure::Block | Procedure::Drive => false,
         }

@@ -14,10 +14,10 @@ impl<P: Planner> Axis<P> {
     /// Takes this scan's signals. If the drive counts the other way, its positive switch is at the lower
     /// end.
     pub(super) fn latch_signals(&mut self, told: DriveSignals) {
-        self.beside.signals = told;
+        self.signals = told;
         if self.config.scaling.is_some_and(|scaling| scaling.invert()) {
-            self.beside.signals.limit_switch_positive = told.limit_switch_negative;
-            self.beside.signals.limit_switch_negative = told.limit_switch_positive;
+            self.signals.limit_switch_positive = told.limit_switch_negative;
+            self.signals.limit_switch_negative = told.limit_switch_positive;
         }
     }
 
@@ -25,9 +25,9 @@ impl<P: Planner> Axis<P> {
     #[inline]
     pub(super) fn is_on_limit_switch(&self, up: bool) -> bool {
         if up {
-            self.beside.signals.limit_switch_positive
+            self.signals.limit_switch_positive
         } else {
-            self.beside.signals.limit_switch_negative
+            self.signals.limit_switch_negative
         }
     }
 

@@ -77,6 +77,7 @@ use crate::{
 };
 pub use commands::WorkKind;
 use commands::{Ending, Entry, Work};
+use core::mem::offset_of;
 pub use coupling::{CamFit, CamLaid, Coupled};
 pub(crate) use coupling::{Future, Part, Seen, Turn, Values, View};
 pub use factors::Factors;
@@ -97,8 +98,6 @@ use standstill_planner::{Planner, Setpoint, Standard};
 /// The values exchanged with a drive beside its motion.
 #[derive(Clone, Copy, Debug, Default)]
 struct BesideMotion {
-    /// Switches, as told last.
-    signals: DriveSignals,
     report: DriveReport,
     order: DriveOrder,
     probes: probe::Probes,
@@ -218,49 +217,62 @@ impl Outlook {
 }
 
 /// One axis.
+// Hosts with thousands of axes wait for memory. So what every scan of a motion looks at lies together, in the order of
+// the fields: the end of `feedback` up to the beginning of the plan in `mover`, and the beginning of `owner`.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Axis<P: Planner = Standard> {
-    id: AxisId,
-    config: AxisConfig,
-    planner: P,
-    state: AxisState,
-    /// What moves it.
-    mover: Mover<P::Plan>,
-    modulo: Option<Modulo>,
+    owner: Option<Entry>,
+    power: Power,
     /// Actual positions.
     feedback: Feedback,
-    /// The peripherals of the drive.
-    beside: BesideMotion,
-    /// What positions are called.
-    frame: Frame,
-    owner: Option<Entry>,
-    /// How it follows others, and is followed.
-    follower: coupling::Follower<P::Plan>,
+    /// How little must be checked in a scan.
+    calm: Calm,
+    state: AxisState,
+    /// Positions are taken and told as they are: no increments, no turns, no shift, and no measured values that
+    /// slaves could follow.
+    is_plain: bool,
     /// The owner is MC_Stop, at rest, and held by its Execute.
     stop_held: bool,
-    queue: Queue,
-    fates: Fates,
-    power: Power,
-    failure: failure::Failure,
-    homed: bool,
-    /// The search of MC_Home.
-    homing: homing::Search,
+    /// The owner has values that its motion does not use yet, because a superimposed motion leaves no
+    /// room.
+    replan_due: bool,
     /// A queued MC_SetPosition takes effect at the next latch.
     shift_due: bool,
+    homed: bool,
+    /// Switches, as told last.
+    signals: DriveSignals,
+    id: AxisId,
+    planner: P,
+    /// Its place among axes that follow each other.
+    links: coupling::Links,
+    /// What moves it.
+    mover: Mover<P::Plan>,
+    /// What positions are called.
+    frame: Frame,
+    modulo: Option<Modulo>,
+    /// How it follows others, and is followed.
+    follower: coupling::Follower<P::Plan>,
+    /// The peripherals of the drive.
+    beside: BesideMotion,
+    /// Its actual positions as slaves see them.
+    measured: measured::Measured,
+    config: AxisConfig,
     /// The override.
     factors: Factors,
     /// The parameters that the application can write.
     parameters: parameters::Parameters,
+    failure: failure::Failure,
+    /// The search of MC_Home.
+    homing: homing::Search,
     /// The end of a move in position.
     arrival: supervision::Arrival,
-    /// The owner has values that its motion does not use yet, because a superimposed motion leaves no
-    /// room.
-    replan_due: bool,
-    /// How little must be checked in a scan.
-    calm: Calm,
-    /// Its actual positions as slaves see them.
-    measured: measured::Measured,
+    queue: Queue,
+    fates: Fates,
 }
+
+// Whatever comes in between costs every scan of many axes.
+const _: () = assert!(offset_of!(Axis, mover) - offset_of!(Axis, feedback) <= 104);
 
 impl<P: Planner> Axis<P> {
     /// The axis `id`, set up as `config` says, moved by `planner`.
@@ -271,6 +283,8 @@ impl<P: Planner> Axis<P> {
         config.check()?;
         let powered = config.start == StartState::Standstill;
         let mover = Mover::new(&config, planner.cycle(), powered)?;
+        let measured = measured::Measured::new(&config);
+        let is_plain = config.scaling.is_none() && config.modulo.is_none() && !measured.is_there();
         Ok(Self {
             id,
             config,
@@ -300,7 +314,10 @@ impl<P: Planner> Axis<P> {
             arrival: supervision::Arrival::default(),
             replan_due: false,
             calm: Calm::No,
-            measured: measured::Measured::new(&config),
+            measured,
+            signals: DriveSignals::default(),
+            links: coupling::Links::default(),
+            is_plain,
         })
     }
 
@@ -539,6 +556,9 @@ impl<P: Planner> Axis<P> {
     // the rest of the scan's drive command.
     #[inline]
     fn position_at_drive(&self, position: f64) -> DrivePosition {
+        if self.is_plain {
+            return DrivePosition::Units(position);
+        }
         let position = position - self.frame.shift();
         match (&self.config.scaling, &self.modulo) {
             (None, None) => DrivePosition::Units(position),

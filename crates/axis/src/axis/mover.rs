@@ -9,32 +9,39 @@ mod shaping;
 
 use super::superimposed::Layer;
 use crate::{AxisConfig, ConfigError};
+use core::mem::offset_of;
 pub(super) use motion::{Motion, scans_to_goal};
 use shaping::Shaping;
-use standstill_planner::{Limits, Plan, Setpoint};
+use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
 
-/// The set-point of an axis and what determines the next one.
+/// The set-point of an axis and what determines the next one. What every scan looks at comes first.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub(super) struct Mover<P: Plan> {
+    /// There is `shaping`.
+    is_shaped: bool,
+    /// The motion may leave the software limits, so every set-point is checked.
+    is_watched: bool,
     /// Of the motion; on a modulo axis its position may be some turns away from the one shown.
     setpoint: Setpoint,
     /// The last velocity that was not zero (u/s): its sign is mcCurrentDirection.
     last_velocity: f64,
     /// Limits of the present motion, for the command that takes over from it.
     in_force: Limits,
-    /// The motion may leave the software limits, so every set-point is checked.
-    is_watched: bool,
     motion: Motion<P>,
-    /// What is between the motion and what is published.
-    shaping: Option<Shaping>,
     /// Limits of the motion before, for planning the present one anew.
     before: Limits,
     /// The largest magnitude (u) that coordinates moved under the plan in progress gave its positions; see
     /// [`guard`](super::guard).
     coarsest: f64,
+    /// What is between the motion and what is published.
+    shaping: Option<Shaping>,
     /// A second motion on top of it.
     layer: Option<Layer<P>>,
 }
+
+// The plan has in front what most of its scans look at.
+const _: () = assert!(offset_of!(Mover<<Standard as Planner>::Plan>, motion) <= 96);
 
 /// The names of the places of a [`Mover`], to go back to.
 #[derive(Clone, Copy, Debug)]
@@ -67,13 +74,15 @@ impl<P: Plan> Mover<P> {
     /// # Errors
     /// [`ConfigError::Vibration`] names the mode.
     pub fn new(config: &AxisConfig, cycle: f64, holds: bool) -> Result<Self, ConfigError> {
+        let shaping = Shaping::new(&config.vibration, cycle, config.position)?;
         Ok(Self {
             setpoint: Setpoint::at_rest(config.position),
             last_velocity: 1.0,
             in_force: config.limits,
             is_watched: false,
             motion: if holds { Motion::Hold } else { Motion::Follow },
-            shaping: Shaping::new(&config.vibration, cycle, config.position)?,
+            is_shaped: shaping.is_some(),
+            shaping,
             before: config.limits,
             coarsest: 0.0,
             layer: None,

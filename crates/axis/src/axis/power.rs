@@ -33,17 +33,17 @@ impl<P: Planner> Axis<P> {
         let on_switch = feedback.signals.limit_switch_positive | feedback.signals.limit_switch_negative;
         if self.calm.is_any()
             && feedback.enabled
+            && feedback.voltage
             && !on_switch
             && feedback.fault.is_none()
             && feedback.comms == Comms::Ok
             && self.latch_usual(feedback.position)
         {
             debug_assert_eq!(self.calm, self.calmness());
-            if self.is_measured() {
+            if !self.is_plain && self.is_measured() {
                 self.measure_actual(Some(feedback.position));
             }
-            self.beside.signals = feedback.signals;
-            self.power.latch_voltage(feedback.voltage);
+            self.signals = feedback.signals;
         } else {
             self.follow_change(feedback, scope);
         }
@@ -54,6 +54,7 @@ impl<P: Planner> Axis<P> {
     #[inline(always)]
     fn latch_usual(&mut self, told: DrivePosition) -> bool {
         let position = match (told, &self.modulo) {
+            (DrivePosition::Units(units), _) if self.is_plain => units,
             (DrivePosition::Units(units), None) => units,
             (DrivePosition::Increments(increments), None) => self.position_at_increment(increments),
             (_, Some(_)) => return self.latch_round(told),

@@ -204,7 +204,7 @@ impl<P: Planner> Axis<P> {
 
     /// The signals of the drive beside its position.
     pub fn drive_signals(&self) -> DriveSignals {
-        self.beside.signals
+        self.signals
     }
 }
 

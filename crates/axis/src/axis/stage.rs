@@ -112,14 +112,8 @@ impl Power {
     /// On as requested, with nothing pending.
     pub fn is_calm(&self) -> bool {
         let is_as_wanted = self.on && self.wanted && self.stage == Stage::Ready && self.overruled.is_none();
-        let is_well = self.fault.is_none() && self.comms == Comms::Ok;
+        let is_well = self.voltage && self.fault.is_none() && self.comms == Comms::Ok;
         is_as_wanted && is_well
-    }
-
-    /// Takes the report of a drive without a fault.
-    #[inline]
-    pub fn latch_voltage(&mut self, voltage: bool) {
-        self.voltage = voltage;
     }
 
     /// Takes the drive's report beside its power; `comms` includes the check of the position.

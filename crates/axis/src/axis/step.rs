@@ -18,7 +18,7 @@ impl<P: Planner> Axis<P> {
         // Short of the goal a plan needs a step and nothing else, and so does an endless motion nobody waits for.
         if self.calm == Calm::Alone && (self.mover.is_short_of_goal() || self.is_cruising()) {
             self.step_along_plan(scope);
-            if self.is_far_round() {
+            if !self.is_plain && self.is_far_round() {
                 self.bring_back();
             }
         } else {

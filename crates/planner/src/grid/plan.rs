@@ -10,21 +10,23 @@ use crate::{Field, Limits, Order, PlanError};
 ///
 /// Every output is computed from the scan count alone, so nothing accumulates: the last set-point is the
 /// target to the bit, and asking for scans in any order gives the same bits.
+// What a set-point at constant velocity needs comes first: many axes wait for memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct GridPlan {
-    pub(super) start: f64,
-    pub(super) target: f64,
-    pub(super) cycle: f64,
-    /// The factors of the whole-number derivatives 0 to m of the profile (docs/planner.md, eq. 25).
-    pub(super) scale: [f64; 5],
-    /// The m box lengths of order m, shortest first, then zeros.
-    pub(super) boxes: [u32; 4],
     pub(super) scans: u32,
     pub(super) order: Order,
     method: Method,
     /// Whether the position sums need more than 64 bits.
     pub(super) wide: bool,
+    pub(super) start: f64,
     pub(super) cruise: Cruise,
+    /// The factors of the whole-number derivatives 0 to m of the profile (docs/planner.md, eq. 25).
+    pub(super) scale: [f64; 5],
+    pub(super) target: f64,
+    pub(super) cycle: f64,
+    /// The m box lengths of order m, shortest first, then zeros.
+    pub(super) boxes: [u32; 4],
 }
 
 /// A plan is copied about by value, so it stays small.

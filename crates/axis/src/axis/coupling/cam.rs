@@ -576,7 +576,7 @@ impl<P: Planner> Axis<P> {
 
     /// `entry` moves onto a cam from the next motion step on, or has new values for it.
     pub(super) fn await_master_on_cam(&mut self, camming: Camming, entry: &Entry, scope: &mut Scope<'_>) {
-        self.follower.links.set_bound(true);
+        self.links.set_bound(true);
         let known = self.follower.on_cam.as_ref().map(|on_cam| on_cam.camming);
         if known != Some(camming) {
             let event = Event::OnCam {

@@ -1,14 +1,16 @@
 //! The place of an axis in the chains of masters and slaves. [`couple`](crate::couple) finds it from all
 //! axes.
 
-/// The place of an axis, and whether it follows a master or some slave follows it.
+/// The place of an axis, and whether it follows a master or some slave follows it. What every scan looks at comes
+/// first.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub(crate) struct Links {
-    rank: u16,
-    turn: Turn,
     is_bound: bool,
     is_followed: bool,
     is_above: bool,
+    rank: u16,
+    turn: Turn,
 }
 
 /// One entry of the order in which axes move. The entries of all axes, by number, form the whole order.

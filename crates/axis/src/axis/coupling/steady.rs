@@ -187,7 +187,7 @@ impl<P: Planner> Axis<P> {
     /// Called before its step, if some slave may follow it: notes its place.
     #[inline(always)]
     pub(crate) fn note_before(&mut self, scan: u64) {
-        if !self.follower.links.is_followed() {
+        if !self.links.is_followed() {
             return;
         }
         if self.modulo.is_none() {
@@ -196,7 +196,7 @@ impl<P: Planner> Axis<P> {
         } else {
             self.note_before_round(scan);
         }
-        if !self.follower.links.is_bound() {
+        if !self.links.is_bound() {
             self.note_source();
         }
     }

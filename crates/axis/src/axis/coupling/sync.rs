@@ -253,7 +253,7 @@ impl<P: Planner> Axis<P> {
         }
         self.end_awaited(Fate::Aborted);
         let entry = Entry::new(self.new_id(), scope.instance, work, limits, mode);
-        self.follower.links.set_bound(true);
+        self.links.set_bound(true);
         self.unsettle();
         self.follower.awaited = Awaited::new(entry);
         Ok(entry.id)

@@ -77,6 +77,7 @@ impl<P: Planner> Axis<P> {
         self.homing.reference = position;
         let by = position - self.place_of(reference);
         self.frame.shift_by(by);
+        self.is_plain = false;
         let actual = self.shown_place(self.feedback.position() + by);
         let step = actual - self.mover.setpoint().position;
         self.tell_moved(step, &mut self.owner_scope(scope));

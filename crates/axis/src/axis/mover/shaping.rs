@@ -190,14 +190,14 @@ impl<P: Plan> Mover<P> {
     /// A shaper stands between its motion and its drive.
     #[inline(always)]
     pub fn is_shaped(&self) -> bool {
-        self.shaping.is_some()
+        self.is_shaped
     }
 
     /// Nothing of the motion is left in the shaper: it rests, or has a constant velocity.
     // What axes without a shaper have to do with one is a look at a tag, in line; all else is out of it.
     #[inline(always)]
     pub fn is_through(&self) -> bool {
-        self.shaping.is_none() || self.has_come_out()
+        !self.is_shaped || self.has_come_out()
     }
 
     #[cold]
@@ -217,7 +217,7 @@ impl<P: Plan> Mover<P> {
     /// The set-point for the drive, in the frame of the motion.
     #[inline(always)]
     pub fn commanded(&self) -> Setpoint {
-        if self.shaping.is_none() {
+        if !self.is_shaped {
             return self.setpoint;
         }
         self.shaped()
@@ -226,7 +226,7 @@ impl<P: Plan> Mover<P> {
     /// Position and velocity of that: what a drive is told.
     #[inline(always)]
     pub fn for_drive(&self) -> (f64, f64) {
-        if self.shaping.is_none() {
+        if !self.is_shaped {
             return (self.setpoint.position, self.setpoint.velocity);
         }
         let shaped = self.shaped();
@@ -255,7 +255,7 @@ impl<P: Plan> Mover<P> {
     /// The end of a motion step: what is published follows the motion. The past is kept in `history`.
     #[inline(always)]
     pub fn shape(&mut self, history: &mut [Setpoint]) {
-        if self.shaping.is_some() {
+        if self.is_shaped {
             self.shape_setpoint(history);
         }
     }
