@@ -218,11 +218,15 @@ impl Outlook {
 
 /// One axis.
 // Hosts with thousands of axes wait for memory. So what every scan of a motion looks at lies together, in the order of
-// the fields: the end of `feedback` up to the beginning of the plan in `mover`, and the beginning of `owner`.
+// the fields: the beginning of `owner`, and the end of `feedback` up to the beginning of the plan in `mover`. What some
+// axes need in every scan stands in between.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub struct Axis<P: Planner = Standard> {
     owner: Option<Entry>,
+    /// What positions are called.
+    frame: Frame,
+    modulo: Option<Modulo>,
     power: Power,
     /// Actual positions.
     feedback: Feedback,
@@ -248,9 +252,6 @@ pub struct Axis<P: Planner = Standard> {
     links: coupling::Links,
     /// What moves it.
     mover: Mover<P::Plan>,
-    /// What positions are called.
-    frame: Frame,
-    modulo: Option<Modulo>,
     /// How it follows others, and is followed.
     follower: coupling::Follower<P::Plan>,
     /// The peripherals of the drive.
