@@ -52,7 +52,7 @@ impl<P: Planner> Axis<P> {
 
     /// The plan of `entry` that turns at `end`, if what comes after is done sooner like that than with a rest.
     ///
-    /// Cost: at most that of eight plans.
+    /// Cost: for each of [`PARTS`] a plan and a turn, and two plans with a rest; in the mean that of seven plans.
     pub(super) fn turned(
         &self,
         entry: &Entry,
