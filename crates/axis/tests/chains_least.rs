@@ -4,9 +4,9 @@
 //! ways, the same dynamics and others, onwards and back. The first word of a line is the least total, the second the scans of each
 //! move in it: the smallest total found for which the linear programme over the snaps (at order 3 the jerks) of all scans has a
 //! solution. In it each end is passed in its scan, not before, with at most the speed its blending mode asks for, where the next move
-//! leads back at rest and exactly there; every move keeps its limits at every scan end, and goes its way only. The search takes scans
+//! leads back without velocity and exactly there; every move keeps its limits at every scan end, and goes its way only. The search takes scans
 //! off one move, or gives some to another, as long as the programme has a solution. It was made with SciPy's HiGHS, with no part of
-//! this project. With exactly the speed asked for, wherever that can be had, the totals were the same in the 40 cases tried.
+//! this project. With exactly the speed asked for, wherever that can be had, the totals of the first 60 are the same.
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, Direction, Dynamics, Limits, Log, QUEUE_MAX,
