@@ -109,6 +109,8 @@ impl Case {
             || way / rate >= longest * longest
             || change / jerk >= longest * longest
             || way / jerk >= cubed
+            || self.start.acceleration.abs() / jerk >= longest
+            || self.start.jerk.abs() / snap >= longest
             || change / snap >= cubed
             || way / snap >= cubed * longest
     }
