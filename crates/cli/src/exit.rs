@@ -70,6 +70,7 @@ impl Failure {
         feature = "lsp",
         feature = "mcp",
         feature = "pages",
+        feature = "soak",
         feature = "st",
         feature = "sweep",
         feature = "watch"

@@ -41,6 +41,7 @@ mod run;
 mod saved;
 #[cfg(feature = "serve")]
 mod serve;
+#[cfg(feature = "soak")]
 mod soak;
 #[cfg(feature = "st")]
 mod st;
@@ -54,7 +55,9 @@ mod watch;
 
 pub use run::verdict;
 
-use args::{Arguments, Cam, Command, Schema, Soak, St};
+#[cfg(feature = "soak")]
+use args::Soak;
+use args::{Arguments, Cam, Command, Schema, St};
 use clap::Parser;
 use exit::{Exit, Failure};
 use out::Out;
@@ -263,9 +266,11 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Sweep(arguments) => sweep::sweep(arguments, out),
         #[cfg(not(feature = "sweep"))]
         Command::Sweep(_) => Err(Failure::left_out("sweep")),
+        #[cfg(feature = "soak")]
         Command::Soak {
             what: Soak::Planner { seed, count, resume },
         } => soak::planner(*seed, *count, resume.as_deref(), out),
+        #[cfg(feature = "soak")]
         Command::Soak {
             what:
                 Soak::Blocks {
@@ -275,6 +280,8 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
                     failures,
                 },
         } => soak::blocks(*seed, *count, resume.as_deref(), failures, out),
+        #[cfg(not(feature = "soak"))]
+        Command::Soak { .. } => Err(Failure::left_out("soak")),
         Command::Init { folder } => init::init(folder, out),
         Command::Cam { what } => cam::cam(what, out),
         Command::Blocks {
