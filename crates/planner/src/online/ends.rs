@@ -332,9 +332,9 @@ impl<'a> Ends<'a> {
     }
 
     /// To the end in whole scans of the length `scan`, without going back: a ramp to a velocity towards `side`, a cruise with it and
-    /// the way back from the end, turned (O21). `None` where the slowest way that is left to the end is too long.
+    /// the way back from the end, turned (O22). `None` where the slowest way that is left to the end is too long.
     ///
-    /// The least whole number of scans follows from the fastest such move, the velocity from that number (O22).
+    /// The least whole number of scans follows from the fastest such move, the velocity from that number (O23).
     pub(super) fn turning(&self, start: &Setpoint, side: f64, scan: f64) -> Option<Wide> {
         let end = self.end();
         let both = |velocity: f64| {

@@ -1,7 +1,7 @@
 //! Moves that turn at their target: velocity 0 there, in a scan, with the acceleration that leads back.
 //!
 //! What stands here: the motion to the turn. What does not: what comes behind it, and which acceleration is best. Equations
-//! (O21) and (O22) are in `docs/planner-online.md`.
+//! (O22) and (O23) are in `docs/planner-online.md`.
 
 use super::ends::Ends;
 use super::ladder::Found;
