@@ -147,11 +147,11 @@ impl<P: Planner> Axis<P> {
         if following {
             self.mover.stand_at(self.feedback.position());
         }
+        self.stir();
         if self.config.scaling.is_some() {
             self.frame.shift_by(by);
         } else {
             // Out of operation the drive stands at its actual position, to which it may have been pushed.
-            self.stir();
             self.frame.rename(self.setpoint().position);
         }
         self.mover
@@ -212,10 +212,10 @@ impl<P: Planner> Axis<P> {
         self.frame.count_move();
         self.rename_places();
         self.rename_actual(self.mover.setpoint().position, position);
+        self.stir();
         if self.config.scaling.is_some() {
             self.frame.shift_by(position - self.mover.setpoint().position);
         } else {
-            self.stir();
             self.frame.rename(position);
         }
         self.mover.stand_at(position);
