@@ -166,6 +166,16 @@ impl Rig {
         }
     }
 
+    /// Velocities times `velocity` from now on.
+    pub fn set_override(&mut self, velocity: f64) {
+        let factors = Factors {
+            velocity,
+            ..Factors::ONE
+        };
+        let scope = &mut Scope::new(self.scan, &mut self.log);
+        self.axis.set_override(factors, scope).expect("good factors");
+    }
+
     /// Scans until it stands.
     pub fn run(&mut self) -> u64 {
         while self.axis.state() != AxisState::Standstill {
@@ -363,12 +373,7 @@ fn an_override_on_the_way_keeps_order_and_limits() {
         let arrivals = vec![0; ends.len()];
         chain_in_time(limits, &moves, &arrivals, |rig| {
             if changes.below(40) == 0 {
-                let factors = Factors {
-                    velocity: changes.between(0.2, 1.0),
-                    ..Factors::ONE
-                };
-                let scope = &mut Scope::new(rig.scan, &mut rig.log);
-                rig.axis.set_override(factors, scope).expect("good factors");
+                rig.set_override(changes.between(0.2, 1.0));
             }
         });
     }
@@ -395,13 +400,7 @@ fn a_halt_on_the_way_is_no_reason_to_go_back() {
         while rig.axis.state() != AxisState::Standstill {
             assert!(rig.scan < LONGEST, "seed {seed}: does not end");
             if rig.scan == halt || rig.scan == on {
-                let velocity = if rig.scan == on { 1.0 } else { 0.0 };
-                let factors = Factors {
-                    velocity,
-                    ..Factors::ONE
-                };
-                let scope = &mut Scope::new(rig.scan, &mut rig.log);
-                rig.axis.set_override(factors, scope).expect("good factors");
+                rig.set_override(if rig.scan == on { 1.0 } else { 0.0 });
             }
             let before = rig.axis.setpoint().position;
             steps::advance(

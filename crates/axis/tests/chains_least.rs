@@ -8,17 +8,9 @@
 //! off one move, or gives some to another, as long as the programme has a solution. It was made with SciPy's HiGHS, with no part of
 //! this project. With exactly the speed asked for, wherever that can be had, the totals of the first 60 are the same.
 
-use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, Direction, Dynamics, Limits, Log, QUEUE_MAX,
-    Request, Scope, Standard, StartState, steps,
-};
+use crate::chains::Rig;
+use standstill_axis::{BufferMode, Dynamics, Limits};
 use std::collections::BTreeMap;
-use std::slice;
-
-const CYCLE: f64 = 0.001;
-
-/// A motion that takes longer never ends.
-const MOST_SCANS: u64 = 2_000;
 
 struct Move {
     mode: BufferMode,
@@ -79,34 +71,13 @@ impl Case {
         Self { limits, moves, least }
     }
 
-    /// Scans until the last is done.
+    /// Scans until the last is done; on the way each end is passed in order and no limit left.
     fn scans(&self) -> u64 {
-        let config = AxisConfig {
-            start: StartState::Standstill,
-            queue: QUEUE_MAX,
-            ..AxisConfig::new(self.limits)
-        };
-        let mut axis = Axis::new(AxisId::new(0), config, Standard::new(CYCLE)).unwrap();
-        let mut log = Log::default();
+        let mut rig = Rig::new(self.limits);
         for next in &self.moves {
-            let request = Request {
-                command: Command::MoveAbsolute {
-                    position: next.end,
-                    dynamics: next.dynamics,
-                    direction: Direction::Unset.into(),
-                },
-                buffer_mode: next.mode.into(),
-                replaces: None,
-            };
-            axis.command(&request, &mut Scope::new(0, &mut log)).unwrap();
+            rig.move_with(next.end, next.mode, next.dynamics);
         }
-        for scan in 0..MOST_SCANS {
-            if axis.state() == AxisState::Standstill {
-                return scan;
-            }
-            steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, &mut log));
-        }
-        panic!("it never ends")
+        rig.run()
     }
 }
 

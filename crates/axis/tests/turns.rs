@@ -6,7 +6,7 @@
 
 use crate::chains::{BLENDING, CYCLE, LONGEST, Rig, drawn_dynamics, drawn_limits};
 use standstill_axis::{
-    AxisConfig, AxisState, BufferMode, Command, Dynamics, Factors, Fate, Limits, Scope, Superimpose, steps,
+    AxisConfig, AxisState, BufferMode, Command, Dynamics, Fate, Limits, Scope, Superimpose, steps,
 };
 use standstill_testkit::Random;
 use std::slice;
@@ -158,19 +158,11 @@ fn overrides_leave_the_turns_where_they_are() {
             moves[number].end = moves[number - 1].end + side * moves[0].end.signum() * way;
         }
         told(limits, &moves, true, |rig| {
-            let velocity = if rig.scan > 3_000 {
-                1.0
+            if rig.scan > 3_000 {
+                rig.set_override(1.0);
             } else if random.below(20) == 0 {
-                [0.05, 0.3, 0.9, 1.0][random.below(4) as usize]
-            } else {
-                return;
-            };
-            let factors = Factors {
-                velocity,
-                ..Factors::ONE
-            };
-            let scope = &mut Scope::new(rig.scan, &mut rig.log);
-            rig.axis.set_override(factors, scope).expect("good factors");
+                rig.set_override([0.05, 0.3, 0.9, 1.0][random.below(4) as usize]);
+            }
         });
     }
 }
