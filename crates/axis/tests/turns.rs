@@ -151,7 +151,7 @@ fn overrides_leave_the_turns_where_they_are() {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let mut moves = moves(&mut random, &limits, 1);
-        // An end that is passed at speed would be passed twice where the override is lowered too late for the speed.
+        // Where the override is lowered too late for the speed at an end, that is passed faster, and may be a scan late.
         for number in 1..moves.len() {
             let way = (moves[number].end - moves[number - 1].end).abs();
             let side = if number % 2 == 0 { 1.0 } else { -1.0 };

@@ -61,7 +61,7 @@ impl<P: Planner> Axis<P> {
             None => {
                 let motion = self.plan_from(&mut owner, &here, &before)?;
                 let motion = self.kept_inside(&mut owner, motion, &here, &before)?;
-                if self.has_to_turn(&owner, &motion) {
+                if self.is_too_late(&owner, &motion) {
                     self.own(owner);
                     return Ok(());
                 }

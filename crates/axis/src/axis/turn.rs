@@ -107,19 +107,31 @@ impl<P: Planner> Axis<P> {
         plan.turn().map(u64::from) == Some(*scans)
     }
 
-    /// Whether `owner`, planned anew along `motion`, would come to its end only by way of going back, and turns there as planned: it
-    /// is too late for anything else, so it goes on as planned.
-    pub(super) fn has_to_turn(&self, owner: &Entry, motion: &Motion<P::Plan>) -> bool {
+    /// Whether `owner`, planned anew along `motion`, would come to its end only by way of going back, and passes it or turns there as
+    /// planned: it is too late for anything else, so it goes on as planned.
+    pub(super) fn is_too_late(&self, owner: &Entry, motion: &Motion<P::Plan>) -> bool {
         let (Motion::Run { plan, .. }, Some(end)) = (motion, owner.end) else {
             return false;
         };
         let is_same = |was: &Entry| was.id == owner.id && was.end == owner.end && !was.halted;
-        self.is_to_turn()
+        (self.is_to_turn() || self.is_to_pass(owner))
             && !self.goal_reached()
             && !owner.halted
             && self.owner.as_ref().is_some_and(is_same)
             && plan.turn().is_none()
             && self.turns(plan, end > self.mover.setpoint().position)
+    }
+
+    /// Whether the goal of the motion is an end that is passed at speed, and so it is of `owner`.
+    fn is_to_pass(&self, owner: &Entry) -> bool {
+        let Motion::Run { plan, scans, .. } = self.mover.motion() else {
+            return false;
+        };
+        let is_one = |entry: &Entry| entry.run.count == 0;
+        !owner.passage.rests()
+            && is_one(owner)
+            && self.owner.as_ref().is_some_and(is_one)
+            && plan.at(*scans).velocity != 0.0
     }
 
     /// Nothing takes over where it turns: it goes back to the end and comes to rest there.
