@@ -25,7 +25,7 @@ pub fn doing(what: impl Into<String>) {
 
 /// Registers `first`, which is called before the program ends: a terminal that was taken over must be
 /// restored.
-#[cfg(feature = "watch")]
+#[cfg(all(feature = "watch", any(unix, windows)))]
 pub fn before_end(first: fn()) {
     *locked(&FIRST) = Some(first);
 }

@@ -2,6 +2,7 @@
 
 use crate::args::WatchArguments;
 use crate::exit::{Exit, Failure};
+#[cfg(any(unix, windows))]
 use crate::failing::with_ending;
 #[cfg(any(unix, windows))]
 use standstill_script::suite::{self, shown};
