@@ -1,10 +1,7 @@
 //! The guarantees of instances for a host: which command they follow, and how long their results are
 //! kept.
 
-#[path = "bad_input/bench.rs"]
-mod bench;
-
-use bench::Bench;
+use crate::bench::Bench;
 use standstill_axis::{AxisId, AxisState, ErrorId, Event};
 use standstill_fb::{TableRef, Value};
 

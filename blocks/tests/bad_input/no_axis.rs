@@ -1,7 +1,7 @@
 //! Every block wired to no axis, or to one that does not exist.
 
+use super::{refers_to_axis, same_motion, trigger};
 use crate::bench::{AXIS, Bench};
-use crate::{refers_to_axis, same_motion, trigger};
 use standstill_axis::{AxisId, ErrorId, Event};
 use standstill_blocks::REGISTRY;
 use standstill_fb::{AnyInstance, Value};

@@ -1,7 +1,7 @@
 //! Every bad value at every pin.
 
+use super::{Cell, rows, same_motion, trigger};
 use crate::bench::Bench;
-use crate::{Cell, rows, same_motion, trigger};
 use standstill_axis::{Event, Record};
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::{AnyInstance, PinType, Value};

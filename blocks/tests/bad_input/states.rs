@@ -1,7 +1,7 @@
 //! Every block in every state.
 
+use super::{Cell, refers_to_axis, rows, same_motion, trigger};
 use crate::bench::{AXIS, Bench};
-use crate::{Cell, refers_to_axis, rows, same_motion, trigger};
 use standstill_axis::{AxisState, BufferMode, ErrorId, Scope, StartState};
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::Value;

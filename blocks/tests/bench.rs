@@ -1,7 +1,5 @@
 //! Two axes with drives that follow exactly, and instances of any block on the first.
 
-#![allow(dead_code, reason = "each test target uses its own part")]
-
 use standstill_axis::{
     Axis, AxisConfig, AxisId, CamCurve, CamId, CamPiece, CamRow, CamSelection, CamSlot, Cams, Comms,
     DriveCommand, DriveFeedback, DrivePosition, DriveRequest, DriveSignals, Limits, Log, Scope, Standard,

@@ -4,11 +4,11 @@
 //! block, `states.txt` the result of each block in each state of the axis. A block or pin without a row
 //! fails. Both tables are published as `docs/bad-input.md`.
 
-mod bench;
 mod no_axis;
 mod pins;
 mod states;
 
+use crate::bench::Bench;
 use standstill_axis::AxisState;
 use standstill_blocks::BlockInstance;
 use standstill_fb::{BlockInfo, PinType};
@@ -69,8 +69,8 @@ fn refers_to_axis(info: &BlockInfo) -> bool {
 }
 
 /// Whether two benches show the same motion, to the bit.
-fn same_motion(one: &bench::Bench, other: &bench::Bench, axis: usize) -> bool {
-    let view = |bench: &bench::Bench| -> (AxisState, [u64; 3], u16) {
+fn same_motion(one: &Bench, other: &Bench, axis: usize) -> bool {
+    let view = |bench: &Bench| -> (AxisState, [u64; 3], u16) {
         let axis = &bench.axes[axis];
         let setpoint = axis.setpoint();
         (
