@@ -3,7 +3,7 @@
 //! Until it is inside, the larger ones of the old and the new limits hold, and the way takes the least time.
 //! Everything is in the kernel's units and mirrored so that the velocity is not negative.
 
-use super::path::zeros;
+use super::path::{ROUNDING, zeros};
 use crate::kernel::{Bounds, ON_LIMIT, Sides, Spans, falling_root, second};
 use crate::math::{max, min, sqrt};
 
@@ -29,6 +29,21 @@ impl State {
         spans
             .iter()
             .fold(self, |state, span| state.after(span.duration, span.input))
+    }
+
+    /// As [`State::after_all`], where a long hold may be among the spans: as on a path, a jerk of zero is zero there.
+    ///
+    /// A rounding error of the jerk would add up to an acceleration beside which the lower bound is small.
+    pub(super) fn led<const N: usize>(self, spans: &Spans<N>) -> Self {
+        let (mut state, mut largest_jerk) = (self, 0.0);
+        for span in spans.iter() {
+            largest_jerk = max(state.j.abs(), largest_jerk);
+            if span.input == 0.0 && state.j.abs() <= ROUNDING * largest_jerk {
+                state.j = 0.0;
+            }
+            state = state.after(span.duration, span.input);
+        }
+        state
     }
 
     fn mirrored(self) -> Self {
@@ -129,7 +144,7 @@ impl Lead {
         let high = range.plus;
         let state = self.state;
         // Where it comes to may be another place once acceleration and jerk are inside.
-        let entered = arrested(state.after_all(&enter(state, bounds)), bounds.jerk);
+        let entered = arrested(state.led(&enter(state, bounds)), bounds.jerk);
         // Bound to come out on the other side of zero: before anything else, since this grows for as long as it is put off.
         if bounds.is_lowered() && self.rest.min(entered) < -range.minus * (1.0 + ON_LIMIT) {
             let (first, steps) = hasten(state.mirrored(), range.minus, -goal, -high, &bounds.turned());
@@ -157,7 +172,7 @@ impl Lead {
             spans.extend(more);
             *self = Self {
                 steps: self.steps.max(steps),
-                ..Self::none(self.state.after_all(more), jerk)
+                ..Self::none(self.state.led(more), jerk)
             };
         }
     }
@@ -210,7 +225,7 @@ pub(super) fn enter(state: State, bounds: &Box4) -> Spans<ENTER_SPANS> {
         if all.len() > ENTER_SPANS - RULE_SPANS {
             break;
         }
-        state = state.after_all(&step);
+        state = state.led(&step);
         all.extend(&step);
     }
     all
@@ -290,17 +305,17 @@ fn hasten(state: State, limit: f64, goal: f64, low: f64, bounds: &Box4) -> (Span
     .amplified(snap);
     let lead = |time: f64| {
         let mut spans = push.until::<HASTEN_SPANS>(time);
-        spans.extend(&enter(state.after_all(&spans), bounds));
+        spans.extend(&enter(state.led(&spans), bounds));
         spans
     };
     let above = |time: f64| {
-        let state = state.after_all(&lead(time));
+        let state = state.led(&lead(time));
         let rest = arrested(state, bounds.jerk);
         let present = (state.v - limit).min(rest - goal);
         let to_come = (top(state, rest) - limit).min(rest - low);
         present.max(to_come)
     };
-    let pushed = state.after_all(&push);
+    let pushed = state.led(&push);
     let longest = push.duration() + (pushed.v - goal).max(0.0) / bounds.brake_before;
     let mut from = 0.0;
     for span in push.iter() {

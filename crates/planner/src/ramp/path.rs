@@ -5,7 +5,7 @@ use crate::math::{max, sqrt};
 use crate::{Order, Setpoint};
 
 /// What a jerk of zero may be off by, relative to the largest one before.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// What an acceleration that is held at zero may be off by, relative to the largest one before. It is held
 /// either there or at a bound, which may be as small beside a much larger one.

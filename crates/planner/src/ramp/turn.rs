@@ -18,6 +18,9 @@ const LEG_SPANS: usize = 7;
 /// bounds, and on from there.
 pub(super) const TURN_SPANS: usize = 3 * LEG_SPANS + 3;
 
+/// What a false position leaves of its bracket, twice: by so much sooner its function is surely not below zero.
+const SURELY_BEFORE: f64 = 2e-14;
+
 /// A ramp in the making.
 struct Legs {
     spans: Spans<TURN_SPANS>,
@@ -130,7 +133,7 @@ impl Ramps {
             pushed.follow(&push);
             let longest = push.duration() + pushed.state.velocity.max(0.0) / self.deceleration();
             let (time, steps) = falling_root(0.0, longest, |time| left(time, wanted));
-            (time, wanted, steps)
+            (self.not_too_late(time, longest), wanted, steps)
         } else if self.may_speed_up(&begin.state) {
             // Inside the lower limit, it can stay so.
             legs.follow_profile(&self.plain(&begin.state, goal, Sides::both(self.acceleration())));
@@ -156,6 +159,22 @@ impl Ramps {
             legs.follow(&arrest);
         } else {
             self.speed_up(legs, goal);
+        }
+    }
+
+    /// The `time` at which a release begins, or a little sooner where the velocity would show it if it came to zero before
+    /// the acceleration to its limit; `longest` is the bracket that it was looked for in.
+    ///
+    /// At order 3 the acceleration comes there at full jerk: a velocity that is off by little beside the deceleration puts
+    /// it beyond the limit by a part of it that grows with the square of their ratio.
+    fn not_too_late(&self, time: f64, longest: f64) -> f64 {
+        let sooner = SURELY_BEFORE * longest;
+        let at_limit = self.acceleration() * self.acceleration();
+        let shows = sooner * self.deceleration() > 0.5 * ON_LIMIT * at_limit;
+        if self.order() == Order::Three && shows {
+            (time - sooner).max(0.0)
+        } else {
+            time
         }
     }
 

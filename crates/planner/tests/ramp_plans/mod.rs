@@ -1,5 +1,6 @@
 //! Ramps of every order, from every kind of start state, judged from outside.
 
+mod apart;
 mod chains;
 mod changes;
 mod excess;
