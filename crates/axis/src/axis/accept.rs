@@ -427,7 +427,8 @@ impl<P: Planner> Axis<P> {
         let planned = match entry.work {
             _ if entry.halted => {
                 entry.run = Run::NONE;
-                self.planner.ramp_to(start, 0.0, &entry.limits, before)
+                let ramp = self.planner.ramp_to(start, 0.0, &entry.limits, before);
+                ramp.map(|ramp| self.onto_limit(ramp))
             }
             Work::Position(_) | Work::Distance(_) => match self.ahead(entry, start, before) {
                 Some(plan) => Ok(plan),
@@ -449,7 +450,10 @@ impl<P: Planner> Axis<P> {
             }
             Work::Gear(_) | Work::Cam(_) => return self.gear_motion(entry, start),
             Work::Release(velocity) => self.planner.ramp_to(start, velocity, &entry.limits, before),
-            Work::Halt | Work::Stop => self.planner.ramp_to(start, 0.0, &entry.limits, before),
+            Work::Halt | Work::Stop => {
+                let ramp = self.planner.ramp_to(start, 0.0, &entry.limits, before);
+                ramp.map(|ramp| self.onto_limit(ramp))
+            }
             Work::Torque { .. } => {
                 let velocity = self.torque_goal(entry) * entry.limits.velocity;
                 self.not_outward(start.position, velocity)?;

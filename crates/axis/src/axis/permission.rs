@@ -173,7 +173,7 @@ impl<P: Planner> Axis<P> {
                 if let Some(excess) = self.beyond_axis(&plan) {
                     self.record(Event::Unavoidable(excess), scope);
                 }
-                Motion::along(plan)
+                Motion::along(self.onto_limit(plan))
             }
             _ => Motion::Hold,
         };

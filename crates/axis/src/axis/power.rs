@@ -322,7 +322,7 @@ impl<P: Planner> Axis<P> {
             .ramp_to(self.mover.setpoint(), 0.0, &limits, self.mover.in_force())
         {
             Ok(plan) => {
-                let plan = self.stopped_inside(plan, &mut limits, axis);
+                let plan = self.onto_limit(self.stopped_inside(plan, &mut limits, axis));
                 if let Some(excess) = self.beyond_axis(&plan) {
                     self.record(Event::Unavoidable(excess), scope);
                 }

@@ -18,7 +18,7 @@ use standstill_planner::{Limits, MoveProfile, Plan, Planner, Setpoint};
 const HALVINGS: u32 = 32;
 
 /// Rounding of a position, relative to it.
-const RESOLUTION: f64 = 64.0 * f64::EPSILON;
+pub(super) const RESOLUTION: f64 = 64.0 * f64::EPSILON;
 
 impl<P: Planner> Axis<P> {
     /// The plan to the end of the last command that is one motion with `entry`; `None` if that is on its own.

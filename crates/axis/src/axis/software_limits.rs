@@ -3,10 +3,11 @@
 //! A command to a position outside is refused. So is an endless motion that goes further out from an axis
 //! at or beyond a limit. A motion that may come out all the same is watched: endless ones, ramps to rest
 //! that end outside, moves that brake too late and turn back outside. It ends in ErrorStop in the last
-//! scan in which the stop dynamics can keep it inside. An axis outside the limits, after a push or a move
-//! of coordinates, may move to any place inside.
+//! scan in which the stop dynamics can keep it inside. A stop that rounding alone takes beyond a limit ends
+//! on it. An axis outside the limits, after a push or a move of coordinates, may move to any place inside.
 
 use super::commands::{Entry, Manner, Watch};
+use super::run::RESOLUTION;
 use super::{Axis, Motion};
 use crate::ErrorId;
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
@@ -89,8 +90,11 @@ impl<P: Planner> Axis<P> {
             return false;
         };
         // Only further out than now counts: from outside it may come in, and in the middle of a reversal
-        // a stop turns back.
-        let leaves = |rest: f64| (rest > max && rest > next.position) || (rest < min && rest < next.position);
+        // a stop turns back. A stop that would end on a limit is still in time in the next scan.
+        let leaves = |rest: f64| {
+            let within = RESOLUTION * (rest.abs() + next.position.abs());
+            (rest > max + within && rest > next.position) || (rest < min - within && rest < next.position)
+        };
         // Between two scans it may leave the limits and turn; a stop from there leads inside again.
         let outside = |position: f64| position < min || position > max;
         let comes_out = outside(next.position) && !outside(self.mover.setpoint().position);
@@ -153,6 +157,19 @@ impl<P: Planner> Axis<P> {
         };
         let rest = self.rest(&next, &self.stop_limits());
         (velocity > 0.0 && !(rest <= max)) || (velocity < 0.0 && !(rest >= min))
+    }
+
+    /// `ramp`, which leads to rest; ended on a software limit if only rounding takes it beyond.
+    pub(super) fn onto_limit(&self, mut ramp: P::Plan) -> P::Plan {
+        let Some((min, max)) = self.parameters.software_limits else {
+            return ramp;
+        };
+        let (start, end) = (ramp.at(0).position, ramp.at(u64::from(ramp.scans())).position);
+        let beyond = end - min.max(end.min(max));
+        if beyond != 0.0 && beyond.abs() <= RESOLUTION * (start.abs() + end.abs()) {
+            ramp.shift(-beyond);
+        }
+        ramp
     }
 
     /// Where a ramp to rest from `state` within `limits` ends (u).
