@@ -500,7 +500,7 @@ pub(super) struct Entry {
     pub paused: bool,
     /// MC_Stop: Execute is still TRUE.
     pub held: bool,
-    /// It has passed its place, and continues with its end velocity.
+    /// It has passed its place, or its profile is over, and continues with its end velocity.
     pub passed: bool,
     /// It was to pass its end in motion, and has passed it while it was held up.
     pub is_behind: bool,

@@ -451,7 +451,11 @@ impl<P: Planner> Axis<P> {
                 };
             }
             if !self.goal_reached() {
-                return Fate::Active { reached: false };
+                return if owner.passed && self.profile_is_over() {
+                    Fate::Done
+                } else {
+                    Fate::Active { reached: false }
+                };
             }
             return match owner.work.manner().ending {
                 Ending::RunsOn if !owner.paused => Fate::Done,

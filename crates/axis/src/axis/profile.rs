@@ -15,7 +15,9 @@
 use super::commands::{Ending, Entry, Start, Work};
 use super::power::Reaction;
 use super::{Axis, Motion};
-use crate::{AxisEvent, BufferMode, Command, CommandId, Dynamics, ErrorId, Event, Fate, Raw, Request, Scope};
+use crate::{
+    AxisEvent, AxisState, BufferMode, Command, CommandId, Dynamics, ErrorId, Event, Fate, Raw, Request, Scope,
+};
 use standstill_planner::{
     PROFILE_POINTS, Plan, Planner, ProfileCause, ProfileFault, ProfileKind, ProfilePoint,
 };
@@ -321,8 +323,26 @@ impl<P: Planner> Axis<P> {
     /// Whether the owner is an endless profile that has reached its end. It has completed, and keeps its
     /// velocity.
     pub(super) fn profile_is_over(&self) -> bool {
-        let runs_on = |owner: &Entry| owner.work.manner().ending == Ending::RunsOn && !owner.paused;
-        self.owner.as_ref().is_some_and(runs_on) && self.goal_reached()
+        let runs_on = |owner: &&Entry| owner.work.manner().ending == Ending::RunsOn && !owner.paused;
+        let owner = self.owner.as_ref().filter(runs_on);
+        owner.is_some_and(|owner| owner.passed || self.goal_reached())
+    }
+
+    /// Something is superimposed on the owner: a profile that is over stays so while that is in the shaper.
+    pub(super) fn note_end_of_profile(&mut self) {
+        let is_over = self.profile_is_over();
+        if let Some(owner) = &mut self.owner {
+            owner.passed |= is_over;
+        }
+    }
+
+    /// The owner, a profile that was due, has ended at rest. The axis may have come there since it became
+    /// active: under a torque it moves as its drive does.
+    pub(super) fn rest_due(&mut self) {
+        if self.state == AxisState::ContinuousMotion {
+            self.enter(AxisEvent::StartDiscrete);
+        }
+        self.come_to_rest();
     }
 
     /// A due profile cannot start.
@@ -330,7 +350,7 @@ impl<P: Planner> Axis<P> {
     fn drop_profile(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
         self.end_owner(Fate::Failed(error));
         if self.mover.setpoint().is_at_rest() {
-            self.come_to_rest();
+            self.rest_due();
         }
         self.hand_over(self.mover.setpoint().position, scope);
         if self.owner.is_none() && !self.mover.setpoint().is_at_rest() {

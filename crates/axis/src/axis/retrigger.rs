@@ -94,7 +94,7 @@ impl<P: Planner> Axis<P> {
     fn pass_over_due_profile(&mut self, id: CommandId, scope: &mut Scope<'_>) {
         if self.mover.setpoint().is_at_rest() {
             self.end_owner(Fate::Aborted);
-            self.come_to_rest();
+            self.rest_due();
         }
         self.hand_over(self.mover.setpoint().position, scope);
         let Some(mut halt) = self.owner.filter(|owner| owner.id == id) else {

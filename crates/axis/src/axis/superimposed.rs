@@ -493,6 +493,7 @@ impl<P: Planner> Axis<P> {
         if matches!(self.mover.motion(), Motion::Torque { .. }) {
             return self.advance_torque_below(scope);
         }
+        self.note_end_of_profile();
         let Some(next) = self.mover.step_both(self.feedback.position()) else {
             return;
         };
