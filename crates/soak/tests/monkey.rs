@@ -1,12 +1,15 @@
 //! The record of a random program repeats its run to the bit, and its scan script runs.
 
-use standstill_axis::{AxisConfig, Limits, StartState};
+use standstill_axis::{AxisConfig, Limits, Scaling, StartState};
 use standstill_blocks::REGISTRY;
 use standstill_blocks::registry::find;
-use standstill_drives::simulated::DriveSetup;
+use standstill_drives::mechanism::Plant;
+use standstill_drives::simulated::{DriveSetup, PlantSetup};
 use standstill_fb::{Group, Value};
+use standstill_planner::VibrationMode;
 use standstill_soak::monkey::{
-    Action, AxisSetup, BlockSetup, Failure, Scenario, Step, Who, kind_of, play, record, replay, shrink_by,
+    Action, AxisSetup, BlockSetup, Failure, Scenario, Step, TableSetup, Who, kind_of, play, record, replay,
+    shrink_by,
 };
 use standstill_soak::rules::{Broken, Kind};
 use std::collections::BTreeSet;
@@ -123,6 +126,132 @@ fn seventy_axes_are_judged_as_one() {
     };
     let (seen, failure) = replay(&scenario);
     assert_eq!((seen.scans, failure), (10, None));
+}
+
+/// The place of a pin.
+fn pin(block: &str, name: &str) -> usize {
+    let info = find(block).expect("a block of the registry");
+    info.pin(name).expect("one of its pins").0
+}
+
+/// An instance of axis 0 with these inputs.
+fn instance(block: &'static str, inputs: &[(&str, Value)]) -> BlockSetup {
+    BlockSetup {
+        block,
+        axis: 0,
+        constants: inputs
+            .iter()
+            .map(|(name, value)| (pin(block, name), *value))
+            .collect(),
+        tables: Vec::new(),
+    }
+}
+
+/// A motor behind its set-point by a scan is faster than the axis may be when a torque takes over, and so the set-point is. A
+/// stop from there would end outside the software limits if it grew as fast once more, so the axis stops.
+#[test]
+fn a_torque_takes_over_from_a_motor_that_is_too_fast() {
+    let config = AxisConfig {
+        start: StartState::Standstill,
+        scaling: Scaling::new(1000, 360, false, 0.0).ok(),
+        software_limits: Some((-10.0, f64::INFINITY)),
+        ..AxisConfig::new(Limits {
+            velocity: 30.0,
+            acceleration: 700.0,
+            deceleration: 200.0,
+            ..Limits::NONE
+        })
+    };
+    let mut drive = PlantSetup {
+        plant: Plant {
+            inertia: 1.8,
+            viscous: 10.0,
+            ..PlantSetup::NONE.plant
+        },
+        ..PlantSetup::NONE
+    };
+    drive.gains.position = 20.0;
+    let on = ("Execute", Value::Bool(true));
+    let scenario = Scenario {
+        cycle_ns: 10_000_000,
+        scans: 40,
+        axes: vec![AxisSetup {
+            config,
+            drive: DriveSetup::Plant(drive.with_gains(0.01)),
+        }],
+        blocks: vec![
+            instance("MC_MoveVelocity", &[on, ("Velocity", Value::Lreal(-20.0))]),
+            instance("MC_TorqueControl", &[on, ("BufferMode", Value::Enum(1))]),
+        ],
+        steps: Vec::new(),
+    };
+    let (seen, failure) = replay(&scenario);
+    assert_eq!((seen.scans, failure), (40, None));
+    // What it was too fast by is recorded.
+    assert_eq!(seen.turned_back, 1);
+}
+
+/// A profile that has completed stays completed while something superimposed is in the shaper: its instance may be triggered
+/// anew and refused, and no block has to follow its motion.
+#[test]
+fn a_completed_profile_stays_so_on_a_shaped_axis() {
+    let config = AxisConfig {
+        start: StartState::Standstill,
+        vibration: [Some(VibrationMode::new(7.4)), None],
+        ..AxisConfig::new(Limits {
+            velocity: 2.0,
+            acceleration: 28.0,
+            deceleration: 28.0,
+            ..Limits::NONE
+        })
+    };
+    let on = Value::Bool(true);
+    let mut profile = instance(
+        "MC_AccelerationProfile",
+        &[("Execute", on), ("BufferMode", Value::Enum(1))],
+    );
+    profile.tables.push(TableSetup {
+        pin: pin(profile.block, "TimeAcceleration"),
+        records: vec![vec![1.3e9, -0.29, 0.0]],
+    });
+    let set = |scan, block, pin, value| Step {
+        scan,
+        action: Action::Set { block, pin, value },
+    };
+    let (added, execute) = (
+        pin("MC_MoveSuperimposed", "Execute"),
+        pin(profile.block, "Execute"),
+    );
+    let mode = pin(profile.block, "BufferMode");
+    let scenario = Scenario {
+        cycle_ns: 10_000_000,
+        scans: 200,
+        axes: vec![AxisSetup {
+            config,
+            drive: DriveSetup::default(),
+        }],
+        blocks: vec![
+            instance(
+                "MC_MoveSuperimposed",
+                &[
+                    ("Distance", Value::Lreal(-5.0)),
+                    ("VelocityDiff", Value::Lreal(0.2)),
+                ],
+            ),
+            profile,
+        ],
+        steps: vec![
+            set(113, 1, execute, Value::Bool(false)),
+            set(160, 0, added, on),
+            set(161, 1, execute, on),
+            set(162, 1, execute, Value::Bool(false)),
+            set(163, 1, mode, Value::Enum(99)),
+            set(163, 1, execute, on),
+        ],
+    };
+    let (seen, failure) = replay(&scenario);
+    assert_eq!((seen.scans, failure), (200, None));
+    assert_eq!((seen.ended[0], seen.refused), (1, 1));
 }
 
 #[test]

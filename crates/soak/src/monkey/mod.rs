@@ -13,7 +13,7 @@ mod script;
 mod shrink;
 
 pub use run::{Failure, Seen, Who};
-pub use scenario::{Action, AxisSetup, BlockSetup, FaultKind, Scenario, Step, kind_of};
+pub use scenario::{Action, AxisSetup, BlockSetup, FaultKind, Scenario, Step, TableSetup, kind_of};
 pub use shrink::{shrink, shrink_by};
 
 use crate::random::Random;

@@ -108,7 +108,9 @@ struct Run<'a, H> {
     /// The state of each axis as last seen.
     states: Vec<AxisState>,
     following: Vec<bool>,
-    /// Whether the set-point of each axis is measured: a torque is held, or the motion that took over
+    /// Whether MC_TorqueControl owned each axis at the end of the scan before.
+    torques: Vec<bool>,
+    /// Whether the set-point of each axis is measured: it is under a torque, or the motion that took over
     /// from one is not at rest yet.
     measured: Vec<bool>,
     /// The motion of each axis that no instance follows, as recorded.
@@ -191,6 +193,7 @@ pub fn run(scenario: &Scenario, hands: &mut impl Hands) -> (Seen, Option<Failure
         laws: vec![Law::default(); machine.axes().len()],
         states: machine.axes().iter().map(Axis::state).collect(),
         following: vec![true; machine.axes().len()],
+        torques: vec![false; machine.axes().len()],
         measured: vec![false; machine.axes().len()],
         orphans: vec![None; machine.axes().len()],
         taken: 0,
@@ -270,11 +273,14 @@ impl<H: Hands> Run<'_, H> {
     }
 
     /// Under a torque the set-point is the actual state (docs/torque.md), which no limit of the axis
-    /// bounds.
+    /// bounds. It is from the latch on behind the motion step in which the torque became active, also if another
+    /// motion takes over before a torque is ordered.
     fn follow_torques(&mut self, axes: &[Axis<Standard>]) {
-        for (measured, axis) in self.measured.iter_mut().zip(axes) {
+        for ((measured, was_owner), axis) in self.measured.iter_mut().zip(&mut self.torques).zip(axes) {
             let is_held = axis.order().torque.is_some();
-            *measured = is_held || (*measured && !axis.setpoint().is_at_rest());
+            let is_owner = is_torque(axis);
+            let began = core::mem::replace(was_owner, is_owner);
+            *measured = is_held || began || (*measured && !axis.setpoint().is_at_rest());
         }
     }
 
@@ -596,6 +602,14 @@ fn resolution(plan: &StandardPlan) -> [f64; 2] {
         }
     }
     off
+}
+
+/// Whether MC_TorqueControl owns the axis. Its motion has no plan, which is asked first because the other answer is long.
+fn is_torque(axis: &Axis<Standard>) -> bool {
+    let is_owner = |(_, kind, _)| kind == WorkKind::Torque;
+    axis.state() == AxisState::ContinuousMotion
+        && axis.plan().is_none()
+        && axis.outlook().owner.is_some_and(is_owner)
 }
 
 /// Whether MC_SetPosition is the first command that waits.
