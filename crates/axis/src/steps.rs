@@ -37,8 +37,7 @@ pub fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
         return axes.iter_mut().for_each(|axis| axis.shape(scope));
     }
     for axis in axes {
-        axis.advance(scope);
-        axis.shape(scope);
+        axis.step_alone(scope);
     }
 }
 

@@ -59,10 +59,10 @@ impl Setpoint {
         }
     }
 
-    /// Position and derivatives in order. A caller can keep numbers that a function returns in registers.
+    /// Position and derivatives, in the order of the fields. A caller can keep numbers that a function returns in registers.
     /// It would keep a returned set-point in memory, together with those it computed itself.
     #[inline]
-    pub(crate) const fn numbers(self) -> [f64; 5] {
+    pub const fn numbers(self) -> [f64; 5] {
         [
             self.position,
             self.velocity,

@@ -52,15 +52,6 @@ impl Mode {
     }
 }
 
-/// What a scan without programs serves, see [`Executor::coast`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Served {
-    /// Axes and drives.
-    Drives,
-    /// Axes alone: feedback is not read, and drives get no command.
-    Axes,
-}
-
 /// The instant given to a scan is earlier than that of the last scan. Nothing was executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimeRanBackwards {
@@ -249,12 +240,10 @@ impl Executor {
 
     /// At most `scans` further scans, a base tick apart, in which no program runs, because none of them would do anything
     /// but what it did in the scan before. That is the host's to know, which is asked after each ([`Programs::idled`]). Axes
-    /// and drives are served as in every scan, or axes alone: actual positions are then those of drives that stand still, and so
-    /// they are for the host to mend. Returns how many scans were done: none unless all tasks are due in every tick.
+    /// and drives are served as in every scan. Returns how many scans were done: none unless all tasks are due in every tick.
     pub fn coast<P: Planner, D: Drive>(
         &mut self,
         scans: u64,
-        served: Served,
         programs: &mut impl Programs<P, D>,
         machine: &mut Machine<P, D>,
     ) -> u64 {
@@ -268,14 +257,10 @@ impl Executor {
                 scan: self.next_scan.saturating_add(done),
                 now_ns,
             };
-            if served == Served::Drives {
-                machine.read_feedback(time);
-                programs.idle(time, machine);
-            }
+            machine.read_feedback(time);
+            programs.idle(time, machine);
             machine.advance(time);
-            if served == Served::Drives {
-                machine.publish(time);
-            }
+            machine.publish(time);
             done += 1;
             if !programs.idled(time, machine) {
                 break;
@@ -285,8 +270,8 @@ impl Executor {
         done
     }
 
-    /// The same where axes and drives rest, too, so that no scan changes anything: nothing is called, and time passes.
-    /// Returns how many scans have passed.
+    /// The same where axes and drives rest, too, so that no scan changes anything: nothing is called, and time passes. Or they
+    /// are for the host to bring along ([`Machine::along`]). Returns how many scans have passed.
     pub fn stand(&mut self, scans: u64) -> u64 {
         let is_even = self.previous_ns.is_some_and(|now_ns| self.is_even(now_ns));
         let scans = if is_even { scans } else { 0 };

@@ -18,7 +18,7 @@ mod programs;
 mod task;
 
 pub use config::{ConfigError, ProgramConfig, TaskConfig, Watchdog, common_tick_ns};
-pub use executor::{Executor, Mode, ScanReport, Served, TimeRanBackwards};
+pub use executor::{Executor, Mode, ScanReport, TimeRanBackwards};
 pub use fault::{Fault, FaultText};
 pub use machine::{Machine, MachineError, RUNTIME};
 pub use programs::{NotOff, ProgramFault, ProgramId, Programs, ScanTime, Start, TaskId};

@@ -176,6 +176,20 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         steps::advance(&mut self.axes, &mut scope);
     }
 
+    /// The set-points of an axis in the next scans, for as many of them as are taken: its motion steps, without its drive.
+    /// Only as long as it goes on ([`Axis::goes_on_for`]); time is passed by [`Executor::stand`](crate::Executor::stand), and
+    /// actual positions are for the host to mend.
+    pub fn along(&mut self, axis: usize, time: ScanTime) -> impl Iterator<Item = Setpoint> + use<'_, P, D> {
+        let mut scope = runtime_scope(time.scan, &mut self.log);
+        scope.history = &mut self.history;
+        let mut axis = self.axes.get_mut(axis);
+        core::iter::from_fn(move || {
+            let axis = axis.as_mut()?;
+            axis.step_alone(&mut scope);
+            Some(axis.setpoint())
+        })
+    }
+
     /// Writes every drive once, in axis order.
     pub(crate) fn publish(&mut self, time: ScanTime) {
         steps::publish(&mut self.axes, &mut self.drives, time.now_ns);

@@ -1,7 +1,8 @@
 //! Scans without programs.
 
 use crate::common::{MS, Rig, task};
-use standstill_scan::{ProgramConfig, Served, TaskId};
+use crate::stopping::forward;
+use standstill_scan::{ProgramConfig, ScanTime, TaskId};
 
 /// A task in every tick, and one axis.
 fn rig() -> Rig {
@@ -12,8 +13,8 @@ fn rig() -> Rig {
     )
 }
 
-fn coast(rig: &mut Rig, scans: u64, served: Served) -> u64 {
-    rig.executor.coast(scans, served, &mut rig.host, &mut rig.machine)
+fn coast(rig: &mut Rig, scans: u64) -> u64 {
+    rig.executor.coast(scans, &mut rig.host, &mut rig.machine)
 }
 
 #[test]
@@ -21,9 +22,9 @@ fn they_count_as_scans_with_programs() {
     let (mut one, mut other) = (rig(), rig());
     one.runs(0..20);
     other.runs(0..5);
-    assert_eq!(coast(&mut other, 7, Served::Drives), 7);
+    assert_eq!(coast(&mut other, 7), 7);
     assert_eq!(other.executor.stand(3), 3);
-    assert_eq!(coast(&mut other, 5, Served::Axes), 5);
+    assert_eq!(coast(&mut other, 5), 5);
     assert_eq!(
         one.executor.counts(TaskId(0)),
         other.executor.counts(TaskId(0)),
@@ -36,15 +37,45 @@ fn they_count_as_scans_with_programs() {
 }
 
 #[test]
-fn drives_are_served_in_the_order_of_a_scan_or_left_alone() {
+fn drives_are_served_in_the_order_of_a_scan() {
     let mut rig = rig();
     rig.runs(0..2);
     rig.taken_tape();
-    coast(&mut rig, 1, Served::Drives);
+    coast(&mut rig, 1);
     let served = ["read X", "idle 2", "write X", "idled 2000000"];
     assert_eq!(rig.taken_tape(), served);
-    coast(&mut rig, 1, Served::Axes);
-    assert_eq!(rig.taken_tape(), ["idled 3000000"]);
+}
+
+#[test]
+fn an_axis_goes_along_without_its_drive() {
+    let (mut one, mut other) = (rig(), rig());
+    for rig in [&mut one, &mut other] {
+        rig.host.act = |scan, context| {
+            if scan == 0 {
+                forward(context);
+            }
+            Ok(())
+        };
+        rig.runs(0..2);
+        rig.taken_tape();
+    }
+    let first = ScanTime {
+        scan: 2,
+        now_ns: 2 * MS as i64,
+    };
+    assert_eq!(other.executor.stand(3), 3);
+    let along: Vec<_> = other.machine.along(0, first).take(3).collect();
+    let by_scan = (2..5).map(|scan| {
+        one.runs(scan..scan + 1);
+        one.machine.axes()[0].setpoint()
+    });
+    assert_eq!(along, by_scan.collect::<Vec<_>>());
+    assert_eq!(other.taken_tape(), [""; 0], "nobody was called");
+    assert_eq!(
+        other.machine.along(1, first).next(),
+        None,
+        "there is no such axis"
+    );
 }
 
 #[test]
@@ -52,24 +83,24 @@ fn they_end_when_the_host_says_so() {
     let mut rig = rig();
     rig.runs(0..2);
     rig.host.idles = false;
-    assert_eq!(coast(&mut rig, 9, Served::Drives), 1);
-    assert_eq!(coast(&mut rig, 0, Served::Drives), 0);
+    assert_eq!(coast(&mut rig, 9), 1);
+    assert_eq!(coast(&mut rig, 0), 0);
 }
 
 #[test]
 fn there_are_none_where_a_program_is_not_due_in_every_tick() {
     let mut before = rig();
-    assert_eq!(coast(&mut before, 9, Served::Drives), 0, "nothing has run yet");
+    assert_eq!(coast(&mut before, 9), 0, "nothing has run yet");
     let mut slow = Rig::of_tasks(&[task("fast", 1, 0), task("slow", 2, 0)]);
     slow.runs(0..4);
-    assert_eq!(coast(&mut slow, 9, Served::Drives), 0);
+    assert_eq!(coast(&mut slow, 9), 0);
     let mut late = rig();
     late.runs(0..4);
     late.scan_at(4 * MS as i64 + 1);
-    assert_eq!(coast(&mut late, 9, Served::Drives), 0, "the last scan was late");
+    assert_eq!(coast(&mut late, 9), 0, "the last scan was late");
     assert_eq!(late.executor.stand(9), 0);
     let mut stopped = rig();
     stopped.runs(0..4);
     stopped.executor.stop(&mut stopped.host, &mut stopped.machine);
-    assert_eq!(coast(&mut stopped, 9, Served::Drives), 0);
+    assert_eq!(coast(&mut stopped, 9), 0);
 }

@@ -24,7 +24,7 @@ fn command<P: Planner>(context: &mut Context<'_, P>, command: Command) {
     axis.command(&Request::aborting(command), scope).unwrap();
 }
 
-fn forward<P: Planner>(context: &mut Context<'_, P>) {
+pub fn forward<P: Planner>(context: &mut Context<'_, P>) {
     let direction: Raw<Direction> = Direction::Positive.into();
     command(
         context,

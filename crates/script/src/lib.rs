@@ -40,7 +40,7 @@ pub use read::{
     CELLS_MAX, ENTITIES_MAX, GUEST_MEMORY, LOOKS_MAX, SCANS_MAX, VERSION, read, read_with, read_with_programs,
 };
 pub use run::{
-    Ahead, Change, Counted, Ordered, Outcome, ROWS_MAX, RecordingError, RunError, Session, Shown,
+    Ahead, Change, Counted, Kept, Ordered, Outcome, ROWS_MAX, RecordingError, RunError, Session, Shown,
     judge_recording, keeps_rows, run, run_with,
 };
 pub use schema::schema;

@@ -5,7 +5,7 @@
 use serde_json::{Value, json};
 use standstill_script::model::Script;
 use standstill_script::suite::{Allowed, read_given};
-use standstill_script::{Ahead, Outcome, Session};
+use standstill_script::{Ahead, Kept, Outcome, Session};
 use standstill_testkit::Random;
 use standstill_trace::{Note, digest, extremes_text};
 use std::path::Path;
@@ -71,7 +71,8 @@ fn far_without_drives(
 ) -> Option<(Verdicts, String, u64)> {
     let names = whole.trace.columns().iter().map(|column| column.name.clone());
     let names: Vec<String> = names.filter(|name| !name.ends_with("ActualPosition")).collect();
-    let mut session = Session::lean(script, &names).unwrap_or_else(|error| panic!("{error}"));
+    let mut session =
+        Session::keeping(script, &Kept::read(script, &names)).unwrap_or_else(|error| panic!("{error}"));
     let mut left_out = 0;
     loop {
         match session

@@ -5,7 +5,7 @@
 use serde_json::{Value, json};
 use standstill_script::model::Script;
 use standstill_script::suite::{Allowed, find, read_given, read_text};
-use standstill_script::{Ahead, Outcome, SCANS_MAX, Session, Verdict, keeps_rows};
+use standstill_script::{Ahead, Kept, Outcome, SCANS_MAX, Session, Verdict, keeps_rows};
 use standstill_testkit::Random;
 use standstill_trace::{Event, EventLog, Extremes, digest, events, extremes_text};
 use std::path::Path;
@@ -87,7 +87,7 @@ fn streamed_by<'s>(
 
 /// Scans and verdicts of a run that keeps the columns alone that claims and steps read, and forgets rows as [`streamed`] does.
 fn lean(script: &Script, every: u64) -> Option<(usize, Vec<Verdict>)> {
-    let mut session = Session::lean(script, &[]).ok()?;
+    let mut session = Session::keeping(script, &Kept::read(script, &[])).ok()?;
     while session.advance().ok()? {
         if session.scans() % every == 0 {
             session.forget();

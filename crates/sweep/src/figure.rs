@@ -42,11 +42,10 @@ impl Figure {
         match self.take {
             Take::Last => self.last = last(trace, column).map(cell_text).unwrap_or_default(),
             Take::First | Take::Count => {
-                for scan in next.start..same {
-                    if trace.cell(scan, column) == Some(Cell::Bool(true)) {
-                        self.first.get_or_insert(scan);
-                        self.count += 1;
-                    }
+                let flags = (next.start..same).zip(trace.bools_from(column, next.start));
+                for (scan, _) in flags.filter(|(_, flag)| *flag) {
+                    self.first.get_or_insert(scan);
+                    self.count += 1;
                 }
                 if same < next.end && last(trace, column) == Some(Cell::Bool(true)) {
                     self.first.get_or_insert(same);

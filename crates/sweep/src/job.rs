@@ -4,7 +4,9 @@ use crate::figure::Figure;
 use standstill_script::model::Script;
 use standstill_script::suite::{self, Allowed, SuiteError, Texts};
 use standstill_script::sweep::Sweep;
-use standstill_script::{Ahead, Failure, Outcome, RunError, ScriptError, Session, Verdict, read_sweep, run};
+use standstill_script::{
+    Ahead, Failure, Kept, Outcome, RunError, ScriptError, Session, Verdict, read_sweep, run,
+};
 use standstill_trace::{Extreme, Extremes, digest, shortest};
 use std::path::{Path, PathBuf};
 
@@ -48,8 +50,8 @@ impl From<ScriptError> for SweepError {
     }
 }
 
-/// Rows of a case that are held before they are read and dropped: few enough for a processor's cache.
-const ROWS_HELD: u64 = 256;
+/// Cells of a case that are held before they are read and dropped: few enough for a processor's cache.
+const CELLS_HELD: usize = 8192;
 
 /// The results of a case.
 struct Ran {
@@ -75,8 +77,8 @@ pub struct Job {
     script: PathBuf,
     axes: Vec<String>,
     columns: Vec<String>,
-    /// The signals from which extremes and measures are taken.
-    signals: Vec<String>,
+    /// What a case keeps of its rows: where no digest is in the table, only the columns that are read.
+    kept: Kept,
     key: u64,
 }
 
@@ -147,9 +149,13 @@ impl Job {
             .iter()
             .flat_map(|axis| SIGNALS.map(|signal| format!("{axis}.{signal}")));
         let measured = sweep.measures().iter().map(|measure| measure.signal.clone());
+        let kept = match sweep.has_digest {
+            true => Kept::all(&script),
+            false => Kept::read(&script, &of_axes.chain(measured).collect::<Vec<_>>()),
+        };
         Ok(Self {
             columns: columns(&sweep, &axes, true),
-            signals: of_axes.chain(measured).collect(),
+            kept,
             sweep,
             texts,
             script: file,
@@ -212,13 +218,9 @@ impl Job {
         })
     }
 
-    /// Runs a script and takes the values for a table. If no digest is in the table, only the columns
-    /// that are read are written.
+    /// Runs a script and takes the values for a table.
     fn ran(&self, script: &Script) -> Result<Ran, RunError> {
-        let session = || match self.sweep.has_digest {
-            true => Session::new(script),
-            false => Session::lean(script, &self.signals),
-        };
+        let session = || Session::keeping(script, &self.kept);
         if let Some(ran) = self.take(session()?, Session::advance_far)? {
             return Ok(ran);
         }
@@ -240,14 +242,15 @@ impl Job {
         let mut figures: Vec<Figure> = measures
             .map(|measure| Figure::new(measure, session.trace()))
             .collect();
+        let rows_held = (CELLS_HELD / session.trace().columns().len().max(1)).max(64) as u64;
         loop {
-            let room = ROWS_HELD - session.scans() % ROWS_HELD;
+            let room = rows_held - session.scans() % rows_held;
             match advance(&mut session, room)? {
                 Ahead::Broken => return Ok(None),
                 Ahead::Scans(0) => break,
                 Ahead::Scans(_) => {}
             }
-            if session.scans() % ROWS_HELD == 0 || session.is_over() {
+            if session.scans() % rows_held == 0 || session.is_over() {
                 let trace = session.trace();
                 if let Some(digest) = &mut digest {
                     digest.look(trace);

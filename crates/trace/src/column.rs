@@ -150,9 +150,8 @@ impl<'a> Cell<'a> {
 pub(crate) const fn canonical_bits(value: f64) -> u64 {
     if value.is_nan() {
         0x7ff8_0000_0000_0000
-    } else if value == 0.0 {
-        0
     } else {
-        value.to_bits()
+        // Adding 0 turns -0 into 0.
+        (value + 0.0).to_bits()
     }
 }

@@ -1,7 +1,6 @@
 //! The extremes of an axis, and the part of its limits that it used.
 
 use std::fmt::Write;
-use std::ops::RangeInclusive;
 
 use crate::column::Kind;
 use crate::header::Axis;
@@ -212,8 +211,8 @@ impl OfAxis {
 /// The numbers of a column from a scan on, without those at the end that are all the same but the first of them.
 fn numbers(trace: &Trace, from: usize, column: Option<usize>) -> impl Iterator<Item = (usize, f64)> {
     let scans = match column {
-        Some(column) => from.max(trace.first())..=trace.same_since(column).max(from),
-        None => RangeInclusive::new(1, 0),
+        Some(column) => from.max(trace.first())..trace.same_since(column).max(from).saturating_add(1),
+        None => 0..0,
     };
     scans.zip(trace.reals_from(column.unwrap_or(usize::MAX), from))
 }
@@ -233,11 +232,15 @@ impl Peak {
     /// Reads the numbers of scans, of which `rank` says how great they are.
     #[inline]
     fn look(&mut self, numbers: impl IntoIterator<Item = (usize, f64)>, rank: impl Fn(f64) -> f64) {
+        // None is less than NaN.
+        let mut peak = self.0.map_or(f64::NAN, |(peak, _)| peak);
         for (scan, number) in numbers {
             let value = rank(number);
-            let beaten = |(peak, _): (f64, usize)| !peak.is_nan() && (value.is_nan() || value > peak);
-            if self.0.is_none_or(beaten) {
-                self.0 = Some((value, scan));
+            if value <= peak {
+                continue;
+            }
+            if self.0.is_none() || !peak.is_nan() {
+                (self.0, peak) = (Some((value, scan)), value);
             }
         }
     }

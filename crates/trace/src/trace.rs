@@ -329,11 +329,44 @@ impl Trace {
     /// ([`Trace::set_next`]).
     #[inline]
     pub fn push_next(&mut self, times: usize) {
+        self.bits.reserve(times.saturating_mul(self.next.len()));
         for _ in 0..times {
             self.bits.extend_from_slice(&self.next);
         }
         // Rows are counted by their cells.
         self.end += if self.next.is_empty() { 0 } else { times };
+    }
+
+    /// Writes numbers into columns of reals of the last rows, row after row: the first of a row goes into the first of the columns, and
+    /// so on; it is dropped where there is no such column. All other columns are left as they are.
+    pub fn set_last_reals<const N: usize>(
+        &mut self,
+        rows: usize,
+        columns: &[Option<usize>; N],
+        numbers: impl Iterator<Item = [f64; N]>,
+    ) {
+        let width = self.next.len().max(1);
+        let first = self.bits.len().saturating_sub(rows.saturating_mul(width));
+        let rows = self.bits.get_mut(first..).unwrap_or_default();
+        for (row, numbers) in rows.chunks_exact_mut(width).zip(numbers) {
+            for (place, number) in columns.iter().zip(numbers) {
+                if let Some(word) = place.and_then(|place| row.get_mut(place)) {
+                    *word = canonical_bits(number);
+                }
+            }
+        }
+        for &place in columns.iter().flatten() {
+            let mut words = rows.chunks_exact(width).rev().filter_map(|row| row.get(place));
+            let (Some(&last), Some(next)) = (words.next(), self.next.get_mut(place)) else {
+                continue;
+            };
+            let same = 1 + words.take_while(|word| **word == last).count();
+            let is_old = *next == last && same * width == rows.len();
+            *next = last;
+            if let Some(since) = self.since.get_mut(place).filter(|_| !is_old) {
+                *since = self.end - same;
+            }
+        }
     }
 
     /// A scan from which on all rows have the same value in this column; the number of rows if that is not known.
@@ -349,16 +382,34 @@ impl Trace {
         &self,
         column: usize,
         scan: usize,
-    ) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator {
-        let is_real = self
-            .columns
-            .get(column)
-            .is_some_and(|column| column.kind == Kind::Real);
+    ) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator + Clone {
+        self.words_of(Kind::Real, column, scan).map(f64::from_bits)
+    }
+
+    /// The same of a column of BOOLs.
+    #[inline]
+    pub fn bools_from(
+        &self,
+        column: usize,
+        scan: usize,
+    ) -> impl DoubleEndedIterator<Item = bool> + ExactSizeIterator + Clone {
+        self.words_of(Kind::Bool, column, scan).map(|word| word != 0)
+    }
+
+    /// The words of a column of this kind from a scan on, or from the first row that is held; none for another column.
+    #[inline]
+    fn words_of(
+        &self,
+        kind: Kind,
+        column: usize,
+        scan: usize,
+    ) -> impl DoubleEndedIterator<Item = u64> + ExactSizeIterator + Clone {
+        let is_its = self.columns.get(column).is_some_and(|column| column.kind == kind);
         let width = self.columns.len().max(1);
         let rows = scan.saturating_sub(self.first);
         let from = rows.saturating_mul(width).saturating_add(column);
-        let words = self.bits.get(from..).filter(|_| is_real).unwrap_or_default();
-        words.iter().step_by(width).map(|word| f64::from_bits(*word))
+        let words = self.bits.get(from..).filter(|_| is_its).unwrap_or_default();
+        words.iter().step_by(width).copied()
     }
 
     /// The word in the last row at the place of the next word.
@@ -669,6 +720,33 @@ mod tests {
         let moves = |columns: &[usize]| (0..5).map(|scan| trace.moves(scan, columns)).collect::<Vec<_>>();
         assert_eq!(moves(&[0, 2]), [true, false, true, false, true]);
         assert_eq!(moves(&[0, 1]), [true, false, false, false, false]);
+    }
+
+    #[test]
+    fn numbers_in_the_last_rows_are_as_if_they_were_set_row_by_row() {
+        let (mut by_row, mut at_once) = (small(), small());
+        for numbers in [
+            [1.0, 1.0, 3.0],
+            [-0.0, 2.5, 2.5],
+            [2.5, 2.5, 2.5],
+            [2.5, 0.0, 2.5],
+        ] {
+            for number in numbers {
+                by_row.set_next_real(1, number);
+                by_row.push_next(1);
+            }
+            at_once.push_next(numbers.len());
+            let pairs = numbers.map(|number| [7.0, number]);
+            at_once.set_last_reals(numbers.len(), &[None, Some(1)], pairs.into_iter());
+            assert_eq!(by_row.same_since(1), at_once.same_since(1));
+        }
+        by_row.push_next(1);
+        at_once.push_next(1);
+        assert_eq!(at_once.scans(), 13);
+        assert_eq!(
+            at_once.words().flatten().collect::<Vec<_>>(),
+            by_row.words().flatten().collect::<Vec<_>>()
+        );
     }
 
     #[test]

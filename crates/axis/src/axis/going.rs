@@ -2,6 +2,7 @@
 
 use super::mover::Motion;
 use super::{Axis, Calm};
+use crate::Scope;
 use standstill_planner::Planner;
 
 /// What an axis does in the next scan if nothing comes to it: no command, and from its drive no news but a position.
@@ -65,5 +66,13 @@ impl<P: Planner> Axis<P> {
             (Going::AtVelocity | Going::Rests, _) => u64::MAX,
             _ => 0,
         }
+    }
+
+    /// The motion step of an axis without masters and slaves, as [`steps::advance`](crate::steps::advance) does it.
+    // See `follow_feedback`.
+    #[inline(always)]
+    pub fn step_alone(&mut self, scope: &mut Scope<'_>) {
+        self.advance(scope);
+        self.shape(scope);
     }
 }

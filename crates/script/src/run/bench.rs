@@ -6,8 +6,9 @@ use super::cells;
 use super::drive::ScriptDrive;
 use super::formulas::{self, Formulas, Reading, Truths};
 use super::guests::Guests;
+use super::kept::Kept;
 use super::layout::Layout;
-use super::notes::Notes;
+use super::notes::{self, Notes};
 use super::rest::Rest;
 use super::row::{RowWriter, Source};
 use super::rows::{ROWS_KEPT, Rows, Shift};
@@ -164,13 +165,18 @@ pub(crate) struct Bench<'a> {
 }
 
 impl<'a> Bench<'a> {
-    pub(crate) fn new(script: &'a Script, layout: Layout, trace: Trace) -> Result<Self, RunError> {
+    pub(crate) fn new(script: &'a Script, kept: Kept) -> Result<Self, RunError> {
         let mut values = Values::new(script)
             .ok_or_else(|| RunError::Internal("the script was not checked before its run".to_owned()))?;
         let guests = Guests::new(script)?;
         values.symbols = guests.values(script)?;
         let rest = Rest::new(script);
-        let mut writer = RowWriter::new(script, &layout);
+        let Kept {
+            layout,
+            mut writer,
+            trace,
+            ..
+        } = kept;
         writer.mind(rest.as_ref().map_or(&[], Rest::readers));
         Ok(Self {
             script,
@@ -340,6 +346,14 @@ impl<'a> Bench<'a> {
         }
     }
 
+    /// The axes go on by themselves for so many scans, of which `first` is the first.
+    pub(crate) fn go_along(&mut self, scans: u64, first: ScanTime, machine: &mut ScriptMachine) {
+        let scans = usize::try_from(scans).unwrap_or_default();
+        self.writer.write_along(scans, first, machine, &mut self.trace);
+        // Nothing mends what drives would report of another scan.
+        self.rest_broken |= !self.rest.as_ref().is_some_and(|rest| rest.lasts(machine));
+    }
+
     /// Adds rows that are all as the last one.
     pub(crate) fn repeat_row(&mut self, scans: u64) {
         self.trace.push_next(usize::try_from(scans).unwrap_or_default());
@@ -348,11 +362,6 @@ impl<'a> Bench<'a> {
     /// Whether something has happened in scans without the programs that they should have seen.
     pub(crate) const fn is_rest_broken(&self) -> bool {
         self.rest_broken
-    }
-
-    /// Such a thing has happened.
-    pub(crate) fn break_rest(&mut self) {
-        self.rest_broken = true;
     }
 
     /// Makes room for `scans` more rows.
@@ -597,7 +606,14 @@ impl Programs<Standard, ScriptDrive> for Bench<'_> {
         self.write_row(time.scan, machine, RowWriter::write);
         self.guests
             .take_told(self.script, &mut self.notes, &mut self.trace);
-        self.notes.take(machine, &mut self.trace, &mut self.shifts);
+        let scan = self.trace.scans().saturating_sub(1);
+        self.shifts.extend(notes::shifts_of(machine, scan));
+        if self.layout.has_all() {
+            self.notes.take(machine, &mut self.trace);
+        } else {
+            // A trace without blocks has no notes on them either.
+            self.notes.drop_all();
+        }
         self.watch_row(time.scan);
     }
 }

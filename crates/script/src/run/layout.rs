@@ -179,17 +179,7 @@ pub(crate) fn header(script: &Script) -> trace::Header {
         covers: script.covers.clone(),
         script_hash: format!("{:016x}", script.hash),
         cycle_ns: script.cycle_ns.unsigned_abs(),
-        axes: script
-            .axes
-            .iter()
-            .map(|axis| trace::Axis {
-                slave: axis.masters > 0,
-                combined: axis.masters > 1,
-                superimposed: axis.superimposed,
-                on_cam: axis.on_cam,
-                ..told::axis(&axis.name, &axis.unit, &axis.config)
-            })
-            .collect(),
+        axes: axes(script),
         inputs: script
             .inputs
             .iter()
@@ -205,6 +195,19 @@ pub(crate) fn header(script: &Script) -> trace::Header {
         claims: Vec::new(),
         cams: Vec::new(),
     }
+}
+
+/// The axes, with their limits.
+pub(crate) fn axes(script: &Script) -> Vec<trace::Axis> {
+    let axes = script.axes.iter();
+    axes.map(|axis| trace::Axis {
+        slave: axis.masters > 0,
+        combined: axis.masters > 1,
+        superimposed: axis.superimposed,
+        on_cam: axis.on_cam,
+        ..told::axis(&axis.name, &axis.unit, &axis.config)
+    })
+    .collect()
 }
 
 /// The block instances, with the defaults of their pins and the inputs that the script names.

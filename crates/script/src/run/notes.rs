@@ -54,9 +54,14 @@ impl Notes {
         self.taken = total;
     }
 
-    /// Takes this scan's records into the trace. The moves of coordinates, which claims need, come from
-    /// the axes themselves: a step with more records than the ring holds loses some.
-    pub(crate) fn take(&mut self, machine: &ScriptMachine, trace: &mut Trace, shifts: &mut Vec<Shift>) {
+    /// Drops this scan's records.
+    pub(crate) fn drop_all(&mut self) {
+        self.records.clear();
+        self.lost = 0;
+    }
+
+    /// Takes this scan's records into the trace, and what of the moves of coordinates the ring has lost.
+    pub(crate) fn take(&mut self, machine: &ScriptMachine, trace: &mut Trace) {
         self.collect(machine.log());
         let (lost, records) = (std::mem::take(&mut self.lost), &self.records);
         let scan = trace.scans().saturating_sub(1);
@@ -67,22 +72,14 @@ impl Notes {
                 text: format!("{lost} records of this scan are lost: the ring holds {LOG_KEPT}"),
             });
         }
-        for (index, axis) in machine.axes().iter().enumerate() {
-            let by = axis.coordinates_moved(scan as u64);
-            if by == 0.0 {
-                continue;
-            }
-            shifts.push(Shift {
-                scan: scan as u64,
-                axis: index,
-                by,
-            });
+        for Shift { axis, by, .. } in shifts_of(machine, scan) {
             // Claims are judged by the notes of a trace when there are no axes any more.
-            let left = by - told(records, axis.id());
+            let axis = machine.axes().get(axis).map_or(AxisId::NONE, |axis| axis.id());
+            let left = by - told(records, axis);
             if lost > 0 && left != 0.0 {
                 let record = Record {
                     scan: scan as u64,
-                    axis: axis.id(),
+                    axis,
                     instance: RUNTIME,
                     event: Event::Shifted { by: left },
                 };
@@ -105,6 +102,20 @@ impl Notes {
         }
         self.records.clear();
     }
+}
+
+/// The moves of coordinates in a scan, which claims need. They come from the axes themselves: a step with more records than the ring
+/// holds loses some.
+pub(crate) fn shifts_of(machine: &ScriptMachine, scan: usize) -> impl Iterator<Item = Shift> {
+    let axes = machine.axes().iter().enumerate();
+    axes.filter_map(move |(index, axis)| {
+        let by = axis.coordinates_moved(scan as u64);
+        (by != 0.0).then_some(Shift {
+            scan: scan as u64,
+            axis: index,
+            by,
+        })
+    })
 }
 
 /// The shift of an axis's coordinates according to the records (u).

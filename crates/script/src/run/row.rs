@@ -6,16 +6,18 @@ use super::cells;
 use super::layout::Layout;
 use super::values::Values;
 use crate::model::Script;
-use standstill_axis::{AxisId, AxisState};
+use standstill_axis::{AxisId, AxisState, Setpoint};
 use standstill_fb::{AnyInstance, PinType, Value};
 use standstill_record::told::Cells;
 use standstill_record::{AXIS_WORDS, write_axis};
+use standstill_scan::ScanTime;
 use standstill_trace::{Cell, RowError, Trace};
 
 /// Words of a slave in addition, in the order of their columns.
 const SLAVE_WORDS: usize = 7;
 
 /// Writes the rows of a script's run.
+#[derive(Clone, Debug)]
 pub(super) struct RowWriter {
     parts: Vec<Part>,
     /// Words of the part that is being read.
@@ -24,6 +26,7 @@ pub(super) struct RowWriter {
 }
 
 /// An axis, the variables, an instance or a program, of which the trace has a column.
+#[derive(Clone, Debug)]
 struct Part {
     of: Of,
     columns: Vec<Column>,
@@ -35,9 +38,12 @@ struct Part {
     words: Vec<u64>,
     /// It may change while programs rest.
     moves: bool,
+    /// Of an axis, the places in the trace of what changes while it only goes on: the numbers of its set-point, and its actual
+    /// position.
+    motion: ([Option<usize>; 5], Option<usize>),
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 enum Of {
     Axis(usize),
     Variables,
@@ -46,6 +52,7 @@ enum Of {
 }
 
 /// A column of the trace.
+#[derive(Clone, Debug)]
 struct Column {
     /// Which of the words of its part it shows.
     place: usize,
@@ -53,7 +60,7 @@ struct Column {
     told: Told,
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 enum Told {
     State,
     Pin(PinType),
@@ -88,6 +95,8 @@ impl RowWriter {
         for part in &mut all {
             part.first = first;
             first += part.columns.len();
+            // In the order of `write_axis`, behind the state.
+            part.motion = ([1, 2, 3, 4, 5].map(|place| part.column(place)), part.column(6));
         }
         Self {
             words: vec![0; all.iter().map(|part| part.count).max().unwrap_or(0)],
@@ -122,6 +131,24 @@ impl RowWriter {
         }
         trace.push_next(1);
         Ok(())
+    }
+
+    /// Writes the rows of the next `scans`, of which `first` is the first, in which axes go on alone, and takes these so far.
+    pub(super) fn write_along(
+        &mut self,
+        scans: usize,
+        first: ScanTime,
+        machine: &mut ScriptMachine,
+        trace: &mut Trace,
+    ) {
+        trace.push_next(scans);
+        for axis in 0..machine.axes().len() {
+            let is_its = |part: &&mut Part| matches!(part.of, Of::Axis(of) if of == axis);
+            let part = self.parts.iter_mut().find(is_its);
+            let (columns, _) = part.map_or(([None; 5], None), Part::moved);
+            let motion = machine.along(axis, first).take(scans);
+            trace.set_last_reals(scans, &columns, motion.map(Setpoint::numbers));
+        }
     }
 }
 
@@ -167,22 +194,28 @@ impl Part {
         let Some(axis) = source.machine.axes().get(axis) else {
             return;
         };
-        let setpoint = axis.setpoint();
-        for (at, column) in (self.first..).zip(&self.columns) {
-            // In the order of `write_axis`.
-            let number = match column.place {
-                1 => setpoint.position,
-                2 => setpoint.velocity,
-                3 => setpoint.acceleration,
-                4 => setpoint.jerk,
-                5 => setpoint.snap,
-                6 => axis.actual_position(),
-                _ => continue,
-            };
-            trace.set_next_real(at, number);
+        let (of_setpoint, actual) = self.moved();
+        for (at, number) in of_setpoint.into_iter().zip(axis.setpoint().numbers()) {
+            if let Some(at) = at {
+                trace.set_next_real(at, number);
+            }
         }
-        // The next whole row has all of its cells written anew.
+        if let Some(at) = actual {
+            trace.set_next_real(at, axis.actual_position());
+        }
+    }
+
+    /// See [`Part::motion`]. The next whole row has all of the part's cells written anew.
+    fn moved(&mut self) -> ([Option<usize>; 5], Option<usize>) {
         self.words.clear();
+        self.motion
+    }
+
+    /// The place in the trace of a word of the part.
+    fn column(&self, word: usize) -> Option<usize> {
+        let mut columns = self.columns.iter();
+        let place = columns.position(|column| column.place == word)?;
+        Some(self.first + place)
     }
 }
 
@@ -308,6 +341,7 @@ impl Part {
             count,
             words: Vec::new(),
             moves: matches!(of, Of::Axis(_)),
+            motion: ([None; 5], None),
         }
     }
 

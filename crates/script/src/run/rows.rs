@@ -179,30 +179,24 @@ impl<'a> Rows<'a> {
             let is_wanted = self.holds(condition, scans.start) == wanted;
             return scans.start..if is_wanted { scans.end } else { scans.start };
         }
-        let (Signal::Axis(axis, number), Test::Compare(comparisons)) = (&condition.signal, &condition.test)
-        else {
-            return scans;
-        };
-        let Some(values) = self.layout.number(*axis, *number).and_then(|column| {
-            let first = usize::try_from(scans.start).ok()?;
-            let values = self.trace.reals_from(column, first);
-            (first >= self.trace.first() && values.len() as u64 >= scans.end - scans.start).then_some(values)
-        }) else {
-            return scans;
-        };
-        if !comparisons.iter().all(Comparison::is_alone) {
-            return scans;
+        let first = usize::try_from(scans.start).unwrap_or(usize::MAX);
+        let column = self
+            .column(&condition.signal)
+            .filter(|_| first >= self.trace.first());
+        match (&condition.test, column) {
+            (Test::Bool(value), Some(column)) => {
+                let values = self.trace.bools_from(column, first);
+                between(scans, values, |found| (found == *value) == wanted)
+            }
+            (Test::Compare(comparisons), Some(column)) => match Comparison::bounds(comparisons) {
+                Some((least, most)) => {
+                    let values = self.trace.reals_from(column, first);
+                    between(scans, values, |found| (least <= found && found <= most) == wanted)
+                }
+                None => scans,
+            },
+            _ => scans,
         }
-        let is_wanted = |value: &f64| {
-            let meets = |comparison: &Comparison| comparison.meets(*value) == Some(true);
-            comparisons.iter().all(meets) == wanted
-        };
-        let mut found = scans.clone().zip(values).filter(|(_, value)| is_wanted(value));
-        let Some((from, _)) = found.next() else {
-            return scans.start..scans.start;
-        };
-        let to = found.last().map_or(from, |(to, _)| to);
-        from..to + 1
     }
 
     /// A scan from which on a condition reads the same in all rows so far; the number of rows if that is not known.
@@ -231,15 +225,19 @@ impl<'a> Rows<'a> {
     }
 
     fn signal_same_since(&self, signal: &Signal) -> u64 {
-        let column = match *signal {
+        let column = self.column(signal);
+        column.map_or(self.count(), |column| self.trace.same_since(column) as u64)
+    }
+
+    /// The column in which a signal stands; none for one that depends on more than a row.
+    fn column(&self, signal: &Signal) -> Option<usize> {
+        match *signal {
             Signal::Point(point) => self.layout.point(point),
             Signal::State(axis) => self.layout.state(axis),
             Signal::Master(axis, which) => self.layout.master(axis, which),
             Signal::Axis(axis, number) => self.layout.number(axis, number),
-            // They depend on more than a row.
             Signal::Difference(..) | Signal::Formula(_) => None,
-        };
-        column.map_or(self.count(), |column| self.trace.same_since(column) as u64)
+        }
     }
 
     /// Whether all conditions hold on the row of `scan`.
@@ -348,9 +346,24 @@ impl<'a> Rows<'a> {
 }
 
 impl Comparison {
-    /// Whether it is met by a number alone.
-    fn is_alone(&self) -> bool {
-        self.meets(0.0).is_some()
+    /// The least and the greatest number that meets all of these; none if more than that counts.
+    fn bounds(all: &[Self]) -> Option<(f64, f64)> {
+        let mut both = (f64::NEG_INFINITY, f64::INFINITY);
+        for comparison in all {
+            let (least, most) = match *comparison {
+                Self::Le(bound) => (f64::NEG_INFINITY, bound),
+                Self::Ge(bound) => (bound, f64::INFINITY),
+                Self::AbsLe(bound) => (-bound, bound),
+                Self::Lt(bound) if bound.is_finite() => (f64::NEG_INFINITY, bound.next_down()),
+                Self::Gt(bound) if bound.is_finite() => (bound.next_up(), f64::INFINITY),
+                _ => return None,
+            };
+            if least.is_nan() || most.is_nan() {
+                return None;
+            }
+            both = (both.0.max(least), both.1.min(most));
+        }
+        Some(both)
     }
 
     /// Whether a number meets it; none if more than the number counts.
@@ -366,6 +379,23 @@ impl Comparison {
             Self::NearTo { .. } | Self::Ne(_) | Self::SameAs(..) | Self::Whole(..) => return None,
         })
     }
+}
+
+/// Of these scans, those from the first to the last whose value is wanted; all if there are too few values.
+fn between<T>(
+    scans: Range<u64>,
+    values: impl DoubleEndedIterator<Item = T> + ExactSizeIterator + Clone,
+    is_wanted: impl Fn(T) -> bool,
+) -> Range<u64> {
+    let count = usize::try_from(scans.end - scans.start).unwrap_or(usize::MAX);
+    if values.len() < count {
+        return scans;
+    }
+    let Some(first) = values.clone().take(count).position(&is_wanted) else {
+        return scans.start..scans.start;
+    };
+    let last = values.take(count).rposition(is_wanted).unwrap_or(first);
+    scans.start + first as u64..scans.start + last as u64 + 1
 }
 
 /// Backward differences of an axis in one scan.
@@ -389,4 +419,53 @@ fn number(cell: Cell<'_>) -> Option<f64> {
 /// The same bits, except for the sign of zero and the payload of NaN, which a trace does not store.
 fn same(one: f64, other: f64) -> bool {
     one == other || (one.is_nan() && other.is_nan())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Comparison;
+
+    #[test]
+    fn a_number_within_the_bounds_meets_the_comparison_and_no_other_does() {
+        let numbers = [
+            0.0,
+            1.0,
+            1e-320,
+            1e30,
+            f64::MIN_POSITIVE,
+            f64::MAX,
+            f64::INFINITY,
+            f64::NAN,
+        ];
+        let numbers = numbers.into_iter().flat_map(|number: f64| {
+            let beside = [number.next_down(), number, number.next_up()];
+            beside.into_iter().flat_map(|number| [number, -number])
+        });
+        let numbers: Vec<f64> = numbers.collect();
+        let mut told = 0;
+        for &bound in &numbers {
+            let kinds: [fn(f64) -> Comparison; 5] = [
+                Comparison::Le,
+                Comparison::Ge,
+                Comparison::Lt,
+                Comparison::Gt,
+                Comparison::AbsLe,
+            ];
+            for comparison in kinds.map(|kind| kind(bound)) {
+                let Some((least, most)) = Comparison::bounds(std::slice::from_ref(&comparison)) else {
+                    continue;
+                };
+                told += 1;
+                for &number in &numbers {
+                    let is_within = least <= number && number <= most;
+                    assert_eq!(
+                        Some(is_within),
+                        comparison.meets(number),
+                        "{comparison:?} of {number:?}"
+                    );
+                }
+            }
+        }
+        assert!(told > 3 * numbers.len(), "{told}");
+    }
 }

@@ -3,15 +3,15 @@
 use super::bench::{self, Bench, ScriptMachine};
 use super::cells;
 use super::drive::Ordered;
-use super::layout::{self, Layout};
-use super::{Outcome, RunError, executor, needed, told};
+use super::kept::Kept;
+use super::{Outcome, RunError, executor, told};
 use crate::CELLS_MAX;
 use crate::claims::{self, Judges, Standing, Standings};
 use crate::model::{FaultKind, Point, Script, Variable};
 use crate::read::time;
 use crate::why;
 use standstill_fb::{Direction, PinType, Value};
-use standstill_scan::{Executor, Served};
+use standstill_scan::{Executor, ScanTime};
 use standstill_trace::{Trace, shortest};
 
 /// Whether a trace with this many columns has room for the rows of a script.
@@ -77,19 +77,14 @@ impl<'a> Session<'a> {
         Ok(session)
     }
 
-    /// As [`Session::new`], for a run whose rows only its claims and its steps read: its trace has the
-    /// columns that those read, and those of these names. The reasons of failed claims are not searched.
+    /// As [`Session::new`], for one of many runs of a script with other values of its parameters: `kept` of any of them says which
+    /// columns the trace has.
     ///
     /// # Errors
     /// Those of [`Session::new`].
-    pub fn lean(script: &'a Script, names: &[String]) -> Result<Self, RunError> {
-        let header = layout::header(script);
-        let all = header.columns();
-        let columns = needed::columns(script, &all, names);
-        let count = all.len();
-        let trace = Trace::with_some(header, all, |place| columns.contains(&place));
-        let session = Self::with(script, Layout::of_some(script, &columns), trace)?;
-        fits(script, count)?;
+    pub fn keeping(script: &'a Script, kept: &Kept) -> Result<Self, RunError> {
+        let session = Self::with(script, kept.of(script))?;
+        fits(script, kept.all)?;
         Ok(session)
     }
 
@@ -99,15 +94,15 @@ impl<'a> Session<'a> {
     /// # Errors
     /// [`RunError`]: the script cannot be set up.
     pub fn long(script: &'a Script) -> Result<Self, RunError> {
-        Self::with(script, Layout::new(script), Trace::new(layout::header(script)))
+        Self::with(script, Kept::all(script))
     }
 
-    fn with(script: &'a Script, layout: Layout, trace: Trace) -> Result<Self, RunError> {
+    fn with(script: &'a Script, kept: Kept) -> Result<Self, RunError> {
         Ok(Self {
             script,
             machine: bench::machine(script)?,
             executor: executor(script)?,
-            bench: Bench::new(script, layout, trace)?,
+            bench: Bench::new(script, kept)?,
             scans: 0,
             still: 0,
             over: script.scans == 0,
@@ -144,7 +139,7 @@ impl<'a> Session<'a> {
                 columns,
             });
         }
-        let now_ns = self.script.cycle_ns.saturating_mul(scan.cast_signed());
+        let now_ns = self.now_ns();
         let report = self
             .executor
             .scan(now_ns, &mut self.bench, &mut self.machine)
@@ -163,6 +158,11 @@ impl<'a> Session<'a> {
             self.bench.is_over(scan) || self.scans >= self.script.scans
         };
         Ok(true)
+    }
+
+    /// The time of the next scan (ns).
+    fn now_ns(&self) -> i64 {
+        self.script.cycle_ns.saturating_mul(self.scans.cast_signed())
     }
 
     /// Runs the next scan, and at once those behind it in which the programs would do nothing new, at most `most` scans in all;
@@ -209,20 +209,19 @@ impl<'a> Session<'a> {
             }
             None => {
                 self.still = 0;
-                self.coast(scans, Served::Drives)
+                self.coast(scans)
             }
         }
     }
 
-    fn coast(&mut self, scans: u64, served: Served) -> u64 {
-        self.executor
-            .coast(scans, served, &mut self.bench, &mut self.machine)
+    fn coast(&mut self, scans: u64) -> u64 {
+        self.executor.coast(scans, &mut self.bench, &mut self.machine)
     }
 
     /// The same where all axes rest, over drives that have settled after so many scans.
     fn stand(&mut self, scans: u64, settles_in: u64) -> u64 {
         let settling = settles_in.saturating_sub(self.still).min(scans);
-        let done = self.coast(settling, Served::Drives);
+        let done = self.coast(settling);
         self.still += done;
         if done < settling {
             return done;
@@ -235,16 +234,15 @@ impl<'a> Session<'a> {
     /// The same where axes move: without drives, as long as enough scans are left for these to settle.
     fn move_on(&mut self, scans: u64, settles_in: u64) -> u64 {
         let alone = self.bench.moves_alone(&self.machine).min(scans);
-        let alone = alone.saturating_sub(settles_in);
-        let done = self.coast(alone, Served::Axes);
-        if done < alone {
-            if done > 0 {
-                // Nothing mends what drives report.
-                self.bench.break_rest();
-            }
-            return done;
+        let first = ScanTime {
+            scan: self.scans,
+            now_ns: self.now_ns(),
+        };
+        let done = self.executor.stand(alone.saturating_sub(settles_in));
+        if done > 0 {
+            self.bench.go_along(done, first, &mut self.machine);
         }
-        done + self.coast(scans - done, Served::Drives)
+        done + self.coast(scans - done)
     }
 
     /// Makes room for the rows of the whole run, so that scans take no memory for them. It takes at most

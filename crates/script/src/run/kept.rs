@@ -1,0 +1,64 @@
+//! What a run keeps of its rows, prepared once for all runs of a script with other values of its parameters.
+
+use super::layout::{self, Layout};
+use super::needed;
+use super::row::RowWriter;
+use crate::model::Script;
+use standstill_trace::{Header, Trace};
+
+/// The columns that the trace of a run has, and how they are written.
+#[derive(Clone, Debug)]
+pub struct Kept {
+    pub(super) layout: Layout,
+    pub(super) writer: RowWriter,
+    /// Without rows.
+    pub(super) trace: Trace,
+    /// The columns of a whole trace.
+    pub(super) all: usize,
+}
+
+impl Kept {
+    /// All columns.
+    #[must_use]
+    pub fn all(script: &Script) -> Self {
+        let trace = Trace::new(layout::header(script));
+        Self::with(script, Layout::new(script), trace.columns().len(), trace)
+    }
+
+    /// The columns that claims and steps of the script read, and those of these names. Such a trace knows no blocks and
+    /// has no notes of commands, and the reasons of failed claims are not searched.
+    #[must_use]
+    pub fn read(script: &Script, names: &[String]) -> Self {
+        let header = layout::header(script);
+        let all = header.columns();
+        let columns = needed::columns(script, &all, names);
+        let header = Header {
+            inputs: Vec::new(),
+            instances: Vec::new(),
+            ..header
+        };
+        let (layout, count) = (Layout::of_some(script, &columns), all.len());
+        let trace = Trace::with_some(header, all, |place| columns.contains(&place));
+        Self::with(script, layout, count, trace)
+    }
+
+    fn with(script: &Script, layout: Layout, all: usize, trace: Trace) -> Self {
+        Self {
+            writer: RowWriter::new(script, &layout),
+            layout,
+            trace,
+            all,
+        }
+    }
+
+    /// The same for a script that differs in the values of its parameters only.
+    pub(super) fn of(&self, script: &Script) -> Self {
+        let mut kept = self.clone();
+        kept.trace.describe_as(&Header {
+            title: script.title.clone(),
+            axes: layout::axes(script),
+            ..Header::default()
+        });
+        kept
+    }
+}
