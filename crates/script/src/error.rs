@@ -359,7 +359,8 @@ pub(crate) fn line_column(text: &str, offset: usize) -> (usize, usize) {
 
 /// A piece of the script inside a sentence: in backticks, cut if long.
 pub(crate) fn quoted(text: &str) -> String {
-    let shown: String = text.chars().take(SHOWN_CHARS).collect();
-    let cut = if shown.len() < text.len() { ".." } else { "" };
-    format!("`{shown}{cut}`")
+    match text.char_indices().nth(SHOWN_CHARS) {
+        None => ["`", text, "`"].concat(),
+        Some((end, _)) => ["`", &text[..end], "..`"].concat(),
+    }
 }

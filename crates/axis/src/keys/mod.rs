@@ -133,7 +133,9 @@ pub struct Key<T: 'static> {
 impl<T> Key<T> {
     /// Its own name.
     pub fn name(&self) -> &'static str {
-        self.path.rsplit('.').next().unwrap_or(self.path)
+        let above = self.path.bytes().rposition(|byte| byte == b'.');
+        let own = above.and_then(|dot| self.path.get(dot + 1..));
+        own.unwrap_or(self.path)
     }
 
     /// Whether it must be given if its object is.

@@ -146,7 +146,7 @@ pub(crate) fn identifier_error(name: &str) -> Option<&'static str> {
     if name.ends_with('_') || name.contains("__") {
         return Some("no two `_` may stand together, and none at the end");
     }
-    if KEYWORDS.contains(&name.to_ascii_uppercase().as_str()) {
+    if KEYWORDS.iter().any(|word| word.eq_ignore_ascii_case(name)) {
         return Some("it is a keyword of IEC 61131-3");
     }
     None
