@@ -10,7 +10,7 @@ use crate::progress::Progress;
 use crate::run::{failing_claims, title, verdict};
 use standstill_script::model::Script;
 use standstill_script::suite::SuiteError;
-use standstill_script::{CELLS_MAX, Outcome, ROWS_MAX, RunError, Session, warnings};
+use standstill_script::{Ahead, CELLS_MAX, Outcome, ROWS_MAX, RunError, Session, warnings};
 use standstill_trace::csv::Dialect;
 use standstill_trace::digest::Whole;
 use standstill_trace::file::{FileError, Streaming};
@@ -79,7 +79,7 @@ pub fn run(
         title(name, trace, telling.out)?;
         writeln!(telling.out, "\nevents")?;
     }
-    let went = go(&mut session, &mut telling, name, !arguments.quiet);
+    let went = go(script, &mut session, &mut telling, name, !arguments.quiet);
     let Telling {
         out,
         extremes,
@@ -144,12 +144,32 @@ enum Ended {
     File(FileError),
 }
 
-fn go(session: &mut Session<'_>, telling: &mut Telling<'_>, name: &str, watched: bool) -> Result<(), Ended> {
+fn go<'s>(
+    script: &'s Script,
+    session: &mut Session<'s>,
+    telling: &mut Telling<'_>,
+    name: &str,
+    watched: bool,
+) -> Result<(), Ended> {
     let stop = telling.file.is_some().then(Stop::new).transpose();
     let stop = stop.map_err(|error| Ended::Told(Failure::io("signals", &error)))?;
     let mut progress = Progress::new(watched);
+    let (mut by_scan, mut told) = (false, 0);
     loop {
-        let goes_on = session.advance().map_err(Ended::Run);
+        let goes_on = if by_scan {
+            session.advance()
+        } else {
+            match session.advance_far(ROWS_HELD - session.scans() % ROWS_HELD) {
+                Ok(Ahead::Broken) => {
+                    // Up to the rows that were told it is the same run.
+                    *session = Session::long(script).map_err(Ended::Run)?;
+                    by_scan = true;
+                    continue;
+                }
+                ahead => ahead.map(|ahead| ahead != Ahead::Scans(0)),
+            }
+        };
+        let goes_on = goes_on.map_err(Ended::Run);
         if !matches!(goes_on, Ok(true)) || session.scans() % ROWS_HELD == 0 {
             let scans = session.scans();
             limit::doing(format!("{name}: {scans} scans"));
@@ -157,9 +177,12 @@ fn go(session: &mut Session<'_>, telling: &mut Telling<'_>, name: &str, watched:
             if telling.events.is_some() {
                 progress.clear();
             }
-            telling.look(session.trace())?;
+            if session.scans() > told {
+                telling.look(session.trace())?;
+                told = session.scans();
+            }
             session.forget();
-            progress.show(|| format!("{name}: {scans} of {} scans", session.script().scans));
+            progress.show(|| format!("{name}: {scans} of {} scans", script.scans));
             if let (Some(stop), Some(file)) = (&stop, &telling.file) {
                 stop.heed(file, telling.out);
             }
