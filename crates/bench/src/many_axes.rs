@@ -288,8 +288,9 @@ impl ManyAxes {
     pub fn scan(&mut self) {
         let Self { axes, log, cam, .. } = self;
         let (slots, pieces) = cam;
+        let mut scope = Scope::new(self.scan, log);
         for (axis, feedback) in axes.iter_mut().zip(&self.feedback) {
-            axis.follow_feedback(feedback, &mut Scope::new(self.scan, log));
+            axis.follow_feedback(feedback, &mut scope);
         }
         let mut context = Context {
             now_ns: self.scan as i64 * 1_000_000,
@@ -317,10 +318,11 @@ impl ManyAxes {
     /// The same without blocks.
     pub fn scan_alone(&mut self) {
         let Self { axes, log, .. } = self;
+        let mut scope = Scope::new(self.scan, log);
         for (axis, feedback) in axes.iter_mut().zip(&self.feedback) {
-            axis.follow_feedback(feedback, &mut Scope::new(self.scan, log));
+            axis.follow_feedback(feedback, &mut scope);
         }
-        steps::advance(axes, &mut Scope::new(self.scan, log));
+        steps::advance(axes, &mut scope);
         for (axis, feedback) in self.axes.iter_mut().zip(&mut self.feedback) {
             feedback.position = axis.drive_command().position;
         }

@@ -83,20 +83,19 @@ impl OneAxis {
     #[inline(always)]
     pub fn scan(&mut self) -> DriveCommand {
         let Self { axes, log, .. } = self;
-        let [axis] = axes;
-        axis.follow_feedback(&self.feedback, &mut Scope::new(self.scan, log));
         let mut context = Context {
             now_ns: self.scan as i64 * 1_000_000,
             scope: Scope::new(self.scan, log),
             axes,
             tables: &[],
         };
+        context.axes[0].follow_feedback(&self.feedback, &mut context.scope);
         self.power.call(&mut context);
         context.scope.instance = InstanceId(1);
         self.to_target.call(&mut context);
-        steps::advance(axes, &mut Scope::new(self.scan, log));
-        let [axis] = axes;
-        let command = axis.drive_command();
+        context.scope.instance = InstanceId(0);
+        steps::advance(context.axes, &mut context.scope);
+        let command = context.axes[0].drive_command();
         self.feedback.position = command.position;
         self.scan += 1;
         command

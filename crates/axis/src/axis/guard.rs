@@ -71,7 +71,9 @@ pub(super) fn steps_within(
     coarsest: f64,
 ) -> bool {
     let resolved = RESOLVED * (last.position.abs() + next.position.abs() + coarsest);
-    let steepest = limits.acceleration.max(limits.deceleration);
+    // `f64::max` also asks for NaN, which no limit is.
+    let (up, down) = (limits.acceleration, limits.deceleration);
+    let steepest = if up > down { up } else { down };
     (next.position - last.position).abs() <= limits.velocity * scan + resolved
         && (next.velocity - last.velocity).abs() <= steepest * scan
         && (next.acceleration - last.acceleration).abs() <= limits.jerk * scan

@@ -548,11 +548,18 @@ impl<P: Planner> Axis<P> {
         } else {
             self.frame.take_rename()
         };
-        let (position, velocity) = self.mover.for_drive();
+        // By reference: a processor that reads a pair of numbers just after they were written one by one has to wait.
+        let shaped;
+        let at = if self.mover.is_shaped() {
+            shaped = self.mover.commanded();
+            &shaped
+        } else {
+            self.mover.setpoint()
+        };
         DriveCommand {
             request: self.drive_request(),
-            position: self.position_at_drive(position),
-            velocity,
+            position: self.position_at_drive(at.position),
+            velocity: at.velocity,
             rename,
         }
     }

@@ -309,7 +309,9 @@ impl<P: Plan> Mover<P> {
     #[inline(always)]
     pub fn publish(&mut self, next: Setpoint) {
         if self.is_shaped() {
-            self.pass_to_shaper(&next);
+            // A copy, so that the set-point of an axis without a shaper needs no place in memory.
+            let passed = next;
+            self.pass_to_shaper(&passed);
         }
         self.setpoint = next;
         if next.velocity != 0.0 {

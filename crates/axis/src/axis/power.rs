@@ -37,7 +37,7 @@ impl<P: Planner> Axis<P> {
             && !on_switch
             && feedback.fault.is_none()
             && feedback.comms == Comms::Ok
-            && self.latch_usual(feedback.position)
+            && self.latch_usual(&feedback.position)
         {
             debug_assert_eq!(self.calm, self.calmness());
             if !self.is_plain && self.is_measured() {
@@ -51,13 +51,14 @@ impl<P: Planner> Axis<P> {
 
     /// Takes the actual position of a calm axis, whose earlier positions need no new names. Returns
     /// FALSE, and takes nothing, if a full check is needed.
+    // By reference, as in `drive_command`.
     #[inline(always)]
-    fn latch_usual(&mut self, told: DrivePosition) -> bool {
+    fn latch_usual(&mut self, told: &DrivePosition) -> bool {
         let position = match (told, &self.modulo) {
-            (DrivePosition::Units(units), _) if self.is_plain => units,
-            (DrivePosition::Units(units), None) => units,
-            (DrivePosition::Increments(increments), None) => self.position_at_increment(increments),
-            (_, Some(_)) => return self.latch_round(told),
+            (DrivePosition::Units(units), _) if self.is_plain => *units,
+            (DrivePosition::Units(units), None) => *units,
+            (DrivePosition::Increments(increments), None) => self.position_at_increment(*increments),
+            (_, Some(_)) => return self.latch_round(*told),
         };
         let is_usual = (position - self.feedback.position()).abs() <= USUAL_STEP;
         if is_usual {

@@ -223,16 +223,6 @@ impl<P: Plan> Mover<P> {
         self.shaped()
     }
 
-    /// Position and velocity of that: what a drive is told.
-    #[inline(always)]
-    pub fn for_drive(&self) -> (f64, f64) {
-        if !self.is_shaped {
-            return (self.setpoint.position, self.setpoint.velocity);
-        }
-        let shaped = self.shaped();
-        (shaped.position, shaped.velocity)
-    }
-
     #[cold]
     #[inline(never)]
     fn shaped(&self) -> Setpoint {
