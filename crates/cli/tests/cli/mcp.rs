@@ -272,7 +272,7 @@ fn nothing_is_read_or_written_outside_the_folders_that_are_named() {
 #[test]
 fn a_call_takes_no_more_than_it_may() {
     let folder = with_script("mcp_bounds");
-    let long = SCRIPT.replace("\"scans\": 30", "\"scans\": 3700000");
+    let long = SCRIPT.replace("\"scans\": 30", "\"scans\": 370000000");
     write(&folder, "long.scan.json", &long);
     let mut client = Client::of(&folder, &["--call-time", "1s"]);
     let refused = client.refused("run", json!({"path": "long.scan.json"}));
