@@ -352,6 +352,8 @@ struct Room {
     /// Where it starts (u), and whether it is or has come inside since.
     from: f64,
     is_in: bool,
+    /// Velocity at the end of the piece before (u/s): a sum may turn just at a switch.
+    velocity: f64,
 }
 
 impl Room {
@@ -371,6 +373,7 @@ impl Room {
             max: max.max(to) + small(max),
             from,
             is_in: false,
+            velocity: 0.0,
         }
     }
 
@@ -399,7 +402,9 @@ fn piece_fits(state: &Setpoint, length: f64, limits: &Limits, room: Option<&mut 
         return false;
     }
     let Some(room) = room else { return true };
-    let mut fits = true;
+    let turned = room.velocity * state.velocity < 0.0;
+    let mut fits = !turned || room.takes(state.position);
+    room.velocity = moved(state, length).velocity;
     path.extremes(0.0, |state, direction| {
         let turns = direction.is_none() || state.velocity == 0.0;
         let takes = room.takes(state.position);
