@@ -46,7 +46,7 @@ fn main() {
         },
         Measure {
             name: "scan in motion: axis, MC_Power, MC_MoveAbsolute",
-            bar: Some(4.0),
+            bar: Some(4.5),
             batch: Box::new(scan_in_motion()),
         },
         Measure {
