@@ -5,8 +5,7 @@
 
 use crate::{Axis, AxisId, AxisState, Drive, DriveFeedback, Planner, Scope, couple};
 
-/// After every drive was read: takes the reports of the drives beside their motion, then updates the
-/// states, in axis order.
+/// After every drive was read, in axis order: takes the report of its drive beside its motion, then updates its state.
 #[inline]
 pub fn follow<P: Planner, D: Drive>(
     axes: &mut [Axis<P>],
@@ -14,11 +13,9 @@ pub fn follow<P: Planner, D: Drive>(
     feedback: &[DriveFeedback],
     scope: &mut Scope<'_>,
 ) {
-    for (axis, drive) in axes.iter_mut().zip(drives) {
+    for ((axis, drive), feedback) in axes.iter_mut().zip(drives).zip(feedback) {
         drive.report(axis.report_mut());
         axis.follow_report();
-    }
-    for (axis, feedback) in axes.iter_mut().zip(feedback) {
         axis.follow_feedback(feedback, scope);
     }
 }
@@ -32,12 +29,44 @@ pub fn follow<P: Planner, D: Drive>(
 /// evaluation of its law, and if the master got another plan at most seven plans.
 #[inline]
 pub fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
+    advance_each(axes, scope, |_| ());
+}
+
+/// [`advance`] and [`publish`], in one pass where no axis follows another.
+#[inline]
+pub fn advance_and_publish<P: Planner, D: Drive>(
+    axes: &mut [Axis<P>],
+    drives: &mut [D],
+    now_ns: i64,
+    scope: &mut Scope<'_>,
+) {
+    let mut drives = drives.iter_mut();
+    advance_each(axes, scope, |axis| {
+        if let Some(drive) = drives.next() {
+            write(axis, drive, now_ns);
+        }
+    });
+}
+
+/// [`advance`]; `then` takes every axis with its new set-point, in the order of their numbers.
+// In one pass: of thousands of axes each comes from far away, and half as often.
+#[inline]
+pub fn advance_each<P: Planner>(
+    axes: &mut [Axis<P>],
+    scope: &mut Scope<'_>,
+    mut then: impl FnMut(&mut Axis<P>),
+) {
     if axes.iter().any(|axis| axis.links().is_bound()) {
         couple::advance(axes, scope);
-        return axes.iter_mut().for_each(|axis| axis.shape(scope));
+        for axis in axes {
+            axis.shape(scope);
+            then(axis);
+        }
+        return;
     }
     for axis in axes {
         axis.step_alone(scope);
+        then(axis);
     }
 }
 
@@ -45,9 +74,14 @@ pub fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
 #[inline]
 pub fn publish<P: Planner, D: Drive>(axes: &mut [Axis<P>], drives: &mut [D], now_ns: i64) {
     for (axis, drive) in axes.iter_mut().zip(drives) {
-        drive.order(axis.order());
-        drive.write(now_ns, &axis.drive_command());
+        write(axis, drive, now_ns);
     }
+}
+
+#[inline]
+fn write<P: Planner, D: Drive>(axis: &mut Axis<P>, drive: &mut D, now_ns: i64) {
+    drive.order(axis.order());
+    drive.write(now_ns, &axis.drive_command());
 }
 
 /// Asks every axis to stop and switch off, each as it is configured.

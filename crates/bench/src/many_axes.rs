@@ -322,10 +322,12 @@ impl ManyAxes {
         for (axis, feedback) in axes.iter_mut().zip(&self.feedback) {
             axis.follow_feedback(feedback, &mut scope);
         }
-        steps::advance(axes, &mut scope);
-        for (axis, feedback) in self.axes.iter_mut().zip(&mut self.feedback) {
-            feedback.position = axis.drive_command().position;
-        }
+        let mut feedback = self.feedback.iter_mut();
+        steps::advance_each(axes, &mut scope, |axis| {
+            if let Some(feedback) = feedback.next() {
+                feedback.position = axis.drive_command().position;
+            }
+        });
         self.scan += 1;
     }
 }

@@ -222,7 +222,6 @@ impl Executor {
         let work = self.run_due_tasks(time, tick, programs, machine);
         programs.observe(time, machine);
         machine.advance(time);
-        machine.publish(time);
         if self.mode == Mode::Running {
             programs.publish(time);
         }
@@ -260,7 +259,6 @@ impl Executor {
             machine.read_feedback(time);
             programs.idle(time, machine);
             machine.advance(time);
-            machine.publish(time);
             done += 1;
             if !programs.idled(time, machine) {
                 break;

@@ -168,12 +168,12 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         );
     }
 
-    /// The motion step: advances every axis by one nominal tick.
+    /// The motion step, which advances every axis by one nominal tick; then writes every drive once. Both in axis order.
     pub(crate) fn advance(&mut self, time: ScanTime) {
         let mut scope = runtime_scope(time.scan, &mut self.log);
         scope.cams = Cams::new(&mut self.cams.0, &mut self.cams.1);
         scope.history = &mut self.history;
-        steps::advance(&mut self.axes, &mut scope);
+        steps::advance_and_publish(&mut self.axes, &mut self.drives, time.now_ns, &mut scope);
     }
 
     /// The set-points of an axis in the next scans, for as many of them as are taken: its motion steps, without its drive.
@@ -188,11 +188,6 @@ impl<P: Planner, D: Drive> Machine<P, D> {
             axis.step_alone(&mut scope);
             Some(axis.setpoint())
         })
-    }
-
-    /// Writes every drive once, in axis order.
-    pub(crate) fn publish(&mut self, time: ScanTime) {
-        steps::publish(&mut self.axes, &mut self.drives, time.now_ns);
     }
 
     /// Asks every axis to stop and switch off, each as its configuration says.
