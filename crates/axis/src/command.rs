@@ -486,6 +486,14 @@ impl Dynamics {
 }
 
 impl Command {
+    /// The axis is to follow a master.
+    pub fn follows(&self) -> bool {
+        matches!(
+            self,
+            Self::GearIn { .. } | Self::CombineAxes { .. } | Self::CamIn(_)
+        )
+    }
+
     /// Whether `other` has the same values, bit for bit; masters are not compared.
     pub fn is_same(&self, other: &Self) -> bool {
         let law = |command: &Self| match command {

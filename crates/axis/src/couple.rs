@@ -37,7 +37,7 @@ pub fn couple<P: Planner>(
                 | AxisState::SynchronizedMotion
         )
     );
-    check(axes, slave, &request.command, takes, scope)?.command(request, scope)
+    check(axes, slave, &request.command, takes, scope)?.take(request, scope)
 }
 
 /// Gives a command of `slave` that couples it new values, as [`Axis::update`] does. Any other command is
@@ -90,6 +90,9 @@ fn check<'a, P: Planner>(
         _ => None,
     };
     let count = axes.len();
+    if command.follows() {
+        note_some_follow(axes, true);
+    }
     let Some(axis) = axes.get_mut(slave.index()) else {
         return Err(scope.refuse_axis("Slave", slave, count));
     };
@@ -201,6 +204,15 @@ pub(crate) fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
     }
     if is_new && axes.iter().any(Axis::may_bound) {
         slow_masters(axes, scope);
+    }
+    let some_follow = axes.iter().any(|axis| axis.links().is_bound());
+    note_some_follow(axes, some_follow);
+}
+
+/// Some axis may follow another from now on, or none does. The first axis knows it for all.
+fn note_some_follow<P: Planner>(axes: &mut [Axis<P>], some_follow: bool) {
+    if let Some(first) = axes.first_mut() {
+        first.links_mut().set_some_follow(some_follow);
     }
 }
 

@@ -56,7 +56,7 @@ pub fn advance_each<P: Planner>(
     scope: &mut Scope<'_>,
     mut then: impl FnMut(&mut Axis<P>),
 ) {
-    if axes.iter().any(|axis| axis.links().is_bound()) {
+    if axes.first().is_some_and(|first| first.links().some_follow()) {
         couple::advance(axes, scope);
         for axis in axes {
             axis.shape(scope);
@@ -65,6 +65,7 @@ pub fn advance_each<P: Planner>(
         return;
     }
     for axis in axes {
+        debug_assert!(!axis.links().is_bound(), "coupled past `couple`");
         axis.step_alone(scope);
         then(axis);
     }

@@ -12,14 +12,24 @@ use crate::{
 use standstill_planner::{Limits, Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
-    /// Takes a command, or refuses it without any effect on the axis or the queue (R38).
+    /// Takes a command, or refuses it without any effect on the axis or the queue (R38). A command that follows a master
+    /// is for [`couple`](crate::couple()), which sees all axes.
     ///
     /// Cost: at most one plan. A blended command that waits costs in addition a ramp, or at most a root
     /// of ramps, for each waiting command, and the owner's plan with a blended end.
     ///
     /// # Errors
-    /// The [`ErrorId`] the block shows; the refusal is recorded with pin, value and limit.
+    /// The [`ErrorId`] the block shows; the refusal is recorded with pin, value and limit. [`ErrorId::AxisUnknown`] for a
+    /// command that follows a master.
     pub fn command(&mut self, request: &Request, scope: &mut Scope<'_>) -> Result<CommandId, ErrorId> {
+        if request.command.follows() {
+            return Err(self.refuse("Master", f64::NAN, f64::NAN, ErrorId::AxisUnknown, scope));
+        }
+        self.take(request, scope)
+    }
+
+    /// The same for any command.
+    pub(crate) fn take(&mut self, request: &Request, scope: &mut Scope<'_>) -> Result<CommandId, ErrorId> {
         let (mode, start) = self.admit_recorded(request, scope)?;
         let (work, limits) = self.check(&request.command, start, scope)?;
         if let Work::Cam(camming) = work

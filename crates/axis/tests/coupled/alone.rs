@@ -1,7 +1,9 @@
 //! Axes that follow none, beside axes that do.
 
 use super::rig::Rig;
-use standstill_axis::{AxisConfig, Command, Direction, Dynamics, Limits, Raw, StartState};
+use standstill_axis::{
+    AxisConfig, AxisState, Command, Direction, Dynamics, ErrorId, Limits, Raw, Request, Scope, StartState,
+};
 use standstill_testkit::Random;
 
 const CYCLE: f64 = 0.001;
@@ -89,4 +91,14 @@ fn they_move_as_they_do_alone_to_the_bit() {
         }
     }
     assert!(other.axes[ALONE..].iter().any(|axis| axis.gears()[0].is_some()));
+}
+
+/// An axis by itself knows no masters; `couple` does.
+#[test]
+fn an_axis_by_itself_follows_no_other() {
+    let mut rig = Rig::new(&[config(None), config(None)], CYCLE);
+    let gear = Request::aborting(rig.gear(0, (1, 1), None, Dynamics::default()));
+    let refused = rig.axes[1].command(&gear, &mut Scope::new(rig.scan, &mut rig.log));
+    assert_eq!(refused, Err(ErrorId::AxisUnknown));
+    assert_eq!(rig.axes[1].state(), AxisState::Standstill);
 }

@@ -8,6 +8,7 @@
 pub(crate) struct Links {
     is_bound: bool,
     is_followed: bool,
+    some_follow: bool,
     is_above: bool,
     rank: u16,
     turn: Turn,
@@ -50,6 +51,16 @@ impl Links {
 
     pub(in crate::axis) fn set_bound(&mut self, is_bound: bool) {
         self.is_bound = is_bound;
+    }
+
+    /// Of the first axis: some axis may follow a master; never FALSE if one does.
+    #[inline]
+    pub(crate) fn some_follow(&self) -> bool {
+        self.some_follow
+    }
+
+    pub(crate) fn set_some_follow(&mut self, some_follow: bool) {
+        self.some_follow = some_follow;
     }
 
     /// Some slave may follow it, or did.
