@@ -30,12 +30,9 @@ impl<P: Planner> Axis<P> {
     /// The same for a motion.
     pub(super) fn excess_of(&self, motion: &Motion<P::Plan>) -> Option<Excess> {
         match motion {
-            Motion::Run { plan, .. } => self.beyond_bound(plan),
-            Motion::Hold
-            | Motion::Follow
-            | Motion::Torque { .. }
-            | Motion::Geared
-            | Motion::Closing { .. } => None,
+            // Of a torque: the ramp of its velocity limit.
+            Motion::Run { plan, .. } | Motion::Torque { plan, .. } => self.beyond_bound(plan),
+            Motion::Hold | Motion::Follow | Motion::Geared | Motion::Closing { .. } => None,
         }
     }
 
