@@ -4,7 +4,7 @@ use super::scenario::{Action, Bench, FAULT_CODE, FaultKind, Scenario, axis_id, k
 use crate::rules::arrows::{Part, Reach};
 use crate::rules::fence::Fence;
 use crate::rules::law::Law;
-use crate::rules::limits::{Track, check_excess};
+use crate::rules::limits::{Track, check_excess, check_torque};
 use crate::rules::{Broken, Call, Held, Kind, Outputs, Shown, Truth, check_call, check_truth};
 use standstill_axis::{
     Axis, AxisState, CommandId, EdgeWhileBusy, ErrorId, Event, Fate, InstanceId, LOG_KEPT, Log, Plan, Record,
@@ -113,6 +113,8 @@ struct Run<'a, H> {
     /// Whether the set-point of each axis is measured: it is under a torque, or the motion that took over
     /// from one is not at rest yet.
     measured: Vec<bool>,
+    /// How fast (u/s) each axis was at most since then, or is.
+    fastest: Vec<f64>,
     /// The motion of each axis that no instance follows, as recorded.
     orphans: Vec<Option<CommandId>>,
     /// Records taken from the ring so far, and those of this scan.
@@ -195,6 +197,7 @@ pub fn run(scenario: &Scenario, hands: &mut impl Hands) -> (Seen, Option<Failure
         following: vec![true; machine.axes().len()],
         torques: vec![false; machine.axes().len()],
         measured: vec![false; machine.axes().len()],
+        fastest: vec![0.0; machine.axes().len()],
         orphans: vec![None; machine.axes().len()],
         taken: 0,
         records: Vec::new(),
@@ -276,11 +279,14 @@ impl<H: Hands> Run<'_, H> {
     /// bounds. It is from the latch on behind the motion step in which the torque became active, also if another
     /// motion takes over before a torque is ordered.
     fn follow_torques(&mut self, axes: &[Axis<Standard>]) {
-        for ((measured, was_owner), axis) in self.measured.iter_mut().zip(&mut self.torques).zip(axes) {
+        for (index, axis) in axes.iter().enumerate() {
             let is_held = axis.order().torque.is_some();
-            let is_owner = is_torque(axis);
-            let began = core::mem::replace(was_owner, is_owner);
-            *measured = is_held || began || (*measured && !axis.setpoint().is_at_rest());
+            let began = core::mem::replace(&mut self.torques[index], is_torque(axis));
+            let setpoint = axis.setpoint();
+            let was_measured = self.measured[index];
+            self.measured[index] = is_held || began || (was_measured && !setpoint.is_at_rest());
+            let before = if was_measured { self.fastest[index] } else { 0.0 };
+            self.fastest[index] = before.max(setpoint.velocity.abs());
         }
     }
 
@@ -427,6 +433,9 @@ impl<H: Hands> Run<'_, H> {
                 id: "R79",
                 what: "a defect is reported",
             });
+        }
+        if let Some(order) = axis.order().torque {
+            check_torque(&order, axis.config().limits.velocity, self.fastest[index])?;
         }
         self.check_commands(index, axis)
     }

@@ -8,7 +8,7 @@
 //! recorded ([`check_excess`]).
 
 use super::{Broken, rule};
-use standstill_axis::{Axis, AxisConfig, Excess, Limits, Planner, Setpoint};
+use standstill_axis::{Axis, AxisConfig, Excess, Limits, Planner, Setpoint, TorqueOrder};
 
 /// The tolerance of a limit, relative to it.
 const RELATIVE: f64 = 1e-9;
@@ -59,6 +59,19 @@ pub fn check_excess(excess: &Excess, limits: &Limits) -> Result<(), Broken> {
         excess.acceleration == 0.0 && excess.jerk == 0.0 && excess.velocity <= limits.velocity,
         "limits",
         "a motion is recorded to exceed the limits of the axis",
+    )
+}
+
+/// A torque lets an axis go no faster than its limit, `most` (u/s), or than it was while under a torque.
+///
+/// # Errors
+/// The rule that does not hold.
+pub fn check_torque(order: &TorqueOrder, most: f64, fastest: f64) -> Result<(), Broken> {
+    let (down, up) = order.velocity;
+    rule(
+        down.abs().max(up.abs()) <= most.max(fastest) * (1.0 + RELATIVE),
+        "V25",
+        "a torque lets its axis go faster than the limit",
     )
 }
 
