@@ -83,6 +83,7 @@ pub fn pace(
         let scan = session.scans();
         session.advance()?;
         let skipped = timing.record(scan, due_ns, woke_ns, clock.now_ns());
+        session.keep_up();
         due_ns = due_ns.saturating_add(period_ns.saturating_mul(skipped.saturating_add(1)));
         if ended != Ended::Script || session.is_over() {
             continue;

@@ -98,7 +98,7 @@ impl Rows {
         let words = lent.bind(py).try_readonly()?.as_slice()?.to_vec();
         let held = &mut *held;
         Ok(py.detach(|| {
-            held.trace.put_words(words);
+            held.trace.put_words(&words);
             let seen = look(&held.trace);
             drop(held.trace.take_words());
             seen

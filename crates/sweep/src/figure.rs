@@ -1,7 +1,7 @@
 //! The figures of measures, taken while rows come.
 
 use standstill_script::sweep::{Measure, Take};
-use standstill_trace::{Cell, Trace, cell_text};
+use standstill_trace::{Cell, Trace, cell_text, greatest};
 
 /// The figure of a measure so far.
 pub(crate) struct Figure {
@@ -37,32 +37,38 @@ impl Figure {
         let Some(column) = self.column else { return };
         let next = self.scans..trace.scans();
         self.scans = next.end;
-        // From here on all are the same.
-        let same = trace.same_since(column).clamp(next.start, next.end);
         match self.take {
             Take::Last => self.last = last(trace, column).map(cell_text).unwrap_or_default(),
             Take::First | Take::Count => {
-                let flags = (next.start..same).zip(trace.bools_from(column, next.start));
-                for (scan, _) in flags.filter(|(_, flag)| *flag) {
-                    self.first.get_or_insert(scan);
-                    self.count += 1;
+                let Some((flags, then)) = trace.bools_from(column, next.start) else {
+                    return;
+                };
+                if let Some(first) = flags.iter().position(|flag| *flag) {
+                    self.first.get_or_insert(next.start + first);
+                    self.count += flags.iter().filter(|flag| **flag).count();
                 }
-                if same < next.end && last(trace, column) == Some(Cell::Bool(true)) {
-                    self.first.get_or_insert(same);
-                    self.count += next.end - same;
-                }
-            }
-            Take::Max | Take::Min | Take::AbsMax => {
-                let rows = next.start..next.end.min(same + 1);
-                let numbers = trace.reals_from(column, rows.start).take(rows.len());
-                if numbers.len() > 0 {
-                    numbers.for_each(|number| self.rank(Cell::Real(number)));
-                } else {
-                    // A column of whole numbers.
-                    rows.filter_map(|scan| trace.cell(scan, column))
-                        .for_each(|cell| self.rank(cell));
+                if then == Some(true) {
+                    self.first.get_or_insert(next.start + flags.len());
+                    self.count += next.len() - flags.len();
                 }
             }
+            Take::Max | Take::Min | Take::AbsMax => match trace.reals_from(column, next.start) {
+                Some((numbers, then)) => {
+                    let first = match self.take {
+                        Take::Min => greatest(numbers, |number| -number).map(|least| -least),
+                        Take::AbsMax => greatest(numbers, f64::abs),
+                        _ => greatest(numbers, |number| number),
+                    };
+                    first
+                        .into_iter()
+                        .chain(then)
+                        .for_each(|number| self.rank(Cell::Real(number)));
+                }
+                // A column of whole numbers.
+                None => (next.start..next.end.min(trace.same_since(column).saturating_add(1)))
+                    .filter_map(|scan| trace.cell(scan, column))
+                    .for_each(|cell| self.rank(cell)),
+            },
         }
     }
 

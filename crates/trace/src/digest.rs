@@ -140,7 +140,7 @@ impl Whole {
         self.names.extend(new.map(|text| Prepared::new(&with_end(text))));
         let digest = &mut self.digest;
         let kinds: Vec<Kind> = trace.columns().iter().map(|column| column.kind).collect();
-        for row in trace.words_from(self.scans) {
+        trace.each_row(self.scans, |row| {
             for (kind, &word) in kinds.iter().zip(row) {
                 match kind {
                     Kind::Real | Kind::Integer => digest.write_word(word),
@@ -155,7 +155,7 @@ impl Whole {
                     }
                 }
             }
-        }
+        });
         self.scans = trace.scans();
     }
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::column::Kind;
+use crate::column::{Cell, Kind};
 use crate::header::Axis;
 use crate::number::{fixed, shortest};
 use crate::trace::Trace;
@@ -162,23 +162,22 @@ impl OfAxis {
     /// Reads the rows from a scan on.
     fn look(&mut self, trace: &Trace, from: usize) {
         let [position, velocity, acceleration, jerk, snap] = self.columns;
-        self.least
-            .look(numbers(trace, from, position), |position| -position);
-        self.greatest
-            .look(numbers(trace, from, position), |position| position);
-        self.velocity.look(numbers(trace, from, velocity), f64::abs);
-        self.jerk.look(numbers(trace, from, jerk), f64::abs);
-        self.snap.look(numbers(trace, from, snap), f64::abs);
+        self.least.look(trace, from, position, |position| -position);
+        self.greatest.look(trace, from, position, |position| position);
+        self.velocity.look(trace, from, velocity, f64::abs);
+        self.jerk.look(trace, from, jerk, f64::abs);
+        self.snap.look(trace, from, snap, f64::abs);
         if self.has_one_limit() {
-            self.acceleration
-                .look(numbers(trace, from, acceleration), f64::abs);
+            self.acceleration.look(trace, from, acceleration, f64::abs);
         } else if let (Some(velocity), Some(acceleration)) = (velocity, acceleration) {
-            let velocities = trace.reals_from(velocity, from);
-            let rows = (from.max(trace.first())..).zip(velocities.zip(trace.reals_from(acceleration, from)));
-            for (scan, (velocity, acceleration)) in rows {
-                let [speeding, slowing] = by_sense(velocity, acceleration);
-                self.acceleration.look([(scan, speeding)], |size| size);
-                self.deceleration.look([(scan, slowing)], |size| size);
+            for scan in from.max(trace.first())..trace.scans() {
+                let number = |column| match trace.cell(scan, column) {
+                    Some(Cell::Real(number)) => number,
+                    _ => 0.0,
+                };
+                let [speeding, slowing] = by_sense(number(velocity), number(acceleration));
+                self.acceleration.take(scan, speeding);
+                self.deceleration.take(scan, slowing);
             }
         }
     }
@@ -208,15 +207,6 @@ impl OfAxis {
     }
 }
 
-/// The numbers of a column from a scan on, without those at the end that are all the same but the first of them.
-fn numbers(trace: &Trace, from: usize, column: Option<usize>) -> impl Iterator<Item = (usize, f64)> {
-    let scans = match column {
-        Some(column) => from.max(trace.first())..trace.same_since(column).max(from).saturating_add(1),
-        None => 0..0,
-    };
-    scans.zip(trace.reals_from(column.unwrap_or(usize::MAX), from))
-}
-
 /// The magnitude of an acceleration that speeds up (or starts from rest), and of one that slows down; the other is 0.
 fn by_sense(velocity: f64, acceleration: f64) -> [f64; 2] {
     let slows = (velocity > 0.0 && acceleration < 0.0) || (velocity < 0.0 && acceleration > 0.0);
@@ -229,19 +219,50 @@ fn by_sense(velocity: f64, acceleration: f64) -> [f64; 2] {
 struct Peak(Option<(f64, usize)>);
 
 impl Peak {
-    /// Reads the numbers of scans, of which `rank` says how great they are.
-    #[inline]
-    fn look(&mut self, numbers: impl IntoIterator<Item = (usize, f64)>, rank: impl Fn(f64) -> f64) {
-        // None is less than NaN.
-        let mut peak = self.0.map_or(f64::NAN, |(peak, _)| peak);
-        for (scan, number) in numbers {
-            let value = rank(number);
-            if value <= peak {
-                continue;
-            }
-            if self.0.is_none() || !peak.is_nan() {
-                (self.0, peak) = (Some((value, scan)), value);
-            }
+    /// Reads the numbers of a column from a scan on, of which `rank` says how great they are.
+    fn look(&mut self, trace: &Trace, from: usize, column: Option<usize>, rank: impl Fn(f64) -> f64) {
+        let numbers = column.and_then(|column| trace.reals_from(column, from));
+        let Some((numbers, same)) = numbers else { return };
+        let from = from.max(trace.first());
+        if let Some(most) = greatest(numbers, &rank).filter(|most| self.is_below(*most)) {
+            let is_it = |number: &f64| rank(*number) == most || (most.is_nan() && number.is_nan());
+            let place = numbers.iter().position(is_it).unwrap_or_default();
+            self.take(from + place, most);
+        }
+        if let Some(same) = same {
+            self.take(from + numbers.len(), rank(same));
         }
     }
+
+    fn take(&mut self, scan: usize, value: f64) {
+        if self.is_below(value) {
+            self.0 = Some((value, scan));
+        }
+    }
+
+    fn is_below(&self, value: f64) -> bool {
+        let Some((peak, _)) = self.0 else { return true };
+        value > peak || (value.is_nan() && !peak.is_nan())
+    }
+}
+
+/// The greatest rank of some numbers: NaN if there is one, so that it is not overlooked. None of none.
+pub fn greatest(numbers: &[f64], rank: impl Fn(f64) -> f64) -> Option<f64> {
+    if numbers
+        .iter()
+        .fold(false, |found, number| found | number.is_nan())
+    {
+        return Some(f64::NAN);
+    }
+    let greater = |one: f64, other: f64| if other > one { other } else { one };
+    // Several at once, so that none waits for the one before.
+    let mut most = [f64::NEG_INFINITY; 8];
+    let (eights, rest) = numbers.as_chunks::<8>();
+    for eight in eights {
+        for (most, number) in most.iter_mut().zip(eight) {
+            *most = greater(*most, rank(*number));
+        }
+    }
+    let all = most.into_iter().chain(rest.iter().map(|number| rank(*number)));
+    (!numbers.is_empty()).then(|| all.fold(f64::NEG_INFINITY, greater))
 }

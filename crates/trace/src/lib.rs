@@ -25,6 +25,7 @@
 
 #![forbid(unsafe_code)]
 
+mod cells;
 mod column;
 mod columns;
 pub mod compare;
@@ -50,7 +51,7 @@ pub mod vcd;
 
 pub use column::{Cell, Column, Kind, Role};
 pub use events::{Event, EventLog, Widths, events, events_text, same};
-pub use extremes::{Extreme, Extremes, axis_title, extremes, extremes_text};
+pub use extremes::{Extreme, Extremes, axis_title, extremes, extremes_text, greatest};
 pub use header::{
     AXIS_SIGNALS, Axis, CAM_SIGNALS, CAMS_MAX, COMBINED_SIGNALS, Cam, Claim, ClaimFailure, ClaimVerdict,
     Direction, Header, Input, Instance, Limits, Pin, SLAVE_SIGNALS, SUPERIMPOSED_SIGNALS, Scaling, Written,

@@ -98,7 +98,7 @@ fn of_columns(trace: &Trace) -> Vec<(u64, bool)> {
         })
         .collect();
     let names: Vec<u64> = trace.names().iter().map(|text| of_text(text)).collect();
-    for row in trace.words() {
+    trace.each_row(trace.first(), |row| {
         for (state, &word) in states.iter_mut().zip(row) {
             let word = match state.is_name {
                 true => usize::try_from(word).ok().and_then(|at| names.get(at)),
@@ -108,7 +108,7 @@ fn of_columns(trace: &Trace) -> Vec<(u64, bool)> {
             state.counts |= state.default.is_some_and(|default| default != word);
             state.hash = state.hash.with(word);
         }
-    }
+    });
     states
         .into_iter()
         .map(|state| (state.hash.0, state.counts))

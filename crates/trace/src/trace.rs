@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::cells::{Cells, canonical};
 use crate::column::{Cell, Column, Kind, canonical_bits};
 use crate::header::{CAMS_MAX, Cam, Claim, Header};
 use crate::printable::{make_printable, printable};
@@ -48,6 +49,9 @@ pub enum RowError {
     },
 }
 
+/// Rows that are put together at once to be read one after the other.
+const ROWS_AT_ONCE: usize = 64;
+
 /// A run: its header, one row for each scan from scan 0, and its notes. All its texts are
 /// [`printable`](crate::printable) and one line each, from any source.
 ///
@@ -61,12 +65,8 @@ pub struct Trace {
     first: usize,
     /// The scan of the next row.
     end: usize,
-    /// Row after row, one word a cell; the column's kind gives the meaning of the word.
-    bits: Vec<u64>,
-    /// The next row so far; it begins as the last one.
-    next: Vec<u64>,
-    /// For each column, a row from which on all have the same word.
-    since: Vec<usize>,
+    /// Of each column. The next row begins as the last one.
+    cells: Vec<Cells>,
     names: Names,
     notes: Vec<Note>,
     /// Notes that were forgotten.
@@ -106,13 +106,11 @@ impl Trace {
             .collect();
         Self {
             header,
-            next: vec![0; columns.len()],
-            since: vec![0; columns.len()],
+            cells: columns.iter().map(|column| Cells::new(column.kind)).collect(),
             columns,
             by_name,
             first: 0,
             end: 0,
-            bits: Vec::new(),
             names: Names::default(),
             notes: Vec::new(),
             notes_forgotten: 0,
@@ -193,7 +191,8 @@ impl Trace {
     /// [`Trace::cells`], then return those that are held.
     pub fn forget(&mut self, kept: usize) {
         let first = self.scans().saturating_sub(kept).max(self.first);
-        self.bits.drain(..(first - self.first) * self.columns.len());
+        let old = first - self.first;
+        self.cells.iter_mut().for_each(|cells| cells.forget(old));
         self.first = first;
         let old = self.notes.partition_point(|note| note.scan < first);
         self.notes.drain(..old);
@@ -213,7 +212,8 @@ impl Trace {
 
     /// Makes room for `scans` more rows.
     pub fn reserve(&mut self, scans: usize) {
-        self.bits.reserve(scans.saturating_mul(self.columns.len()));
+        let rows = self.held().saturating_add(scans);
+        self.cells.iter_mut().for_each(|cells| cells.reserve(rows));
     }
 
     /// Appends the row of the next scan. -0.0 becomes 0.0 and every NaN the same NaN: the text forms do
@@ -232,55 +232,27 @@ impl Trace {
     /// # Errors
     /// Those of [`Trace::push_row`].
     pub fn push_cells<'c>(&mut self, cells: impl IntoIterator<Item = Cell<'c>>) -> Result<(), RowError> {
-        let before = self.bits.len();
-        let pushed = self.push_checked(cells.into_iter());
-        if pushed.is_err() {
-            self.bits.truncate(before);
-        } else {
-            self.begin_next();
-        }
-        pushed
-    }
-
-    /// Begins the next row as the last one, after rows were added or taken out; the last one was not compared with those before.
-    fn begin_next(&mut self) {
-        let rows = self.bits.len().checked_div(self.next.len()).unwrap_or(0);
-        self.end = self.first + rows;
-        match rows
-            .checked_sub(1)
-            .and_then(|last| self.bits.get(last * self.next.len()..))
-        {
-            Some(last) => self.next.copy_from_slice(last),
-            None => self.next.fill(0),
-        }
-        self.since.fill(self.end.saturating_sub(1));
-    }
-
-    fn push_checked<'c>(&mut self, cells: impl Iterator<Item = Cell<'c>>) -> Result<(), RowError> {
         let mut found = 0;
+        let before = self.cells.iter().map(Cells::next).collect::<Vec<_>>();
+        let mut row = before.clone();
         for cell in cells {
             found += 1;
             // The rest of a row that is too long is only counted.
-            let Some(column) = self.columns.get(found - 1) else {
-                continue;
-            };
-            let above = match cell {
-                Cell::Name(text) => self.above().filter(|&above| self.names.is(above, text)),
-                _ => None,
-            };
-            let word = match above {
-                Some(above) if column.kind == Kind::Name => above,
-                _ => word_of(&mut self.names, column, cell)?,
-            };
-            self.bits.push(word);
+            if let (Some(column), Some(word)) = (self.columns.get(found - 1), row.get_mut(found - 1)) {
+                *word = word_of(&mut self.names, column, cell, *word)?;
+            }
         }
-        if found == self.columns.len() {
-            return Ok(());
+        if found != self.columns.len() {
+            return Err(RowError::Length {
+                expected: self.columns.len(),
+                found,
+            });
         }
-        Err(RowError::Length {
-            expected: self.columns.len(),
-            found,
-        })
+        for (place, word) in row.into_iter().enumerate() {
+            self.set_next_word(place, word);
+        }
+        self.push_next(1);
+        Ok(())
     }
 
     /// Sets a cell of the next row, which begins as a copy of the last one; see [`Trace::push_next`].
@@ -294,7 +266,8 @@ impl Trace {
                 found: place + 1,
             });
         };
-        let word = word_of(&mut self.names, column, cell)?;
+        let before = self.cells.get(place).map_or(0, Cells::next);
+        let word = word_of(&mut self.names, column, cell, before)?;
         self.set_next_word(place, word);
         Ok(())
     }
@@ -303,119 +276,108 @@ impl Trace {
     // Called in every scan by other crates.
     #[inline]
     pub fn set_next_real(&mut self, place: usize, value: f64) {
-        if self
-            .columns
-            .get(place)
-            .is_some_and(|column| column.kind == Kind::Real)
-        {
-            self.set_next_word(place, canonical_bits(value));
+        let rows = self.held();
+        if let Some(cells) = self.cells.get_mut(place) {
+            cells.set_next_real(rows, value);
         }
     }
 
     #[inline]
     fn set_next_word(&mut self, place: usize, word: u64) {
-        if let Some(next) = self.next.get_mut(place)
-            && *next != word
-        {
-            *next = word;
-            let scan = self.scans();
-            if let Some(since) = self.since.get_mut(place) {
-                *since = scan;
-            }
+        let rows = self.held();
+        if let Some(cells) = self.cells.get_mut(place) {
+            cells.set_next(rows, word);
         }
+    }
+
+    /// Rows that are held.
+    const fn held(&self) -> usize {
+        self.end - self.first
     }
 
     /// Appends the next row so many times. Use it for rows with few changed cells: only these are set
-    /// ([`Trace::set_next`]).
+    /// ([`Trace::set_next`]), and only these take time and memory.
     #[inline]
     pub fn push_next(&mut self, times: usize) {
-        self.bits.reserve(times.saturating_mul(self.next.len()));
-        for _ in 0..times {
-            self.bits.extend_from_slice(&self.next);
-        }
-        // Rows are counted by their cells.
-        self.end += if self.next.is_empty() { 0 } else { times };
+        // A trace without columns has no rows.
+        self.end += if self.cells.is_empty() { 0 } else { times };
     }
 
-    /// Writes numbers into columns of reals of the last rows, row after row: the first of a row goes into the first of the columns, and
-    /// so on; it is dropped where there is no such column. All other columns are left as they are.
+    /// Writes down what a column has had so far, another one after each row. A column that rests is else written down when it
+    /// changes, all at once; in a scan of a paced run that would take long.
+    pub fn keep_up(&mut self) {
+        let rows = self.held();
+        let place = self.end.checked_rem(self.cells.len());
+        if let Some(cells) = place.and_then(|place| self.cells.get_mut(place)) {
+            cells.fill(rows);
+        }
+    }
+
+    /// Writes numbers into columns of reals of the last rows, which were added at once by [`Trace::push_next`], row after row: the
+    /// first of a row goes into the first of the columns, and so on; it is dropped where there is no such column. There are as many as
+    /// rows.
     pub fn set_last_reals<const N: usize>(
         &mut self,
         rows: usize,
         columns: &[Option<usize>; N],
         numbers: impl Iterator<Item = [f64; N]>,
     ) {
-        let width = self.next.len().max(1);
-        let first = self.bits.len().saturating_sub(rows.saturating_mul(width));
-        let rows = self.bits.get_mut(first..).unwrap_or_default();
-        for (row, numbers) in rows.chunks_exact_mut(width).zip(numbers) {
-            for (place, number) in columns.iter().zip(numbers) {
-                if let Some(word) = place.and_then(|place| row.get_mut(place)) {
-                    *word = canonical_bits(number);
+        let before = self.held().saturating_sub(rows);
+        let mut of_columns: [&mut [f64]; N] = std::array::from_fn(|_| [].as_mut_slice());
+        for (place, cells) in self.cells.iter_mut().enumerate() {
+            let mut each = columns.iter().zip(&mut of_columns);
+            if let Some((_, of_column)) = each.find(|(column, _)| **column == Some(place)) {
+                *of_column = cells.more_reals(before, rows);
+            }
+        }
+        for (row, numbers) in (0..rows).zip(numbers) {
+            for (of_column, number) in of_columns.iter_mut().zip(numbers) {
+                if let Some(cell) = of_column.get_mut(row) {
+                    *cell = canonical(number);
                 }
             }
         }
         for &place in columns.iter().flatten() {
-            let mut words = rows.chunks_exact(width).rev().filter_map(|row| row.get(place));
-            let (Some(&last), Some(next)) = (words.next(), self.next.get_mut(place)) else {
-                continue;
-            };
-            let same = 1 + words.take_while(|word| **word == last).count();
-            let is_old = *next == last && same * width == rows.len();
-            *next = last;
-            if let Some(since) = self.since.get_mut(place).filter(|_| !is_old) {
-                *since = self.end - same;
-            }
+            self.cells.get_mut(place).into_iter().for_each(Cells::trim);
         }
     }
 
-    /// A scan from which on all rows have the same value in this column; the number of rows if that is not known.
+    /// A scan from which on all rows that are held have the same value in this column; the number of rows if that is not known.
+    // Asked for in every scan by other crates.
+    #[inline]
     #[must_use]
     pub fn same_since(&self, column: usize) -> usize {
-        self.since.get(column).copied().unwrap_or(self.scans())
+        let cells = self.cells.get(column);
+        cells.map_or(self.scans(), |cells| self.first + cells.same_from())
     }
 
-    /// The numbers of a column of reals from a scan on, or from the first row that is held; none for another column.
+    /// The numbers of a column of reals from a scan on, or from the first row that is held, up to those at the end that are all the
+    /// same ([`Trace::same_since`]), and that one if there are such rows; none for another column.
     // Read in every scan by other crates.
     #[inline]
-    pub fn reals_from(
-        &self,
-        column: usize,
-        scan: usize,
-    ) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator + Clone {
-        self.words_of(Kind::Real, column, scan).map(f64::from_bits)
+    #[must_use]
+    pub fn reals_from(&self, column: usize, scan: usize) -> Option<(&[f64], Option<f64>)> {
+        let (cells, same) = self
+            .cells
+            .get(column)?
+            .reals_from(scan.saturating_sub(self.first))?;
+        Some((cells, self.has_same(column, scan).then_some(same)))
     }
 
     /// The same of a column of BOOLs.
     #[inline]
-    pub fn bools_from(
-        &self,
-        column: usize,
-        scan: usize,
-    ) -> impl DoubleEndedIterator<Item = bool> + ExactSizeIterator + Clone {
-        self.words_of(Kind::Bool, column, scan).map(|word| word != 0)
+    #[must_use]
+    pub fn bools_from(&self, column: usize, scan: usize) -> Option<(&[bool], Option<bool>)> {
+        let (cells, same) = self
+            .cells
+            .get(column)?
+            .bools_from(scan.saturating_sub(self.first))?;
+        Some((cells, self.has_same(column, scan).then_some(same)))
     }
 
-    /// The words of a column of this kind from a scan on, or from the first row that is held; none for another column.
-    #[inline]
-    fn words_of(
-        &self,
-        kind: Kind,
-        column: usize,
-        scan: usize,
-    ) -> impl DoubleEndedIterator<Item = u64> + ExactSizeIterator + Clone {
-        let is_its = self.columns.get(column).is_some_and(|column| column.kind == kind);
-        let width = self.columns.len().max(1);
-        let rows = scan.saturating_sub(self.first);
-        let from = rows.saturating_mul(width).saturating_add(column);
-        let words = self.bits.get(from..).filter(|_| is_its).unwrap_or_default();
-        words.iter().step_by(width).copied()
-    }
-
-    /// The word in the last row at the place of the next word.
-    fn above(&self) -> Option<u64> {
-        let at = self.bits.len().checked_sub(self.columns.len())?;
-        self.bits.get(at).copied()
+    /// Whether there are rows from a scan on that have the same value in this column as all behind them.
+    fn has_same(&self, column: usize, scan: usize) -> bool {
+        self.same_since(column).max(scan) < self.scans()
     }
 
     /// Whether any of these columns has another value in a scan than in the one before; in the first one all have.
@@ -423,8 +385,9 @@ impl Trace {
         let Some(before) = scan.checked_sub(1) else {
             return true;
         };
-        let (before, now) = (self.row_words(before), self.row_words(scan));
-        columns.iter().any(|&at| now.get(at) != before.get(at))
+        let may_move = |at: &&usize| self.same_since(**at) >= scan;
+        let mut columns = columns.iter().filter(may_move);
+        columns.any(|&at| self.word(before, at) != self.word(scan, at))
     }
 
     /// The value of a column in a scan; `None` outside the trace.
@@ -438,32 +401,18 @@ impl Trace {
 
     /// The stored word of a column in a scan; `None` outside the trace.
     pub(crate) fn word(&self, scan: usize, column: usize) -> Option<u64> {
-        let row = scan.checked_sub(self.first)?;
-        self.bits
-            .get(row.checked_mul(self.columns.len())?.checked_add(column)?)
-            .copied()
+        let row = scan.checked_sub(self.first).filter(|row| *row < self.held())?;
+        self.cells.get(column).map(|cells| cells.word(row))
     }
 
     /// The cells of a scan in column order; none outside the trace.
     pub fn row(&self, scan: usize) -> impl Iterator<Item = Cell<'_>> {
-        self.columns
-            .iter()
-            .zip(self.row_words(scan))
-            .map(|(column, &word)| self.decode(column.kind, word))
-    }
-
-    fn row_words(&self, scan: usize) -> &[u64] {
-        let mut rows = self.bits.chunks_exact(self.columns.len().max(1));
-        let row = scan.checked_sub(self.first).and_then(|row| rows.nth(row));
-        row.unwrap_or_default()
+        (0..self.columns.len()).map_while(move |column| self.cell(scan, column))
     }
 
     /// The cells of a column from scan 0 on; none if there is no such column.
     pub fn cells(&self, column: usize) -> impl Iterator<Item = Cell<'_>> {
-        let kind = self.columns.get(column).map(|column| column.kind);
-        let words = self.bits.iter().skip(column).step_by(self.columns.len().max(1));
-        kind.into_iter()
-            .flat_map(move |kind| words.clone().map(move |&word| self.decode(kind, word)))
+        (self.first..self.end).map_while(move |scan| self.cell(scan, column))
     }
 
     /// The numbers of a column of reals from scan 0 on; none for another column.
@@ -495,46 +444,50 @@ impl Trace {
         self.notes.insert(place, note);
     }
 
-    /// A trace of given rows, one word a cell as [`Trace::decode`] reads it; words of names are indices
-    /// into `names`. `None` if the words are not whole rows, or a name is missing or cannot be in a row.
-    pub(crate) fn with_rows(
+    /// A trace of given columns, one word a cell as [`Trace::decode`] reads it; words of names are indices
+    /// into `names`. `None` if a name is missing or cannot be in a row.
+    pub(crate) fn with_words(
         header: Header,
         columns: Vec<Column>,
-        mut bits: Vec<u64>,
+        (rows, words): (usize, &[Vec<u64>]),
         names: &[String],
     ) -> Option<Self> {
-        let mut trace = Self::with_columns(header, columns);
-        let width = trace.columns.len();
-        if bits.len().checked_rem(width).unwrap_or(bits.len()) != 0
-            || names.iter().any(|name| name.chars().any(char::is_control))
-        {
+        if names.iter().any(|name| name.chars().any(char::is_control)) {
             return None;
         }
+        let mut trace = Self::with_columns(header, columns);
+        trace.end = rows;
         let indices: Vec<u64> = names.iter().map(|name| trace.names.index(name)).collect();
-        for row in bits.chunks_exact_mut(width.max(1)) {
-            for (column, word) in trace.columns.iter().zip(row) {
-                match column.kind {
-                    Kind::Bool => *word = u64::from(*word != 0),
-                    Kind::Real => *word = canonical_bits(f64::from_bits(*word)),
-                    Kind::Integer => {}
-                    Kind::Name => *word = *indices.get(usize::try_from(*word).ok()?)?,
-                }
+        for ((column, cells), words) in trace.columns.iter().zip(&mut trace.cells).zip(words) {
+            for (row, &word) in words.iter().take(rows).enumerate() {
+                let word = match column.kind {
+                    Kind::Name => *indices.get(usize::try_from(word).ok()?)?,
+                    kind => in_order(kind, word),
+                };
+                cells.set_next(row, word);
             }
         }
-        trace.bits = bits;
-        trace.begin_next();
         Some(trace)
     }
 
-    /// The rows from a scan on as stored: a word a cell; for a name its index in [`Trace::texts`].
-    pub(crate) fn words_from(&self, scan: usize) -> impl Iterator<Item = &[u64]> {
-        let rows = self.bits.chunks_exact(self.columns.len().max(1));
-        rows.skip(scan.saturating_sub(self.first))
-    }
-
-    /// All rows that are held, as [`Trace::words_from`].
-    pub(crate) fn words(&self) -> impl Iterator<Item = &[u64]> {
-        self.words_from(self.first)
+    /// Calls `take` with each row from a scan on as stored: a word a cell; for a name its index in [`Trace::names`].
+    pub(crate) fn each_row(&self, scan: usize, mut take: impl FnMut(&[u64])) {
+        let width = self.columns.len().max(1);
+        let mut block = vec![0; ROWS_AT_ONCE * width];
+        let mut from = scan.saturating_sub(self.first);
+        let mut before = None;
+        while from < self.held() {
+            for (place, cells) in self.cells.iter().enumerate() {
+                // Else it is the same in all rows, as in those before.
+                if before.is_none_or(|before| cells.same_from() > before) {
+                    cells.put(from, block.iter_mut().skip(place).step_by(width));
+                }
+            }
+            let rows = (self.held() - from).min(ROWS_AT_ONCE);
+            block.chunks_exact(width).take(rows).for_each(&mut take);
+            before = Some(from);
+            from += rows;
+        }
     }
 
     /// The name of a word.
@@ -547,17 +500,28 @@ impl Trace {
     /// returns them.
     #[must_use]
     pub fn take_words(&mut self) -> Vec<u64> {
-        let words = std::mem::take(&mut self.bits);
-        self.begin_next();
+        let mut words = Vec::with_capacity(self.held() * self.columns.len());
+        self.each_row(self.first, |row| words.extend_from_slice(row));
+        self.cells = self
+            .columns
+            .iter()
+            .map(|column| Cells::new(column.kind))
+            .collect();
+        self.end = self.first;
         words
     }
 
     /// Returns the rows that [`Trace::take_words`] took; an incomplete row at the end is dropped.
-    pub fn put_words(&mut self, mut words: Vec<u64>) {
-        let width = self.columns.len();
-        words.truncate(words.len() - words.len().checked_rem(width).unwrap_or(words.len()));
-        self.bits = words;
-        self.begin_next();
+    pub fn put_words(&mut self, words: &[u64]) {
+        for row in words.chunks_exact(self.columns.len().max(1)) {
+            for (place, (column, &word)) in self.columns.iter().zip(row).enumerate() {
+                let word = in_order(column.kind, word);
+                if let Some(cells) = self.cells.get_mut(place) {
+                    cells.set_next(self.end - self.first, word);
+                }
+            }
+            self.push_next(1);
+        }
     }
 
     /// The names that occur in rows.
@@ -577,8 +541,17 @@ impl Trace {
     }
 }
 
-/// The word under which a row holds a cell of this column.
-fn word_of(names: &mut Names, column: &Column, cell: Cell<'_>) -> Result<u64, RowError> {
+/// The word of a column's kind: of a BOOL 0 or 1, of a number without the sign of zero.
+fn in_order(kind: Kind, word: u64) -> u64 {
+    match kind {
+        Kind::Bool => u64::from(word != 0),
+        Kind::Real => canonical_bits(f64::from_bits(word)),
+        Kind::Integer | Kind::Name => word,
+    }
+}
+
+/// The word under which a row holds a cell of this column; `before` is that of the row before.
+fn word_of(names: &mut Names, column: &Column, cell: Cell<'_>, before: u64) -> Result<u64, RowError> {
     if cell.kind() != column.kind {
         return Err(RowError::Kind {
             column: column.name.clone(),
@@ -590,6 +563,8 @@ fn word_of(names: &mut Names, column: &Column, cell: Cell<'_>) -> Result<u64, Ro
         Cell::Bool(value) => Ok(u64::from(value)),
         Cell::Real(value) => Ok(canonical_bits(value)),
         Cell::Integer(value) => Ok(value.cast_unsigned()),
+        // Most names stay from row to row.
+        Cell::Name(text) if names.is(before, text) => Ok(before),
         Cell::Name(text) if text.chars().any(char::is_control) => Err(RowError::ControlCharacter {
             column: column.name.clone(),
         }),
@@ -743,10 +718,7 @@ mod tests {
         by_row.push_next(1);
         at_once.push_next(1);
         assert_eq!(at_once.scans(), 13);
-        assert_eq!(
-            at_once.words().flatten().collect::<Vec<_>>(),
-            by_row.words().flatten().collect::<Vec<_>>()
-        );
+        assert_eq!(at_once.take_words(), by_row.take_words());
     }
 
     #[test]

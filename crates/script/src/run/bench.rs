@@ -369,6 +369,11 @@ impl<'a> Bench<'a> {
         self.trace.reserve(scans);
     }
 
+    /// See [`Trace::keep_up`].
+    pub(crate) fn keep_up(&mut self) {
+        self.trace.keep_up();
+    }
+
     /// Adds a note at the last scan.
     pub(crate) fn tell(&mut self, subject: &str, text: &str) {
         self.trace.push_note(Note {

@@ -180,21 +180,22 @@ impl<'a> Rows<'a> {
             return scans.start..if is_wanted { scans.end } else { scans.start };
         }
         let first = usize::try_from(scans.start).unwrap_or(usize::MAX);
-        let column = self
-            .column(&condition.signal)
-            .filter(|_| first >= self.trace.first());
+        let are_last = first >= self.trace.first() && scans.end == self.count();
+        let column = self.column(&condition.signal).filter(|_| are_last);
         match (&condition.test, column) {
-            (Test::Bool(value), Some(column)) => {
-                let values = self.trace.bools_from(column, first);
-                between(scans, values, |found| (found == *value) == wanted)
-            }
-            (Test::Compare(comparisons), Some(column)) => match Comparison::bounds(comparisons) {
-                Some((least, most)) => {
-                    let values = self.trace.reals_from(column, first);
-                    between(scans, values, |found| (least <= found && found <= most) == wanted)
-                }
+            (Test::Bool(value), Some(column)) => match self.trace.bools_from(column, first) {
+                Some(values) => between(scans, values, |found| (found == *value) == wanted),
                 None => scans,
             },
+            (Test::Compare(comparisons), Some(column)) => {
+                let values = self.trace.reals_from(column, first);
+                match values.zip(Comparison::bounds(comparisons)) {
+                    Some((values, (least, most))) => between(scans, values, |found| {
+                        ((least <= found) & (found <= most)) == wanted
+                    }),
+                    None => scans,
+                }
+            }
             _ => scans,
         }
     }
@@ -381,21 +382,24 @@ impl Comparison {
     }
 }
 
-/// Of these scans, those from the first to the last whose value is wanted; all if there are too few values.
-fn between<T>(
+/// Of these scans, those from the first to the last whose value is wanted, which are the values from the first of them on up to those that are all the same, and
+/// that one.
+fn between<T: Copy>(
     scans: Range<u64>,
-    values: impl DoubleEndedIterator<Item = T> + ExactSizeIterator + Clone,
+    (values, same): (&[T], Option<T>),
     is_wanted: impl Fn(T) -> bool,
 ) -> Range<u64> {
-    let count = usize::try_from(scans.end - scans.start).unwrap_or(usize::MAX);
-    if values.len() < count {
-        return scans;
-    }
-    let Some(first) = values.clone().take(count).position(&is_wanted) else {
-        return scans.start..scans.start;
+    let is_wanted = |value: &T| is_wanted(*value);
+    let behind = scans.start + values.len() as u64;
+    // Without an end in the middle it is several at once.
+    let is_there = values.iter().fold(false, |found, value| found | is_wanted(value));
+    let same = same.filter(is_wanted).map(|_| behind..scans.end);
+    let Some(first) = values.iter().position(&is_wanted).filter(|_| is_there) else {
+        return same.unwrap_or(scans.start..scans.start);
     };
-    let last = values.take(count).rposition(is_wanted).unwrap_or(first);
-    scans.start + first as u64..scans.start + last as u64 + 1
+    let last = values.iter().rposition(is_wanted).unwrap_or(first);
+    let end = same.map_or(scans.start + last as u64 + 1, |same| same.end);
+    scans.start + first as u64..end
 }
 
 /// Backward differences of an axis in one scan.

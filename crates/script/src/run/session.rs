@@ -246,10 +246,16 @@ impl<'a> Session<'a> {
     }
 
     /// Makes room for the rows of the whole run, so that scans take no memory for them. It takes at most
-    /// [`CELLS_MAX`] cells of 8 bytes.
+    /// [`CELLS_MAX`] cells of at most 8 bytes.
     pub fn reserve(&mut self) {
         let left = self.script.scans.saturating_sub(self.scans);
         self.bench.reserve(usize::try_from(left).unwrap_or_default());
+    }
+
+    /// Between two scans of a paced run: what the trace puts off is done bit by bit, so that no scan has much of it. Cost: at most
+    /// as many cells as the trace has columns.
+    pub fn keep_up(&mut self) {
+        self.bench.keep_up();
     }
 
     /// Stops the programs for good: from the next scan on none is called, and every axis stops and

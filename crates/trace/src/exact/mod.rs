@@ -257,15 +257,16 @@ impl Reader<'_> {
         })
     }
 
-    /// Writes the words of a column to their places among those of all rows.
-    fn words(&mut self, places: impl Iterator<Item = usize>, bits: &mut [u64]) -> Option<()> {
+    /// The words of a column.
+    fn words(&mut self, rows: usize) -> Option<Vec<u64>> {
         let (mut last, mut step) = (0_u64, 0_u64);
-        for place in places {
+        let mut words = Vec::with_capacity(rows);
+        for _ in 0..rows {
             step = step.wrapping_add(self.signed()?.cast_unsigned());
             last = last.wrapping_add(step);
-            *bits.get_mut(place)? = last;
+            words.push(last);
         }
-        Some(())
+        Some(words)
     }
 
     fn reals(&mut self, rows: usize, earlier: &[Vec<f64>]) -> Option<Vec<f64>> {
@@ -309,18 +310,15 @@ impl Reader<'_> {
         if cells > self.0.len() || (width == 0 && rows > 0) {
             return None;
         }
-        let mut bits = vec![0; cells];
+        let mut words: Vec<Vec<u64>> = Vec::with_capacity(width);
         let mut reals: Vec<Vec<f64>> = Vec::new();
-        for (at, column) in columns.iter().enumerate() {
-            let places = (at..cells).step_by(width);
+        for column in &columns {
             if column.kind == Kind::Real {
                 let values = self.reals(rows, &reals)?;
-                for (place, value) in places.zip(&values) {
-                    *bits.get_mut(place)? = value.to_bits();
-                }
+                words.push(values.iter().map(|value| value.to_bits()).collect());
                 reals.push(values);
             } else {
-                self.words(places, &mut bits)?;
+                words.push(self.words(rows)?);
             }
         }
         drop(reals);
@@ -336,6 +334,6 @@ impl Reader<'_> {
             axes,
             ..Header::default()
         };
-        Trace::with_rows(header, columns, bits, &names)
+        Trace::with_words(header, columns, (rows, &words), &names)
     }
 }
