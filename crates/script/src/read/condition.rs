@@ -118,7 +118,7 @@ impl Reader {
 
     fn condition(&mut self, key: &Key, node: &Node) -> Option<Condition> {
         let (signal, kind) = self.signal(&key.text, key.span)?;
-        let what = format!("{} ({})", quoted(&key.text), self.kind_name(kind));
+        let what = [&quoted(&key.text), " (", &self.kind_name(kind), ")"].concat();
         let test = self.test(node, kind, &what)?;
         let span = Span {
             start: key.span.start,

@@ -9,11 +9,13 @@ use standstill_axis::keys::{Bounds, Holds, Key, Object};
 
 /// The name of a key in messages: with its object.
 fn called<T>(key: &Key<T>) -> String {
+    // Of every key of every case of a sweep: `format!` would take several times as long.
+    let quoted = |parts: &[&str]| ["`", &parts.concat(), "`"].concat();
     match key.path.rsplit_once('.') {
         // The place of an object in a list.
-        Some((above, name)) if above.ends_with(|last: char| last.is_ascii_digit()) => format!("`{name}`"),
-        Some((above, name)) => format!("`{}.{name}`", above.rsplit('.').next().unwrap_or(above)),
-        None => format!("`{}`", key.path),
+        Some((above, name)) if above.ends_with(|last: char| last.is_ascii_digit()) => quoted(&[name]),
+        Some((above, name)) => quoted(&[above.rsplit('.').next().unwrap_or(above), ".", name]),
+        None => quoted(&[key.path]),
     }
 }
 

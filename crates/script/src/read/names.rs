@@ -3,7 +3,7 @@
 use standstill_fb::{BlockInfo, PinType};
 use std::collections::BTreeMap;
 
-/// Keywords of IEC 61131-3 and the elementary type names, which no axis, input or instance may be called.
+/// Keywords of IEC 61131-3 and the elementary type names, which no axis, input or instance may be called; in order.
 pub(crate) const KEYWORDS: &[&str] = &[
     "ABSTRACT",
     "ACTION",
@@ -146,7 +146,11 @@ pub(crate) fn identifier_error(name: &str) -> Option<&'static str> {
     if name.ends_with('_') || name.contains("__") {
         return Some("no two `_` may stand together, and none at the end");
     }
-    if KEYWORDS.iter().any(|word| word.eq_ignore_ascii_case(name)) {
+    let capitals = || name.bytes().map(|byte| byte.to_ascii_uppercase());
+    if KEYWORDS
+        .binary_search_by(|word| word.bytes().cmp(capitals()))
+        .is_ok()
+    {
         return Some("it is a keyword of IEC 61131-3");
     }
     None
