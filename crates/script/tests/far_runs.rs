@@ -329,3 +329,26 @@ fn random_runs_far_ahead_are_the_runs_scan_by_scan() {
     );
     assert!(broken <= count / 50, "{broken} runs of {count} are broken off");
 }
+
+/// An endless motion over 180 scans, after which positions leave the range of numbers: the axis fails in a scan without programs.
+#[test]
+fn a_run_that_is_broken_off_is_done_again_scan_by_scan() {
+    let text = json!({
+        "standstill": 1, "title": "Out of numbers", "cycle": "T#1s", "scans": 400, "golden": false,
+        "axes": {"X": {"unit": "m", "limits": {"velocity": 1e306, "acceleration": 1e306}, "state": "Standstill"}},
+        "inputs": {"GO": false},
+        "blocks": [{"name": "move", "type": "MC_MoveVelocity",
+            "pins": {"Axis": "X", "Execute": {"from": "GO"}, "Velocity": 1e306}}],
+        "steps": [{"at": 5, "set": {"GO": true}}],
+        "expect": [{"at": 186, "that": {"X.State": "ErrorStop", "move.Error": true}}],
+    })
+    .to_string();
+    let script = read_given(&text, Path::new("out.scan.json"), &[], &Allowed::default())
+        .unwrap_or_else(|error| panic!("{error}"));
+    let whole = by_scan(&script);
+    assert!(whole.passed());
+    assert_eq!(far(&script, &mut Random(1)), None);
+    assert_eq!(far_without_drives(&script, &whole, &mut Random(1)), None);
+    let done = standstill_script::run(&script).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(told(&done), told(&whole));
+}

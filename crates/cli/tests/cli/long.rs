@@ -68,6 +68,40 @@ fn a_long_run_tells_what_a_short_one_tells_but_draws_nothing() {
     assert!(!folder.join("long.csv.partial").exists());
 }
 
+/// Programs that were left out should have seen what happened, which is behind the first rows that were written.
+#[test]
+fn a_run_that_is_broken_off_goes_on_scan_by_scan_where_it_had_told_of() {
+    let folder = scratch("long_broken");
+    let script = r#"{
+      "standstill": 1, "title": "Out of numbers", "cycle": "T#1s", "scans": 1000000000,
+      "stop_when": {"X.State": "ErrorStop"}, "after": 5000,
+      "axes": {"X": {"unit": "m", "limits": {"velocity": 3e304, "acceleration": 3e304}, "state": "Standstill"}},
+      "inputs": {"GO": false},
+      "blocks": [
+        {"name": "move", "type": "MC_MoveVelocity", "pins": {"Axis": "X", "Execute": {"from": "GO"}, "Velocity": 3e304}}
+      ],
+      "steps": [{"at": 5, "set": {"GO": true}}],
+      "expect": [{"never": {"X.Velocity": {"gt": 3e304}}}]
+    }"#;
+    write(&folder, "long.scan.json", script);
+    write(&folder, "short.scan.json", &script.replace("1000000000", "20000"));
+    let long = standstill(&folder, &["run", "long.scan.json", "--trace", "long.csv"]);
+    let short = standstill(&folder, &["run", "short.scan.json", "--trace", "short.csv"]);
+    assert_eq!((long.status, long.err.as_str()), (0, ""), "{}", long.out);
+    assert_eq!(long.out.matches("SetpointBroken").count(), 1, "{}", long.out);
+    let verdict = |ended: &Ended| {
+        ended
+            .out
+            .trim_end()
+            .rsplit(": passed, ")
+            .next()
+            .map(str::to_owned)
+    };
+    assert!(verdict(&long).is_some_and(|verdict| verdict.starts_with("1 of 1 claims, 10999 scans, digest ")));
+    assert_eq!(verdict(&long), verdict(&short));
+    assert_eq!(read(&folder, "long.csv"), read(&folder, "short.csv"));
+}
+
 #[test]
 fn a_streamed_trace_is_read_like_any_other() {
     let folder = with_scripts("long_jsonl");
