@@ -176,18 +176,27 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         steps::advance_and_publish(&mut self.axes, &mut self.drives, time.now_ns, &mut scope);
     }
 
-    /// The set-points of an axis in the next scans, for as many of them as are taken: its motion steps, without its drive.
+    /// So many motion steps of an axis, without its drive; `take` gets the number of each, from 0, and its set-point.
     /// Only as long as it goes on ([`Axis::goes_on_for`]); time is passed by [`Executor::stand`](crate::Executor::stand), and
     /// actual positions are for the host to mend.
-    pub fn along(&mut self, axis: usize, time: ScanTime) -> impl Iterator<Item = Setpoint> + use<'_, P, D> {
+    // An iterator would hand each set-point over in memory, and wait for it to get there.
+    #[inline]
+    pub fn along(
+        &mut self,
+        axis: usize,
+        time: ScanTime,
+        steps: usize,
+        mut take: impl FnMut(usize, Setpoint),
+    ) {
         let mut scope = runtime_scope(time.scan, &mut self.log);
         scope.history = &mut self.history;
-        let mut axis = self.axes.get_mut(axis);
-        core::iter::from_fn(move || {
-            let axis = axis.as_mut()?;
+        let Some(axis) = self.axes.get_mut(axis) else {
+            return;
+        };
+        for step in 0..steps {
             axis.step_alone(&mut scope);
-            Some(axis.setpoint())
-        })
+            take(step, axis.setpoint());
+        }
     }
 
     /// Asks every axis to stop and switch off, each as its configuration says.

@@ -4,9 +4,7 @@ use crate::figure::Figure;
 use standstill_script::model::Script;
 use standstill_script::suite::{self, Allowed, SuiteError, Texts};
 use standstill_script::sweep::Sweep;
-use standstill_script::{
-    Ahead, Failure, Kept, Outcome, RunError, ScriptError, Session, Verdict, read_sweep, run,
-};
+use standstill_script::{Ahead, Failure, Kept, RunError, ScriptError, Session, Verdict, read_sweep, run};
 use standstill_trace::{Extreme, Extremes, digest, shortest};
 use std::path::{Path, PathBuf};
 
@@ -55,7 +53,7 @@ const CELLS_HELD: usize = 8192;
 
 /// The results of a case.
 struct Ran {
-    scans: usize,
+    scans: u64,
     verdicts: Vec<Verdict>,
     extremes: Vec<Extreme>,
     /// The figures of the measures, as written in the table.
@@ -214,7 +212,7 @@ impl Job {
             case,
             fields: self.fields(case, &parameters, judged, Some(&ran), why),
             judged,
-            axis_scans: ran.scans as u64 * self.axes.len() as u64,
+            axis_scans: ran.scans * self.axes.len() as u64,
         })
     }
 
@@ -260,10 +258,9 @@ impl Job {
                 session.forget();
             }
         }
-        let Outcome { trace, verdicts, .. } = session.finish();
         Ok(Some(Ran {
-            scans: trace.scans(),
-            verdicts,
+            scans: session.scans(),
+            verdicts: session.verdicts(),
             extremes: extremes.all().collect(),
             figures: figures.iter().map(Figure::text).collect(),
             digest: digest.map(|digest| digest.finish()),
@@ -297,7 +294,8 @@ impl Job {
         fields.push(judged.word().to_owned());
         if let Some(ran) = ran {
             let held = ran.verdicts.iter().filter(|verdict| verdict.passed()).count();
-            fields.extend([ran.scans, ran.verdicts.len(), held].map(|count| count.to_string()));
+            fields.push(ran.scans.to_string());
+            fields.extend([ran.verdicts.len(), held].map(|count| count.to_string()));
             for (axis, quantity) in self
                 .axes
                 .iter()

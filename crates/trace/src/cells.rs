@@ -162,7 +162,7 @@ impl Cells {
     }
 
     /// Room for the numbers of so many more rows behind the first ones; nothing for a column of another kind. The next row
-    /// begins as the last of them, once [`Cells::trim`] was called.
+    /// begins as the last of them, once [`Cells::take_reals`] was called.
     pub(crate) fn more_reals(&mut self, rows: usize, more: usize) -> &mut [f64] {
         self.fill(rows);
         match &mut self.first {
@@ -174,11 +174,15 @@ impl Cells {
         }
     }
 
-    /// The last of the numbers that are written down becomes that of the next row; none at the end is the same as it.
-    pub(crate) fn trim(&mut self) {
+    /// The numbers of the rows from `row` on were written down. The last of them becomes that of the next row; none at the end is the
+    /// same as it.
+    pub(crate) fn take_reals(&mut self, row: usize) {
         let First::Real(cells) = &mut self.first else {
             return;
         };
+        for cell in cells.get_mut(row..).unwrap_or_default() {
+            *cell = f64::from_bits(canonical_bits(*cell));
+        }
         let Some(last) = cells.last().map(|last| last.to_bits()) else {
             return;
         };
@@ -196,11 +200,6 @@ impl Cells {
     pub(crate) fn reserve(&mut self, rows: usize) {
         each!(&mut self.first, cells, _word => cells.reserve(rows.saturating_sub(cells.len())));
     }
-}
-
-/// A number as a trace holds it.
-pub(crate) fn canonical(value: f64) -> f64 {
-    f64::from_bits(canonical_bits(value))
 }
 
 #[cfg(test)]

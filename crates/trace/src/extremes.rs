@@ -139,7 +139,7 @@ struct OfAxis {
 impl OfAxis {
     fn new(trace: &Trace, axis: &Axis) -> Self {
         let column = |name: &str| {
-            let at = trace.column(&format!("{}.{name}", axis.name))?;
+            let at = trace.column(&[&axis.name, ".", name].concat())?;
             (trace.columns().get(at)?.kind == Kind::Real).then_some(at)
         };
         Self {

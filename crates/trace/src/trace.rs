@@ -1,10 +1,11 @@
 //! The rows of a run, stored as bits.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::cells::{Cells, canonical};
+use crate::cells::Cells;
 use crate::column::{Cell, Column, Kind, canonical_bits};
 use crate::header::{CAMS_MAX, Cam, Claim, Header};
 use crate::printable::{make_printable, printable};
@@ -50,7 +51,7 @@ pub enum RowError {
 }
 
 /// Rows that are put together at once to be read one after the other.
-const ROWS_AT_ONCE: usize = 64;
+const ROWS_AT_ONCE: usize = 16;
 
 /// A run: its header, one row for each scan from scan 0, and its notes. All its texts are
 /// [`printable`](crate::printable) and one line each, from any source.
@@ -59,8 +60,9 @@ const ROWS_AT_ONCE: usize = 64;
 #[derive(Clone, Debug)]
 pub struct Trace {
     header: Header,
-    columns: Vec<Column>,
-    by_name: BTreeMap<String, usize>,
+    /// Shared by the traces of all cases of a sweep, as their places are.
+    columns: Arc<[Column]>,
+    by_name: Arc<BTreeMap<String, usize>>,
     /// The scan of the first row that is held.
     first: usize,
     /// The scan of the next row.
@@ -99,16 +101,13 @@ impl Trace {
         columns
             .iter_mut()
             .for_each(|column| make_printable(&mut column.name));
-        let by_name = columns
-            .iter()
-            .enumerate()
-            .map(|(at, column)| (column.name.clone(), at))
-            .collect();
+        let places = columns.iter().enumerate();
+        let by_name = places.map(|(at, column)| (column.name.clone(), at)).collect();
         Self {
             header,
             cells: columns.iter().map(|column| Cells::new(column.kind)).collect(),
-            columns,
-            by_name,
+            columns: columns.into(),
+            by_name: Arc::new(by_name),
             first: 0,
             end: 0,
             names: Names::default(),
@@ -313,14 +312,13 @@ impl Trace {
         }
     }
 
-    /// Writes numbers into columns of reals of the last rows, which were added at once by [`Trace::push_next`], row after row: the
-    /// first of a row goes into the first of the columns, and so on; it is dropped where there is no such column. There are as many as
-    /// rows.
-    pub fn set_last_reals<const N: usize>(
+    /// Has `write` put numbers into columns of reals, in the last rows, which were added at once by [`Trace::push_next`]: for each of
+    /// these columns it gets the places of all those rows, for none no places.
+    pub fn write_last_reals<const N: usize>(
         &mut self,
         rows: usize,
         columns: &[Option<usize>; N],
-        numbers: impl Iterator<Item = [f64; N]>,
+        write: impl FnOnce(&mut [&mut [f64]; N]),
     ) {
         let before = self.held().saturating_sub(rows);
         let mut of_columns: [&mut [f64]; N] = std::array::from_fn(|_| [].as_mut_slice());
@@ -330,15 +328,10 @@ impl Trace {
                 *of_column = cells.more_reals(before, rows);
             }
         }
-        for (row, numbers) in (0..rows).zip(numbers) {
-            for (of_column, number) in of_columns.iter_mut().zip(numbers) {
-                if let Some(cell) = of_column.get_mut(row) {
-                    *cell = canonical(number);
-                }
-            }
-        }
+        write(&mut of_columns);
         for &place in columns.iter().flatten() {
-            self.cells.get_mut(place).into_iter().for_each(Cells::trim);
+            let cells = self.cells.get_mut(place).into_iter();
+            cells.for_each(|cells| cells.take_reals(before));
         }
     }
 
@@ -711,8 +704,10 @@ mod tests {
                 by_row.push_next(1);
             }
             at_once.push_next(numbers.len());
-            let pairs = numbers.map(|number| [7.0, number]);
-            at_once.set_last_reals(numbers.len(), &[None, Some(1)], pairs.into_iter());
+            at_once.write_last_reals(numbers.len(), &[None, Some(1)], |[none, places]| {
+                assert!(none.is_empty());
+                places.copy_from_slice(&numbers);
+            });
             assert_eq!(by_row.same_since(1), at_once.same_since(1));
         }
         by_row.push_next(1);

@@ -19,6 +19,7 @@ use standstill_axis::{Axis, AxisId, AxisState, ErrorId, InstanceId, Standard};
 use standstill_fb::{Context, Value};
 use standstill_scan::{Machine, ProgramFault, ProgramId, Programs, RUNTIME, ScanTime, TaskId};
 use standstill_trace::{Note, RowError, Trace};
+use std::sync::Arc;
 
 /// The machine of a script: Standard planners over simulated drives.
 pub(crate) type ScriptMachine = Machine<Standard, ScriptDrive>;
@@ -127,7 +128,7 @@ fn variable(script: &Script, point: Point) -> Option<&Variable> {
 /// A script at work.
 pub(crate) struct Bench<'a> {
     script: &'a Script,
-    layout: Layout,
+    layout: Arc<Layout>,
     values: Values,
     /// What runs in each task, in file order.
     tasks: Vec<OfTask>,

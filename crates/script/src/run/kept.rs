@@ -5,11 +5,12 @@ use super::needed;
 use super::row::RowWriter;
 use crate::model::Script;
 use standstill_trace::{Header, Trace};
+use std::sync::Arc;
 
 /// The columns that the trace of a run has, and how they are written.
 #[derive(Clone, Debug)]
 pub struct Kept {
-    pub(super) layout: Layout,
+    pub(super) layout: Arc<Layout>,
     pub(super) writer: RowWriter,
     /// Without rows.
     pub(super) trace: Trace,
@@ -45,7 +46,7 @@ impl Kept {
     fn with(script: &Script, layout: Layout, all: usize, trace: Trace) -> Self {
         Self {
             writer: RowWriter::new(script, &layout),
-            layout,
+            layout: Arc::new(layout),
             trace,
             all,
         }

@@ -6,7 +6,7 @@ use super::cells;
 use super::layout::Layout;
 use super::values::Values;
 use crate::model::Script;
-use standstill_axis::{AxisId, AxisState, Setpoint};
+use standstill_axis::{AxisId, AxisState};
 use standstill_fb::{AnyInstance, PinType, Value};
 use standstill_record::told::Cells;
 use standstill_record::{AXIS_WORDS, write_axis};
@@ -146,8 +146,15 @@ impl RowWriter {
             let is_its = |part: &&mut Part| matches!(part.of, Of::Axis(of) if of == axis);
             let part = self.parts.iter_mut().find(is_its);
             let (columns, _) = part.map_or(([None; 5], None), Part::moved);
-            let motion = machine.along(axis, first).take(scans);
-            trace.set_last_reals(scans, &columns, motion.map(Setpoint::numbers));
+            trace.write_last_reals(scans, &columns, |places| {
+                machine.along(axis, first, scans, |scan, setpoint| {
+                    for (of_column, number) in places.iter_mut().zip(setpoint.numbers()) {
+                        if let Some(place) = of_column.get_mut(scan) {
+                            *place = number;
+                        }
+                    }
+                });
+            });
         }
     }
 }
@@ -162,30 +169,31 @@ impl Part {
     ) -> Result<(), RowError> {
         let words = words.get_mut(..self.count).unwrap_or_default();
         source.put(self.of, words);
-        if *words == *self.words {
-            return Ok(());
-        }
+        // One by one: they were just written so, and a processor waits before it reads several of them at once.
+        let is_new = self.words.is_empty();
+        self.words.resize(self.count, 0);
         for (at, column) in (self.first..).zip(&self.columns) {
-            let word = words.get(column.place);
-            if let Some(&word) = word
-                && self.words.get(column.place) != Some(&word)
-            {
-                match column.told {
-                    Told::State => trace.set_next(at, Cell::Name(state(word)))?,
-                    Told::Pin(PinType::Lreal) => trace.set_next_real(at, f64::from_bits(word)),
-                    Told::Pin(ty) => {
-                        let value = ty.value(word);
-                        cells.prepare(ty, value);
-                        trace.set_next(at, cells.cell(ty, value))?;
-                    }
-                    Told::Symbol(program) => {
-                        source.symbol(program, column.place, |cell| trace.set_next(at, cell))?;
-                    }
+            let (Some(&word), Some(before)) = (words.get(column.place), self.words.get_mut(column.place))
+            else {
+                continue;
+            };
+            if *before == word && !is_new {
+                continue;
+            }
+            *before = word;
+            match column.told {
+                Told::State => trace.set_next(at, Cell::Name(state(word)))?,
+                Told::Pin(PinType::Lreal) => trace.set_next_real(at, f64::from_bits(word)),
+                Told::Pin(ty) => {
+                    let value = ty.value(word);
+                    cells.prepare(ty, value);
+                    trace.set_next(at, cells.cell(ty, value))?;
+                }
+                Told::Symbol(program) => {
+                    source.symbol(program, column.place, |cell| trace.set_next(at, cell))?;
                 }
             }
         }
-        self.words.clear();
-        self.words.extend_from_slice(words);
         Ok(())
     }
 

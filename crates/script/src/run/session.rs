@@ -6,7 +6,7 @@ use super::drive::Ordered;
 use super::kept::Kept;
 use super::{Outcome, RunError, executor, told};
 use crate::CELLS_MAX;
-use crate::claims::{self, Judges, Standing, Standings};
+use crate::claims::{self, Judges, Standing, Standings, Verdict};
 use crate::model::{FaultKind, Point, Script, Variable};
 use crate::read::time;
 use crate::why;
@@ -606,13 +606,20 @@ impl<'a> Session<'a> {
         &self.changes
     }
 
+    /// Judges the claims on the rows so far.
+    #[must_use]
+    pub fn verdicts(&mut self) -> Vec<Verdict> {
+        let rows = self.bench.rows();
+        self.judges.look(&rows);
+        self.judges.verdicts(&rows)
+    }
+
     /// Judges the claims on the rows so far. The reasons of failed claims are searched only if all rows
     /// are still held.
     #[must_use]
     pub fn finish(mut self) -> Outcome {
+        let verdicts = self.verdicts();
         let rows = self.bench.rows();
-        self.judges.look(&rows);
-        let verdicts = self.judges.verdicts(&rows);
         let why = match rows.trace.first() {
             0 if rows.layout.has_all() => why::why(&rows, &verdicts),
             _ => Vec::new(),
