@@ -105,17 +105,16 @@ impl Drive for PlantDrive {
     }
 
     fn write(&mut self, now_ns: i64, command: &DriveCommand) {
-        if let Some(name) = command.rename {
-            self.servo.rename(name - self.servo.set_point().position);
-        }
         let followed = self.stage.is_enabled();
-        self.stage.write(
-            now_ns,
-            &DriveCommand {
-                rename: None,
-                ..*command
-            },
-        );
+        match command.rename {
+            // As it is: a copy would be read before it is there.
+            None => self.stage.write(now_ns, command),
+            Some(name) => {
+                self.servo.rename(name - self.servo.set_point().position);
+                let rename = None;
+                self.stage.write(now_ns, &DriveCommand { rename, ..*command });
+            }
+        }
         // The first set-point in operation is the actual position; delayed set-points are dropped.
         let operates = followed && self.stage.is_enabled();
         if let Some(order) = self.torque.take().filter(|_| operates) {

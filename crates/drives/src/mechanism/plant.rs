@@ -124,8 +124,8 @@ impl core::error::Error for MechanismError {}
 pub struct Mechanism {
     plant: Plant,
     stops: Option<Stops>,
-    /// Maps (twist, motor velocity, load velocity) and torque to the same values one step later, and the
-    /// way.
+    /// What 1 of the twist, the motor velocity, the load velocity and the torque gives to [motor velocity, way, twist, load velocity]
+    /// one step later. Side by side in this order they are computed two at once.
     step: [[f64; 4]; 4],
     /// Torque that changes the motor's velocity by 1 u/s in a step.
     stopping: f64,
@@ -154,11 +154,11 @@ impl Mechanism {
             },
         )?;
         let [twist, motor, load, way, _] = full;
-        let relevant = |[a, b, c, _, input]: [f64; SIZE]| [a, b, c, input];
+        let of_each = |column: usize| [motor, way, twist, load].map(|row| row[column]);
         Ok(Self {
             plant,
             stops: None,
-            step: [twist, motor, load, way].map(relevant),
+            step: [0, 1, 2, SIZE - 1].map(of_each),
             stopping: 1.0 / motor[4],
             position,
             velocity: 0.0,
@@ -202,28 +202,25 @@ impl Mechanism {
             Some(stops) => torque - stops.torque(self.position, self.velocity),
             None => torque,
         };
-        let [twist, motor, load, way] = &self.step;
-        let free = |row: &[f64; 4]| {
-            row[0] * self.twist + row[1] * self.velocity + row[2] * self.load_velocity + row[3] * torque
-        };
-        let (next_twist, next_motor, next_load, moved) = (free(twist), free(motor), free(load), free(way));
+        let [by_twist, by_motor, by_load, by_torque] = &self.step;
+        let (twist, motor, load) = (self.twist, self.velocity, self.load_velocity);
+        let free: [f64; 4] = core::array::from_fn(|of| {
+            by_twist[of] * twist + by_motor[of] * motor + by_load[of] * load + by_torque[of] * torque
+        });
         // The torque that would stop the motor in this step; friction gives at most its limit.
-        let stopped = next_motor.abs() <= self.plant.coulomb * motor[3];
+        let stopped = free[0].abs() <= self.plant.coulomb * by_torque[0];
         let friction = if stopped {
-            next_motor * self.stopping
+            free[0] * self.stopping
         } else {
-            self.plant.coulomb.copysign(next_motor)
+            self.plant.coulomb.copysign(free[0])
         };
         // Held by friction for the whole step: it must not move by a rounding error.
-        let held = stopped && self.velocity == 0.0;
-        self.position += if held { 0.0 } else { moved - friction * way[3] };
-        self.twist = next_twist - friction * twist[3];
-        self.velocity = if stopped {
-            0.0
-        } else {
-            next_motor - friction * motor[3]
-        };
-        self.load_velocity = next_load - friction * load[3];
+        let held = stopped && motor == 0.0;
+        let [motor, way, twist, load] = core::array::from_fn(|of| free[of] - friction * by_torque[of]);
+        self.position += if held { 0.0 } else { way };
+        self.twist = twist;
+        self.velocity = if stopped { 0.0 } else { motor };
+        self.load_velocity = load;
     }
 
     /// Motor position (u).
