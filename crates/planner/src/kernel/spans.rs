@@ -9,6 +9,17 @@ pub struct Span {
     pub input: f64,
 }
 
+impl Span {
+    /// The span in `parts` of the same length.
+    pub(crate) fn split(&self, parts: usize) -> impl Iterator<Item = Self> + use<> {
+        let part = Self {
+            duration: self.duration / parts as f64,
+            ..*self
+        };
+        core::iter::repeat_n(part, parts)
+    }
+}
+
 /// Up to `N` spans in order of time, without heap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spans<const N: usize> {
@@ -81,13 +92,7 @@ impl<const N: usize> Spans<N> {
 
     /// The spans in order of time, each in `parts` of the same length.
     pub fn split(&self, parts: usize) -> impl Iterator<Item = Span> {
-        self.iter().flat_map(move |span| {
-            let part = Span {
-                duration: span.duration / parts as f64,
-                ..*span
-            };
-            core::iter::repeat_n(part, parts)
-        })
+        self.iter().flat_map(move |span| span.split(parts))
     }
 
     /// Number of spans.

@@ -5,7 +5,7 @@
 use core::cell::Cell;
 
 use crate::Setpoint;
-use crate::kernel::{MAX_STEPS, NOISE, ON_LIMIT, Point, Sides, Spans, THIRD_SPANS, zero};
+use crate::kernel::{MAX_STEPS, NOISE, ON_LIMIT, Point, Sides, Span, Spans, THIRD_SPANS, zero};
 use crate::math::min;
 use crate::ramp::path::Way;
 use crate::ramp::solve::{Course, RAMP_SPANS, Ramp, Ramps, heading};
@@ -154,33 +154,47 @@ impl<'a> Search<'a> {
             return spans;
         }
         let parts = if self.end_velocity == 0.0 { 1 } else { PARTS };
-        for span in push.spans.split(parts) {
-            way.begin(span.input);
-            let after = |time: f64| {
-                let mut way = way;
-                way.go(time);
-                way.state
+        let leads_on = parts > 1 && self.leads_on(start, &push, side);
+        for whole in push.spans.iter() {
+            let short = if leads_on {
+                self.short_behind(&mut stop, &way, whole, side)
+            } else {
+                None
             };
-            // As long as the push goes the way of the stop, that ends where it did.
-            let along = min(stop.ramp.goes_along(span.input), span.duration);
-            stop.follow(along, &after(along));
-            if along < span.duration {
-                let from = stop.ahead_of(along, side, span.input);
-                let mut ahead = |time: f64| {
-                    self.stop_from(&mut stop, &after(time));
-                    stop.ahead_of(time, side, span.input)
-                };
-                let to = ahead(span.duration);
-                if to.value >= 0.0 {
-                    let switch = self.zero(from, to, &mut ahead);
-                    ahead(switch.at);
-                    spans.push(switch.at, span.input);
-                    spans.extend(&stop.ramp.spans);
-                    return spans;
-                }
+            if let Some(end) = short {
+                let all = whole.split(parts);
+                all.for_each(|part| spans.push(part.duration, part.input));
+                way = end;
+                continue;
             }
-            spans.push(span.duration, span.input);
-            way.go(span.duration);
+            for span in whole.split(parts) {
+                way.begin(span.input);
+                let after = |time: f64| {
+                    let mut way = way;
+                    way.go(time);
+                    way.state
+                };
+                // As long as the push goes the way of the stop, that ends where it did.
+                let along = min(stop.ramp.goes_along(span.input), span.duration);
+                stop.follow(along, &after(along));
+                if along < span.duration {
+                    let from = stop.ahead_of(along, side, span.input);
+                    let mut ahead = |time: f64| {
+                        self.stop_from(&mut stop, &after(time));
+                        stop.ahead_of(time, side, span.input)
+                    };
+                    let to = ahead(span.duration);
+                    if to.value >= 0.0 {
+                        let switch = self.zero(from, to, &mut ahead);
+                        ahead(switch.at);
+                        spans.push(switch.at, span.input);
+                        spans.extend(&stop.ramp.spans);
+                        return spans;
+                    }
+                }
+                spans.push(span.duration, span.input);
+                way.go(span.duration);
+            }
         }
         self.stop_from(&mut stop, &steady(&way.state, top));
         cruise(&mut spans, -stop.ahead(0.0, side).value, top);
@@ -207,6 +221,30 @@ impl<'a> Search<'a> {
             spans.extend(&stop.ramp.spans);
         }
         cruises
+    }
+
+    /// Whether a `push` towards `side` leads the farther the longer it is followed, so that it comes to the target once: it keeps its
+    /// direction from the start, inside the limits, and goes for no less than the velocity at the end.
+    fn leads_on(&self, start: &Setpoint, push: &Ramp, side: f64) -> bool {
+        let end = side * self.end_velocity;
+        push.viable && side * start.velocity >= 0.0 && end >= 0.0 && end <= side * self.top(side)
+    }
+
+    /// `way` behind a `span` of a push towards `side`, if a stop from there ends short of the target: then so does one from each of its
+    /// parts. Else the `stop` is that from its begin.
+    fn short_behind(&self, stop: &mut Stop, way: &Way, span: &Span, side: f64) -> Option<Way> {
+        let mut end = *way;
+        // Part by part, for the bits it has where each gets a look.
+        for part in span.split(PARTS) {
+            end.begin(part.input);
+            end.go(part.duration);
+        }
+        self.stop_from(stop, &end.state);
+        if stop.ahead(0.0, side).value < 0.0 {
+            return Some(end);
+        }
+        self.stop_from(stop, &way.state);
+        None
     }
 
     /// A ramp to a peak velocity and one from it, with a cruise between them if it is the bound (O6).
