@@ -107,7 +107,7 @@ impl Planner for Countdown {
         Ok(Count::to(start, goal, false))
     }
 
-    fn entry_speed(&self, wanted: f64, _: f64, _: f64, _: &Limits) -> f64 {
+    fn entry_speed(&self, wanted: f64, _: f64, _: f64, _: f64, _: &Limits) -> f64 {
         wanted
     }
 

@@ -151,6 +151,17 @@ impl BufferMode {
     pub const fn blends(self) -> bool {
         !matches!(self, Self::Aborting | Self::Buffered)
     }
+
+    /// The speed it asks for between two commands with these speeds.
+    pub(crate) const fn speed_between(self, previous: f64, next: f64) -> f64 {
+        match self {
+            Self::Aborting | Self::Buffered => 0.0,
+            Self::BlendingLow => previous.min(next),
+            Self::BlendingPrevious => previous,
+            Self::BlendingNext => next,
+            Self::BlendingHigh => previous.max(next),
+        }
+    }
 }
 
 iec_enum! {

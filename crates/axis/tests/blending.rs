@@ -153,7 +153,7 @@ fn judge(seed: u64) -> Result<Seen, String> {
         let owner = ids
             .iter()
             .position(|id| matches!(axis.fate(*id), Fate::Active { .. }));
-        let past = axis.setpoint().position;
+        let past = axis.setpoint();
         steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, &mut log));
         let point = axis.setpoint();
         watch
@@ -166,13 +166,14 @@ fn judge(seed: u64) -> Result<Seen, String> {
             if direction * point.velocity < -small {
                 return Err(format!("scan {scan}: move {owner} turns at {}", point.velocity));
             }
-            if direction * (point.position - past) < -small * cycle - 1e-13 * watch.largest {
+            if direction * (point.position - past.position) < -small * cycle - 1e-13 * watch.largest {
                 return Err(format!("scan {scan}: move {owner} goes back"));
             }
             let beyond = direction * (point.position - to);
             let ended = axis.fate(ids[owner]) == Fate::Done;
-            // At a hand-over in motion the set-point is up to one scan past the end.
-            let allowed = if ended { point.velocity.abs() * cycle } else { 0.0 };
+            // At a hand-over in motion the set-point is up to one scan past the end, at the speed before or after it.
+            let fastest = past.velocity.abs().max(point.velocity.abs());
+            let allowed = if ended { fastest * cycle } else { 0.0 };
             if beyond > allowed * (1.0 + 1e-9) + 1e-12 * watch.largest {
                 return Err(format!("scan {scan}: move {owner} is {beyond} beyond its end"));
             }

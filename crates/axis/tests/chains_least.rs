@@ -139,9 +139,9 @@ fn a_blended_chain_takes_nearly_the_least_scans() {
     );
     let few = [
         (Kind::Same, (64, 0)),
-        (Kind::Turned, (87, 2)),
-        (Kind::Other, (84, 10)),
-        (Kind::TurnedOther, (65, 8)),
+        (Kind::Turned, (87, 1)),
+        (Kind::Other, (84, 3)),
+        (Kind::TurnedOther, (65, 1)),
     ];
     for (kind, (all, too_many)) in few {
         let seen = above[&kind];

@@ -114,8 +114,9 @@ pub trait Planner {
     ) -> Result<Self::Plan, ProfileFault>;
 
     /// The largest speed (u/s), at most `wanted`, at which a move over `distance` (u, not negative) can
-    /// begin up to one scan late and still pass its end with no more than the speed `exit`.
-    fn entry_speed(&self, wanted: f64, distance: f64, exit: f64, limits: &Limits) -> f64;
+    /// begin up to one scan late and still pass its end with no more than the speed `exit`. With `brake` it begins slowing down with
+    /// that acceleration (u/s^2); 0 if it can't.
+    fn entry_speed(&self, wanted: f64, brake: f64, distance: f64, exit: f64, limits: &Limits) -> f64;
 
     /// Whether two plans, each at its number of scans after its start, together keep `limits` from now on
     /// and do not turn outside `range` (u), which applies to the sum of their positions.
@@ -499,8 +500,8 @@ impl Planner for Standard {
         limits: &Limits,
         before: &Limits,
     ) -> Result<Option<StandardPlan>, PlanError> {
-        let plan = if passage.turn > 0.0 {
-            OnlinePlan::turning(start, target, passage.turn, limits, before, self.cycle)
+        let plan = if passage.brake > 0.0 {
+            OnlinePlan::braking(start, target, passage, limits, before, self.cycle)
         } else {
             OnlinePlan::blending(start, target, passage, limits, before, self.cycle)
         };
@@ -518,8 +519,8 @@ impl Planner for Standard {
         ProfilePlan::new(kind, start, points, limits, range, self.cycle).map(StandardPlan::Profile)
     }
 
-    fn entry_speed(&self, wanted: f64, distance: f64, exit: f64, limits: &Limits) -> f64 {
-        online::entry_speed(wanted, distance, exit, limits, self.cycle)
+    fn entry_speed(&self, wanted: f64, brake: f64, distance: f64, exit: f64, limits: &Limits) -> f64 {
+        online::entry_speed(wanted, brake, distance, exit, limits, self.cycle)
     }
 
     fn fits(

@@ -408,7 +408,7 @@ impl<P: Planner> Axis<P> {
     /// Plans a command from the present set-point. Its limits are raised if the axis could not stay
     /// inside its own with them. Only `entry` changes.
     pub(super) fn plan_for(&self, entry: &mut Entry) -> Result<Motion<P::Plan>, ErrorId> {
-        let before = if self.passes_its_end() {
+        let before = if self.passes_its_end(&entry.limits) {
             // From a blended end on, the limits of the second command apply alone (B5).
             entry.limits
         } else {

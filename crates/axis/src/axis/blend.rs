@@ -4,8 +4,8 @@
 //! standard leaves open is told in `docs/buffering.md`. The maths is the planner's.
 
 use super::commands::{Entry, REST, ROUNDING, Run, Work};
-use super::mover::scans_to_goal;
 use super::power::Reaction;
+use super::through::{is_braking, keeps_rates};
 use super::{Axis, Motion};
 use crate::{BufferMode, ErrorId, Fate, QUEUE_MAX, Scope};
 use standstill_planner::{Limits, Passage, Plan, Planner, Setpoint};
@@ -25,9 +25,10 @@ struct Leg<'a> {
 
 impl<P: Planner> Axis<P> {
     /// A command has been queued with `mode`: if it is to blend, the owner may have to pass its end at
-    /// another speed, and is planned anew from the last set-point (B15). Failing that, its plan stays.
+    /// another speed, and is planned anew from the last set-point (B15). Failing that, its plan stays, and so does one that passes its
+    /// end on a ramp, from which there may be no other way.
     pub(super) fn arm(&mut self, mode: BufferMode, scope: &mut Scope<'_>) {
-        if mode.blends() {
+        if mode.blends() && !self.is_on_a_ramp() {
             self.arm_owner(scope);
         }
     }
@@ -54,7 +55,7 @@ impl<P: Planner> Axis<P> {
             // What was to go on as one motion with something that is another one now does not come to rest as planned.
             None if was.run.count > 0 => self.at_rest_ahead(&owner, start, before),
             planned => {
-                let moves = |plan: &P::Plan| !plan.at(scans_to_goal(plan)).is_at_rest();
+                let moves = |plan: &P::Plan| !plan.at(self.along(&owner, *plan).scans()).is_at_rest();
                 planned.filter(|plan| was.run.count > 0 || owner.run.count > 0 || moves(plan))
             }
         };
@@ -97,10 +98,10 @@ impl<P: Planner> Axis<P> {
         passage: &Passage,
         before: &Limits,
     ) -> Option<P::Plan> {
-        if passage.turn > 0.0 {
+        if passage.brake > 0.0 {
             return self.turned(entry, start, (end, passage), before);
         }
-        if passage.wanted <= 0.0 && !self.passes_its_end() {
+        if passage.wanted <= 0.0 && !self.passes_its_end(&entry.limits) {
             return None;
         }
         let planned = self.planner.blend(start, end, passage, &entry.limits, before);
@@ -108,16 +109,20 @@ impl<P: Planner> Axis<P> {
         // out faster than it may because the limits were lowered too late: it passes its end, turns and comes back. And none
         // is worth exceeding a limit of the axis.
         let planned = planned.ok().flatten();
-        planned
+        let passing = planned
             .filter(|plan| passage.wanted <= 0.0 || self.beyond_bound(plan).is_none())
             .filter(|plan| {
                 let end = plan.at(u64::from(plan.scans())).velocity.abs();
                 let most = self.slowed(&self.config.limits).velocity * (1.0 + ROUNDING);
                 end <= if passage.wanted > 0.0 { most } else { 0.0 }
-            })
-            .filter(|plan| {
-                passage.wanted <= 0.0 || self.is_worth_it(entry, start, (end, passage), before, plan)
-            })
+            });
+        if passage.wanted <= 0.0 {
+            return passing;
+        }
+        match self.behind(entry, end, end > start.position) {
+            Some(behind) => self.soonest_past(entry, start, (&behind, passage), before, passing),
+            None => passing.filter(|plan| self.is_worth_it(entry, start, (end, passage), before, plan)),
+        }
     }
 
     /// Whether the command after `entry` is done sooner if that passes its `end` along `passing` than if it comes to rest
@@ -133,9 +138,8 @@ impl<P: Planner> Axis<P> {
         passing: &P::Plan,
     ) -> bool {
         let last = passing.at(u64::from(passing.scans()));
-        let is_braking = start.velocity * start.acceleration < 0.0;
         let is_wanted = last.velocity.abs() >= passage.wanted * (1.0 - ROUNDING);
-        if is_wanted && !is_braking {
+        if is_wanted && !is_braking(start) {
             return true;
         }
         let to_rest = self.scans_to_rest(entry, start, end, before);
@@ -185,8 +189,13 @@ impl<P: Planner> Axis<P> {
 
     /// The command behind `entry` and what is one motion with it.
     pub(super) fn next_behind(&self, entry: &Entry) -> Option<&Entry> {
-        let mut behind = self.queue.iter().filter(|next| next.id != entry.id);
-        behind.nth(entry.run.count)
+        self.queue.iter().nth(self.number_behind(entry))
+    }
+
+    /// Its number in the queue, in which `entry` may still be the first.
+    pub(super) fn number_behind(&self, entry: &Entry) -> usize {
+        let is_first = self.queue.first().is_some_and(|first| first.id == entry.id);
+        entry.run.count + usize::from(is_first)
     }
 
     /// `limits` of a motion, with the velocity its plan ends with, should that be larger (B3).
@@ -228,13 +237,19 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the owner is at its end in motion, for the next to take over.
-    pub(super) fn passes_its_end(&self) -> bool {
+    /// Whether the owner is at its end in motion, for `next` to take over within its own limits alone (B5). What goes on behind that end,
+    /// as a ramp does, may be too steep for that. Cost: at most one ramp.
+    pub(super) fn passes_its_end(&self, next: &Limits) -> bool {
+        let here = self.mover.setpoint();
+        let keeps = || {
+            let stop = self.planner.ramp_to(here, 0.0, next, next);
+            stop.is_ok_and(|stop| keeps_rates(&stop))
+        };
         self.goal_reached()
             && !self.is_held_up()
             && self.passes_on()
-            && !self.mover.motion().goes_on()
-            && self.mover.setpoint().velocity != 0.0
+            && here.velocity != 0.0
+            && (!self.mover.motion().goes_on() || keeps())
     }
 
     /// What becomes of the owner when another takes over in motion: what has an end has passed it.
@@ -411,26 +426,20 @@ impl<P: Planner> Axis<P> {
             return self.at_turn(leg.entry, next.entry, leg.end, direction);
         }
         let first = entry.limits.velocity;
-        let wanted = match mode {
-            BufferMode::Aborting | BufferMode::Buffered => 0.0,
-            BufferMode::BlendingLow => first.min(velocity),
-            BufferMode::BlendingPrevious => first,
-            BufferMode::BlendingNext => velocity,
-            BufferMode::BlendingHigh => first.max(velocity),
-        };
+        let wanted = mode.speed_between(first, velocity);
         let passage = match exit {
             Some(exit) => {
-                let most = self.planner.entry_speed(wanted, towards.abs(), exit, limits);
+                let most = self.planner.entry_speed(wanted, 0.0, towards.abs(), exit, limits);
                 Passage {
                     wanted: most,
                     most,
-                    turn: 0.0,
+                    brake: 0.0,
                 }
             }
             None => Passage {
                 wanted,
                 most: f64::INFINITY,
-                turn: 0.0,
+                brake: 0.0,
             },
         };
         self.stoppable(passage, leg.end, direction)
@@ -438,7 +447,7 @@ impl<P: Planner> Axis<P> {
 
     /// `passage` at `end`, but no faster than the stop dynamics can keep inside a software limit behind it, whatever
     /// comes next.
-    fn stoppable(&self, passage: Passage, end: Option<f64>, direction: f64) -> Passage {
+    pub(super) fn stoppable(&self, passage: Passage, end: Option<f64>, direction: f64) -> Passage {
         let (Some((min, max)), Some(end)) = (self.parameters.software_limits, end) else {
             return passage;
         };
@@ -449,7 +458,7 @@ impl<P: Planner> Axis<P> {
         let limits = self.stop_limits();
         let most = self
             .planner
-            .entry_speed(passage.wanted, room.max(0.0), 0.0, &limits);
+            .entry_speed(passage.wanted, 0.0, room.max(0.0), 0.0, &limits);
         Passage {
             wanted: most,
             most: passage.most.min(most),

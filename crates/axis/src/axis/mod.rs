@@ -65,6 +65,7 @@ mod stage;
 mod step;
 mod superimposed;
 mod supervision;
+mod through;
 mod torque;
 mod turn;
 mod update;

@@ -118,6 +118,12 @@ impl<P: Plan> Mover<P> {
         }
     }
 
+    /// The set-point at the goal of the plan in progress.
+    pub fn goal(&self) -> Option<Setpoint> {
+        let (plan, _) = self.plan()?;
+        Some(plan.at(self.motion.scans()))
+    }
+
     /// Where the plan in progress has its end (u).
     pub fn end_of_plan(&self) -> f64 {
         self.plan().map_or(self.setpoint.position, |(plan, _)| {

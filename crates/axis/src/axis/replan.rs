@@ -204,8 +204,14 @@ impl<P: Planner> Axis<P> {
 
     /// Sets `entry`, which is the owner or becomes it, in motion.
     pub(super) fn adopt(&mut self, entry: Entry, motion: Motion<P::Plan>, scope: &mut Scope<'_>) {
-        if let Motion::Run { plan, .. } | Motion::Torque { plan, .. } = &motion {
-            self.record_plan(&entry, plan, scope);
+        match &motion {
+            Motion::Run { plan, scans, .. } if entry.run.count == 0 => {
+                self.record_plan(&entry, plan, *scans, scope);
+            }
+            Motion::Run { plan, .. } | Motion::Torque { plan, .. } => {
+                self.record_plan(&entry, plan, scans_to_goal(plan), scope);
+            }
+            _ => {}
         }
         if matches!(motion, Motion::Torque { .. }) {
             // A torque that may go on again, or was given new values, needs care in every scan.
@@ -229,10 +235,10 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    fn record_plan(&self, entry: &Entry, plan: &P::Plan, scope: &mut Scope<'_>) {
+    /// Records `plan`, whose goal it comes to in the scan `scans`.
+    fn record_plan(&self, entry: &Entry, plan: &P::Plan, scans: u64, scope: &mut Scope<'_>) {
         let scope = &mut scope.with(entry.instance);
         let positioning = entry.work.manner().ending == Ending::InPosition;
-        let scans = scans_to_goal(plan);
         let end = plan.at(scans);
         let goal = match entry.goal() {
             _ if entry.halted || entry.passed => Goal::Velocity(end.velocity),

@@ -10,6 +10,7 @@
 use super::commands::{Entry, ROUNDING, Run};
 use super::mover::scans_to_goal;
 use super::supervision::Arrival;
+use super::through::is_braking;
 use super::{Axis, Motion};
 use crate::{CommandId, Fate, Scope};
 use standstill_planner::{Limits, MoveProfile, Plan, Planner, Setpoint};
@@ -98,7 +99,6 @@ impl<P: Planner> Axis<P> {
 
     /// Whether `plan` is done no later than the plan to rest in progress, and a move from there.
     fn is_no_later(&self, entry: &Entry, start: &Setpoint, before: &Limits, plan: &P::Plan) -> bool {
-        let is_braking = start.velocity * start.acceleration < 0.0;
         let (
             Motion::Run {
                 plan: present,
@@ -108,7 +108,7 @@ impl<P: Planner> Axis<P> {
             Some(owner),
             Some(end),
             true,
-        ) = (self.mover.motion(), &self.owner, entry.end, is_braking)
+        ) = (self.mover.motion(), &self.owner, entry.end, is_braking(start))
         else {
             return true;
         };
@@ -123,7 +123,8 @@ impl<P: Planner> Axis<P> {
             .move_to(profile, &rest, entry.run.end, &entry.limits, before);
         let left = scans.saturating_sub(*elapsed);
         onwards.map_or(true, |onwards| {
-            scans_to_goal(plan) <= left.saturating_add(u64::from(onwards.scans()))
+            goal_past(plan, 0, entry.run.end, entry.run.end > end)
+                <= left.saturating_add(u64::from(onwards.scans()))
         })
     }
 
@@ -139,6 +140,11 @@ impl<P: Planner> Axis<P> {
         match entry.end {
             Some(end) if entry.run.count > 0 => Motion::Run {
                 scans: passing_scan(&plan, 0, end, entry.run.end > end),
+                plan,
+                elapsed: 0,
+            },
+            Some(end) if entry.passage.wanted > 0.0 && !entry.halted => Motion::Run {
+                scans: goal_past(&plan, 0, end, end > plan.at(0).position),
                 plan,
                 elapsed: 0,
             },
@@ -193,6 +199,7 @@ impl<P: Planner> Axis<P> {
         };
         let goal = match next.end {
             Some(end) if next.run.count > 0 => passing_scan(plan, *elapsed, end, forward),
+            Some(end) if owner.run.passage.wanted > 0.0 => goal_past(plan, *elapsed, end, forward),
             _ => scans_to_goal(plan),
         };
         self.mover.set_goal(goal);
@@ -244,6 +251,18 @@ fn moves_away(start: &Setpoint, forward: bool) -> bool {
 fn is_past<P: Plan>(plan: &P, scan: u64, end: f64, forward: bool) -> bool {
     let position = plan.at(scan).position;
     if forward { position >= end } else { position <= end }
+}
+
+/// The goal of `plan` after the scan `from` for a command that ends at `end` (u): where the plan leads beyond that, the first scan in
+/// which it is there.
+pub(super) fn goal_past<P: Plan>(plan: &P, from: u64, end: f64, forward: bool) -> u64 {
+    let last = plan.at(u64::from(plan.scans())).position;
+    let leads_beyond = last != end && (last > end) == forward;
+    if plan.turn().is_none() && leads_beyond {
+        passing_scan(plan, from, end, forward)
+    } else {
+        scans_to_goal(plan)
+    }
 }
 
 /// The first scan after `from`, in which it is not there yet, in which `plan` is at or past `end` (u); that of its goal if there is

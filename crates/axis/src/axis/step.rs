@@ -246,7 +246,7 @@ impl<P: Planner> Axis<P> {
             match planned {
                 Ok(None) => {}
                 Ok(Some(motion)) => {
-                    let blended = self.passes_its_end();
+                    let blended = self.passes_its_end(&next.limits);
                     let phasing = self.lend_phasing(&next);
                     self.end_owner(self.fate_at_hand_over());
                     self.keep_phasing(phasing);

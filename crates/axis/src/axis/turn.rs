@@ -5,13 +5,14 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; B13. `docs/buffering.md`.
 
-use super::commands::{Entry, REST, Work};
+use super::commands::{Entry, REST, ROUNDING, Work};
+use super::through::keeps_rates;
 use super::{Axis, Motion};
 use crate::{BufferMode, Scope};
 use standstill_planner::{Limits, MoveProfile, Passage, Plan, Planner, Setpoint};
 
 /// Parts of the largest acceleration that are tried at a turn: the first with which the next command need not go back.
-const PARTS: [f64; 3] = [1.0, 0.7, 0.45];
+const PARTS: [f64; 4] = [1.0, 0.8, 0.6, 0.45];
 
 impl<P: Planner> Axis<P> {
     /// How `entry` is to pass its `end` (u), to which it leads in `direction`, if `next` leads back from there.
@@ -25,7 +26,7 @@ impl<P: Planner> Axis<P> {
         let most = |entry: &Entry| entry.limits.lower_acceleration();
         let turn = most(entry).min(most(next));
         if self.stops_behind(end, direction, turn) {
-            Passage { turn, ..REST }
+            Passage { brake: turn, ..REST }
         } else {
             REST
         }
@@ -47,6 +48,19 @@ impl<P: Planner> Axis<P> {
         stop.is_ok_and(|stop| {
             let furthest = end + stop.at(u64::from(stop.scans())).position;
             turn <= limits.lower_acceleration() && min <= furthest && furthest <= max
+        })
+    }
+
+    /// Whether the stop dynamics keep an axis inside the software limits that is stopped in this state.
+    pub(super) fn stops_inside(&self, state: &Setpoint) -> bool {
+        let Some((min, max)) = self.parameters.software_limits else {
+            return true;
+        };
+        let limits = self.stop_limits();
+        let stop = self.planner.ramp_to(state, 0.0, &limits, &limits);
+        stop.is_ok_and(|stop| {
+            let furthest = stop.at(u64::from(stop.scans())).position;
+            keeps_rates(&stop) && min <= furthest && furthest <= max
         })
     }
 
@@ -72,15 +86,25 @@ impl<P: Planner> Axis<P> {
                 .filter(|plan| plan.excess().is_none() && is_straight(plan))
         };
         let plan = PARTS.iter().find_map(|part| {
-            let turn = part * passage.turn;
+            let turn = part * passage.brake;
             let from = Setpoint {
                 acceleration: if forward { -turn } else { turn },
                 ..Setpoint::at_rest(end)
             };
-            let after = after(&from, MoveProfile::Online)?;
-            let passage = Passage { turn, ..*passage };
+            let after_turn = after(&from, MoveProfile::Online)?;
+            let passage = Passage {
+                brake: turn,
+                ..*passage
+            };
             let planned = self.planner.blend(start, end, &passage, &entry.limits, before);
             let plan = planned.ok().flatten()?;
+            let at_turn = plan.at(u64::from(plan.turn()?));
+            // For whole scans it may turn with less.
+            let after = if at_turn.acceleration == from.acceleration {
+                after_turn
+            } else {
+                after(&at_turn, MoveProfile::Online)?
+            };
             let is_kept = self.beyond_bound(&plan).is_none();
             is_kept.then_some((plan, after.scans()))
         });
@@ -107,31 +131,32 @@ impl<P: Planner> Axis<P> {
         plan.turn().map(u64::from) == Some(*scans)
     }
 
-    /// Whether `owner`, planned anew along `motion`, would come to its end only by way of going back, and passes it or turns there as
-    /// planned: it is too late for anything else, so it goes on as planned.
+    /// Whether `owner`, planned anew along `motion`, would come to its end only by way of going back, or pass it faster than as planned and
+    /// than what comes next can begin, and passes it or turns there as planned: it is too late for anything else, so it goes on as
+    /// planned.
     pub(super) fn is_too_late(&self, owner: &Entry, motion: &Motion<P::Plan>) -> bool {
-        let (Motion::Run { plan, .. }, Some(end)) = (motion, owner.end) else {
+        let (Motion::Run { plan, scans, .. }, Some(end)) = (motion, owner.end) else {
             return false;
         };
+        let speed = plan.at(*scans).velocity.abs();
+        let as_planned = self.mover.goal().map_or(0.0, |goal| goal.velocity.abs());
+        let is_too_fast = speed > owner.passage.most * (1.0 + ROUNDING) && speed > as_planned;
         let is_same = |was: &Entry| was.id == owner.id && was.end == owner.end && !was.halted;
         (self.is_to_turn() || self.is_to_pass(owner))
             && !self.goal_reached()
             && !owner.halted
             && self.owner.as_ref().is_some_and(is_same)
             && plan.turn().is_none()
-            && self.turns(plan, end > self.mover.setpoint().position)
+            && (is_too_fast || self.turns(plan, end > self.mover.setpoint().position))
     }
 
     /// Whether the goal of the motion is an end that is passed at speed, and so it is of `owner`.
     fn is_to_pass(&self, owner: &Entry) -> bool {
-        let Motion::Run { plan, scans, .. } = self.mover.motion() else {
-            return false;
-        };
         let is_one = |entry: &Entry| entry.run.count == 0;
         !owner.passage.rests()
             && is_one(owner)
             && self.owner.as_ref().is_some_and(is_one)
-            && plan.at(*scans).velocity != 0.0
+            && self.mover.goal().is_some_and(|goal| goal.velocity != 0.0)
     }
 
     /// Nothing takes over where it turns: it goes back to the end and comes to rest there.

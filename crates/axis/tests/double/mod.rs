@@ -148,7 +148,7 @@ impl Planner for Faulty {
         unreachable!("no profile is commanded")
     }
 
-    fn entry_speed(&self, _: f64, _: f64, _: f64, _: &Limits) -> f64 {
+    fn entry_speed(&self, _: f64, _: f64, _: f64, _: f64, _: &Limits) -> f64 {
         unreachable!("nothing is blended")
     }
 

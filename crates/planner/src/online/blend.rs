@@ -10,9 +10,6 @@ use crate::kernel::{NOISE, ON_LIMIT, Point, Sides, zero};
 use crate::ramp::solve::{Course, Ramps, heading};
 use crate::{Limits, PlanError, Setpoint};
 
-/// Halvings of the search for a speed below the wanted one; the speed is found to 2^-24 of it.
-pub const BLEND_STEPS: u32 = 24;
-
 /// How far a speed on the border of what can be reached is moved inside until a plan agrees, as parts of the
 /// way to the speed that certainly can be.
 const INSIDE: [f64; 5] = [0.0, 1e-12, 1e-9, 1e-6, 1.0];
@@ -25,9 +22,8 @@ pub struct Passage {
     /// The speed from which what comes after the target can still be done (u/s); exceeded only if every way
     /// without turning exceeds it.
     pub most: f64,
-    /// Where what comes after the target leads back: the acceleration (u/s^2) that both can have as they turn there, 0 or more. At 0
-    /// the target is passed, or rested at.
-    pub turn: f64,
+    /// The acceleration (u/s^2) against the way to pass it with, 0 or more. Without a wanted speed the move turns there.
+    pub brake: f64,
 }
 
 impl Passage {
@@ -35,12 +31,12 @@ impl Passage {
     pub const REST: Self = Self {
         wanted: 0.0,
         most: 0.0,
-        turn: 0.0,
+        brake: 0.0,
     };
 
     /// Whether the target is neither passed nor turned at.
     pub fn rests(&self) -> bool {
-        self.wanted <= 0.0 && self.turn <= 0.0
+        self.wanted <= 0.0 && self.brake <= 0.0
     }
 }
 
@@ -55,9 +51,9 @@ impl OnlinePlan {
     /// The nearest speed is found so: the wanted one is tried. Failing that, the one at which the ramp alone
     /// ends on the target, between the wanted one and the one the start comes to when its acceleration goes
     /// to zero (O11). If that is faster than wanted, because the braking comes late, a slower one is looked
-    /// for by halving between zero and the wanted one (O12), and the nearer of the two is taken.
+    /// for in the same way between zero and the wanted one (O12), and the nearer of the two is taken.
     ///
-    /// Bounded work: one plan, in the worst case [`BLEND_STEPS`] + 7 and a root of ramps.
+    /// Bounded work: one plan, in the worst case eleven and two roots of ramps.
     ///
     /// # Errors
     /// As [`OnlinePlan::passing`].
@@ -140,9 +136,13 @@ struct Way<'a> {
 }
 
 impl Way<'_> {
-    /// The plan that passes with `speed`, if it goes no way that it need not go.
+    /// The plan that passes with `speed`, if it goes no way that it need not go: `None` where the ramp alone leads beyond the target.
     fn with(&self, speed: f64) -> Result<Option<OnlinePlan>, PlanError> {
         let limits = self.raised;
+        let inward = self.ramps.inward(speed, 1);
+        if !self.search().ends_short(&self.inward(), self.side, inward) {
+            return Ok(None);
+        }
         let plan = OnlinePlan::cruising(
             Rung::PushThenStop,
             self.start,
@@ -156,10 +156,7 @@ impl Way<'_> {
         // A push towards the target turns only what has to be turned; any other may not turn at all.
         let small = ON_LIMIT * limits.velocity;
         let straight = || plan.found.tail.is_none() && plan.found.path.keeps_side(self.side, small);
-        let pushes = plan.found.rung == Rung::PushThenStop
-            && self
-                .search()
-                .ends_short(&self.inward(), self.side, self.ramps.inward(speed, 1));
+        let pushes = plan.found.rung == Rung::PushThenStop;
         Ok((pushes || straight()).then_some(plan))
     }
 
@@ -173,21 +170,16 @@ impl Way<'_> {
         Ok(None)
     }
 
-    /// The largest speed up to `wanted` that halving from zero finds (O12).
+    /// The largest speed below `wanted` from zero on, if the start can come to rest before the target: the one at which the ramp alone ends
+    /// on it (O12).
     fn below(&self, wanted: f64) -> Result<Option<OnlinePlan>, PlanError> {
-        let mut found = self.with(0.0)?;
-        if found.is_none() {
-            return Ok(None);
+        let far = self.ramps.inward(wanted, 1);
+        let border = self.search().speed_on_target(&self.inward(), self.side, 0.0, far);
+        match border {
+            Some(border) => self.near(self.outward(border), 0.0),
+            // What comes to rest on the target to the last digit brackets nothing.
+            None => self.with(0.0),
         }
-        let (mut low, mut high) = (0.0, wanted);
-        for _ in 0..BLEND_STEPS {
-            let middle = 0.5 * (low + high);
-            match self.with(middle)? {
-                Some(plan) => (found, low) = (Some(plan), middle),
-                None => high = middle,
-            }
-        }
-        Ok(found)
     }
 
     /// A search for ramps that end on the target, in the kernel's units.
@@ -221,8 +213,11 @@ impl Way<'_> {
 /// start less than a faster one. Every move takes two scans at least: the speed is at most half of
 /// `distance / cycle`.
 ///
+/// With a `brake` above 0 (u/s^2) the move begins slowing down with that acceleration, and the speed is 0 if there is none at which it
+/// can without turning.
+///
 /// Bounded work: one ramp if `wanted` will do, else two roots of ramps.
-pub fn entry_speed(wanted: f64, distance: f64, exit: f64, limits: &Limits, cycle: f64) -> f64 {
+pub fn entry_speed(wanted: f64, brake: f64, distance: f64, exit: f64, limits: &Limits, cycle: f64) -> f64 {
     let wanted = wanted.min(0.5 * distance / cycle);
     if wanted <= exit {
         return wanted;
@@ -234,27 +229,17 @@ pub fn entry_speed(wanted: f64, distance: f64, exit: f64, limits: &Limits, cycle
     .acting(cycle)
     .into();
     let ramps = Ramps::new(&limits, &limits);
-    let down_to = |exit| fastest_down_to(wanted, distance, exit, &ramps, cycle);
-    let entry = down_to(exit);
-    if entry >= wanted || exit == 0.0 {
-        return entry;
-    }
-    // To brake less takes more way where jerk and snap bind, so coming to rest may be shorter.
-    entry.max(down_to(0.0))
-}
-
-/// The same for exactly the speed `exit`.
-fn fastest_down_to(wanted: f64, distance: f64, exit: f64, ramps: &Ramps, cycle: f64) -> f64 {
-    let goal = ramps.inward(exit, 1);
     let way = ramps.inward(distance, 0);
-    let beyond = |speed: f64| {
+    let beyond = |speed: f64, exit: f64| {
+        let goal = ramps.inward(exit, 1);
         let start = Setpoint {
             velocity: ramps.inward(speed, 1),
+            acceleration: -ramps.inward(brake, 2),
             ..Setpoint::default()
         };
         let heading = heading(&start, goal, ramps.lower_velocity(), ramps.order());
         let ramp = ramps.ramp(&start, goal, heading, Course::Free);
-        let end = follow(ramps, &start, &ramp.spans).position;
+        let end = follow(&ramps, &start, &ramp.spans).position;
         Point {
             at: speed,
             value: end + ramps.inward(speed * cycle, 0) - way,
@@ -262,13 +247,25 @@ fn fastest_down_to(wanted: f64, distance: f64, exit: f64, ramps: &Ramps, cycle: 
             slope: f64::NAN,
         }
     };
-    let fastest = beyond(wanted);
-    if fastest.value <= 0.0 {
-        return wanted;
+    let released = ramps.coasting(&Setpoint {
+        acceleration: brake,
+        ..Setpoint::default()
+    });
+    let down_to = |exit: f64| {
+        let fastest = beyond(wanted, exit);
+        if fastest.value <= 0.0 {
+            return wanted;
+        }
+        let slowest = beyond(exit + released, exit);
+        if slowest.at > wanted || slowest.value > 0.0 {
+            return if brake > 0.0 { 0.0 } else { exit };
+        }
+        zero(slowest, fastest, |speed| beyond(speed, exit)).0.at
+    };
+    let entry = down_to(exit);
+    // To brake less takes more way where jerk and snap bind, so coming to rest may be shorter.
+    if entry >= wanted || exit == 0.0 || beyond(entry, 0.0).value >= 0.0 {
+        return entry;
     }
-    let slowest = beyond(exit);
-    if slowest.value > 0.0 {
-        return exit;
-    }
-    zero(slowest, fastest, beyond).0.at
+    entry.max(down_to(0.0))
 }

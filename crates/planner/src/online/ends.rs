@@ -331,11 +331,13 @@ impl<'a> Ends<'a> {
         spans
     }
 
-    /// To the end in whole scans of the length `scan`, without going back: a ramp to a velocity towards `side`, a cruise with it and
-    /// the way back from the end, turned (O22). `None` where the slowest way that is left to the end is too long.
+    /// To the end without going back: a ramp to a velocity towards `side`, a cruise with it and the way back from the end, turned (O22);
+    /// in whole scans of the length `scan` if that is given. `None` where the slowest way that is left to the end is too long. Also the
+    /// part of the end acceleration it ends with.
     ///
-    /// The least whole number of scans follows from the fastest such move, the velocity from that number (O23).
-    pub(super) fn turning(&self, start: &Setpoint, side: f64, scan: f64) -> Option<Wide> {
+    /// The least whole number of scans follows from the fastest such move, the velocity from that number, or, where it can't be lowered, the
+    /// end acceleration (O23).
+    pub(super) fn braking(&self, start: &Setpoint, side: f64, scan: Option<f64>) -> Option<(Wide, f64)> {
         let end = self.end();
         let both = |velocity: f64| {
             (
@@ -351,18 +353,28 @@ impl<'a> Ends<'a> {
             let (first, last) = both(side * speed);
             let moving = first.duration() + last.duration();
             let cruise = whole.map_or(0.0, |whole| speed * (whole - moving));
+            let exactly = 0.25 * NOISE * (self.target.abs() + whole.unwrap_or(moving) * speed);
             Point {
                 at: speed,
                 value: side * (way(&first, &last) - self.target) + cruise,
-                // Of the fastest only the whole scans are asked for.
-                noise: whole.map_or(ROUGHLY * scan * speed, |whole| {
-                    0.25 * NOISE * (self.target.abs() + whole * speed)
-                }),
+                noise: match scan {
+                    // Of the fastest only the whole scans are asked for.
+                    Some(scan) if whole.is_none() => ROUGHLY * scan * speed,
+                    _ => exactly,
+                },
                 slope: f64::NAN,
             }
         };
         let slowest = self.ramps.arrested(&end).abs();
+        // What comes faster is down sooner in one go.
+        let coming = side * self.ramps.arrested(start);
         let low = beyond(slowest, None);
+        let comes_faster = coming > slowest && coming <= self.top.plus;
+        let low = if low.value > 0.0 && comes_faster {
+            beyond(coming, None)
+        } else {
+            low
+        };
         let top = beyond(self.top.plus, None);
         if low.value > 0.0 {
             return None;
@@ -372,24 +384,67 @@ impl<'a> Ends<'a> {
         } else {
             self.zero(low, top, |speed| beyond(speed, None))
         };
-        let (first, last) = both(side * fastest.at);
-        let least = first.duration() + last.duration() + (-fastest.value).max(0.0) / fastest.at;
-        let whole = ceil(least / scan * (1.0 - ON_LIMIT)) * scan;
-        let (low, high) = (beyond(slowest, Some(whole)), beyond(fastest.at, Some(whole)));
-        if low.value > 0.0 {
+        let laid = |speed: f64, whole: Option<f64>| {
+            let (first, last) = both(side * speed);
+            let moving = first.duration() + last.duration();
+            let left = (-fastest.value).max(0.0);
+            let cruise = whole.map_or(left / speed, |whole| whole - moving);
+            let mut spans = Wide::new();
+            spans.extend(&first);
+            spans.push(cruise, 0.0);
+            spans.extend(&self.turned(&last));
+            (cruise >= 0.0).then_some((spans, 1.0))
+        };
+        let fast = laid(fastest.at, None);
+        let Some(scan) = scan else { return fast };
+        let whole = ceil(fast?.0.duration() / scan * (1.0 - ON_LIMIT)) * scan;
+        let (low, high) = (beyond(low.at, Some(whole)), beyond(fastest.at, Some(whole)));
+        let slower = if low.value > 0.0 {
+            None
+        } else if high.value <= 0.0 {
+            laid(high.at, Some(whole))
+        } else {
+            let speed = self.zero(low, high, |speed| beyond(speed, Some(whole)));
+            laid(speed.at, Some(whole))
+        };
+        let held = if comes_faster { coming } else { fastest.at };
+        slower.or_else(|| self.braking_softly(start, side * held, whole))
+    }
+
+    /// To the end in the `whole` time by way of `velocity`, with the part of the end acceleration with which it takes just that long.
+    fn braking_softly(&self, start: &Setpoint, velocity: f64, whole: f64) -> Option<(Wide, f64)> {
+        let first = self.ramp(self.ramps, start, velocity);
+        let begin = follow(self.ramps, start, &first).position;
+        let less = |lack: f64| {
+            let end = self.end();
+            let end = Setpoint {
+                acceleration: end.acceleration * (1.0 - lack),
+                ..end
+            };
+            let last = self.ramp(&self.back, &end, velocity);
+            let left = self.target - begin - follow(&self.back, &end, &last).position;
+            (last, left / velocity)
+        };
+        let late = |lack: f64| {
+            let (last, cruise) = less(lack);
+            Point {
+                at: lack,
+                value: first.duration() + last.duration() + cruise - whole,
+                noise: 0.25 * NOISE * (self.target.abs() / velocity.abs() + whole),
+                slope: f64::NAN,
+            }
+        };
+        let (most, least) = (late(0.0), late(1.0));
+        if most.value > 0.0 || least.value < 0.0 {
             return None;
         }
-        let speed = if high.value <= 0.0 {
-            high
-        } else {
-            self.zero(low, high, |speed| beyond(speed, Some(whole)))
-        };
-        let (first, last) = both(side * speed.at);
+        let lack = self.zero(most, least, late).at;
+        let (last, cruise) = less(lack);
         let mut spans = Wide::new();
         spans.extend(&first);
-        spans.push(whole - first.duration() - last.duration(), 0.0);
+        spans.push(cruise, 0.0);
         spans.extend(&self.turned(&last));
-        Some(spans)
+        (cruise >= 0.0 && lack < 1.0).then_some((spans, 1.0 - lack))
     }
 
     /// Acceleration and jerk to zero as soon as can be, then as from a constant velocity.

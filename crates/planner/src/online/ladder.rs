@@ -246,13 +246,13 @@ impl OnlinePlan {
         Ok(())
     }
 
-    /// Takes `spans` for the way to a turn at the target with the `acceleration` that leads back, and has the motion come to rest behind
-    /// it; whether the way arrives.
-    pub(super) fn climb_to_turn(
+    /// Takes `spans` for the way to the target, which it passes with this velocity and an acceleration against it, or, without velocity,
+    /// turns at; has the motion come to rest behind it. Whether the way arrives.
+    pub(super) fn climb_to_brake(
         &mut self,
         ramps: &Ramps,
         spans: &Wide,
-        acceleration: f64,
+        (velocity, acceleration): (f64, f64),
         limits: &DirectedLimits,
     ) -> bool {
         let Self {
@@ -263,7 +263,7 @@ impl OnlinePlan {
             ..
         } = *self;
         let top = Sides::both(limits.lower_velocity());
-        let mut climb = Climb::new(ramps, start, target, (0.0, acceleration), top, limits, cycle);
+        let mut climb = Climb::new(ramps, start, target, (velocity, acceleration), top, limits, cycle);
         found.rung = Rung::TwoPhase;
         let side = (target - start.position).signum();
         let arrives = climb.verify(found, spans)
@@ -272,25 +272,32 @@ impl OnlinePlan {
         let Some(scan) = scans(found.path.duration(), cycle).filter(|_| arrives) else {
             return false;
         };
-        let turn = Setpoint {
+        // What passes between two scans is taken over up to one later.
+        let held = if velocity == 0.0 { 0.0 } else { cycle };
+        let mut spans = *spans;
+        spans.push(ramps.scale().moments(held), 0.0);
+        let released = Setpoint {
+            velocity: ramps.inward(velocity + acceleration * held, 1),
             acceleration: ramps.inward(acceleration, 2),
             ..Setpoint::default()
         };
-        let stop = climb.search.ramp(&turn, 0.0);
+        let stop = climb.search.ramp(&released, 0.0);
         found.path = Path::new(ramps.order());
-        let outward = ramps.scale().outward(spans).chain(ramps.scale().outward(&stop));
+        let outward = ramps.scale().outward(&spans).chain(ramps.scale().outward(&stop));
         let bound = limits.limits.lower_acceleration();
         found.path.fill(&climb.start, bound, outward);
         found.path.pin(0.0);
         found.excess = excess::excess(&found.path, 0.0, None, limits);
-        found.tail = Some(Tail::Turn {
+        found.tail = (velocity == 0.0).then_some(Tail::Turn {
             scan,
             position: target,
             acceleration,
         });
         let rest = found.path.end_position().unwrap_or(0.0) + found.residual;
+        let is_plan = spans.len() + stop.len() <= MAX_PIECES
+            && found.excess.is_none_or(|excess| climb.is_unavoidable(&excess));
         self.target = start.position + rest;
-        spans.len() + stop.len() <= MAX_PIECES && self.found.excess.is_none()
+        is_plan
     }
 }
 

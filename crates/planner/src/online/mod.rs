@@ -10,7 +10,7 @@ mod ladder;
 mod search;
 mod turn;
 
-pub use blend::{BLEND_STEPS, Passage, entry_speed};
+pub use blend::{Passage, entry_speed};
 pub use ladder::Rung;
 pub use search::MAX_SOLVES;
 
@@ -527,7 +527,7 @@ impl OnlinePlan {
         self.found.tail.as_ref().and_then(Tail::grid)
     }
 
-    /// The scan in which it turns ([`OnlinePlan::turning`]).
+    /// The scan in which it turns ([`OnlinePlan::braking`]).
     pub const fn turn(&self) -> Option<u32> {
         match self.found.tail {
             Some(Tail::Turn { scan, .. }) => Some(scan),

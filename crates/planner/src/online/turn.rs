@@ -1,31 +1,33 @@
-//! Moves that turn at their target: velocity 0 there, in a scan, with the acceleration that leads back.
+//! Moves that brake at their target: they pass it slowing down, or turn there: velocity 0, in a scan, with the acceleration that leads
+//! back.
 //!
-//! What stands here: the motion to the turn. What does not: what comes behind it, and which acceleration is best. Equations
-//! (O22) and (O23) are in `docs/planner-online.md`.
+//! What stands here: the motion to the target. What does not: what comes behind it, and which speed and acceleration are best.
+//! Equations (O22) and (O23) are in `docs/planner-online.md`.
 
 use super::ends::Ends;
 use super::ladder::Found;
-use super::{OnlinePlan, check};
+use super::{OnlinePlan, Passage, check};
 use crate::kernel::{NOISE, Sides};
 use crate::ramp::{self, solve::Ramps};
 use crate::{Limits, Order, PlanError, Setpoint};
 
 impl OnlinePlan {
-    /// Comes to `target` in the least number of whole scans known ([`OnlinePlan::turn`]), with velocity 0 and the `acceleration`
-    /// (u/s^2, 0 or more) that leads back from there; `None` where that can't be had without going back before, and at
-    /// order 2, where acceleration may jump.
+    /// Comes to `target` as `passage` says, with an acceleration against its way; `None` where that can't be had without going
+    /// back before, and at order 2, where acceleration may jump.
     ///
-    /// Behind the turn the plan comes to rest as soon as it can, for the case that nobody takes over. An acceleration above the lower
-    /// one of acceleration and deceleration is lowered to it.
+    /// With a wanted speed it passes the target at most that fast, somewhere between two scans, and keeps the acceleration for a scan.
+    /// Without one it turns there, in the least number of whole scans known ([`OnlinePlan::turn`]). Then it comes to rest as soon as it
+    /// can, for the case that nobody takes over. An acceleration above what `limits` allow there is lowered to that, and one with which the
+    /// way to a turn has no whole number of scans to what has.
     ///
-    /// Bounded work: two roots of pairs of ramps.
+    /// Bounded work: a root of pairs of ramps, for a turn two and one of ramps.
     ///
     /// # Errors
     /// As [`OnlinePlan::new`].
-    pub fn turning(
+    pub fn braking(
         start: &Setpoint,
         target: f64,
-        acceleration: f64,
+        passage: &Passage,
         limits: &Limits,
         before: &Limits,
         cycle: f64,
@@ -33,7 +35,12 @@ impl OnlinePlan {
         let (given, before) = (&(*limits).into(), &(*before).into());
         check(start, target, 0.0, given, before, cycle)?;
         let distance = target - start.position;
-        let most = acceleration.min(limits.lower_acceleration());
+        let turns = passage.wanted <= 0.0;
+        let most = passage.brake.min(if turns {
+            limits.lower_acceleration()
+        } else {
+            limits.deceleration
+        });
         if limits.order() == Order::Two || distance == 0.0 || !(most > 0.0) {
             return Ok(None);
         }
@@ -43,15 +50,26 @@ impl OnlinePlan {
             acceleration: start.acceleration.abs().max(most),
             ..*start
         };
-        let limits = &given.acting_for(&steepest, 0.0, distance, cycle);
+        let wanted = passage.wanted.max(0.0).min(limits.velocity);
+        let limits = &given.acting_for(&steepest, wanted, distance, cycle);
         let wider = &given
             .or_larger(before)
-            .acting_for(&steepest, 0.0, distance, cycle);
+            .acting_for(&steepest, wanted, distance, cycle);
         let ramps = Ramps::new(limits, wider);
+        // As fast as the velocity allows that it slows down from.
+        let released = ramps.coasting(&Setpoint {
+            acceleration: most,
+            ..Setpoint::default()
+        });
+        let speed = wanted.min(limits.lower_velocity() - released);
+        if !turns && speed <= most * cycle {
+            return Ok(None);
+        }
+        let end = (if turns { 0.0 } else { side * speed }, back);
         let ends = Ends::new(
             &ramps,
             ramps.inward(distance, 0),
-            (0.0, ramps.inward(back, 2)),
+            (ramps.inward(end.0, 1), ramps.inward(end.1, 2)),
             Sides::both(ramps.velocity(side)),
             NOISE * ramps.inward(start.position.abs() + target.abs(), 0),
         );
@@ -69,10 +87,11 @@ impl OnlinePlan {
             ..*start
         };
         let scan = ramps.scale().moments(cycle);
-        let Some(spans) = ends.turning(&ramps.state_inward(&origin), side, scan) else {
+        let from = ramps.state_inward(&origin);
+        let Some((spans, part)) = ends.braking(&from, side, turns.then_some(scan)) else {
             return Ok(None);
         };
-        if !plan.climb_to_turn(&ramps, &spans, back, limits) {
+        if !plan.climb_to_brake(&ramps, &spans, (end.0, part * end.1), limits) {
             return Ok(None);
         }
         (plan.found.solves, plan.found.steps) = (ends.solves(), ends.steps());

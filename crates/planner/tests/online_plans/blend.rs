@@ -32,7 +32,7 @@ fn order_2_reaches_what_the_closed_form_does() {
         let passage = Passage {
             wanted,
             most: f64::INFINITY,
-            turn: 0.0,
+            brake: 0.0,
         };
         let target = side * (3.0 + way);
         let plan = OnlinePlan::blending(&start, target, &passage, &limits, &limits, CYCLE).expect("a plan");
@@ -61,7 +61,7 @@ fn order_2_is_entered_as_the_closed_form_says() {
         };
         let (wanted, exit) = (random.between(0.0, 100.0), random.between(0.0, 100.0));
         let way = random.between(0.0, 5.0);
-        let entry = entry_speed(wanted, way, exit, &limits, CYCLE);
+        let entry = entry_speed(wanted, 0.0, way, exit, &limits, CYCLE);
         let d = limits.deceleration;
         let late = d * CYCLE;
         let most = (late * late + exit * exit + 2.0 * d * way).sqrt() - late;
@@ -91,7 +91,7 @@ fn a_move_can_be_blended_at_any_of_its_scans() {
         let passage = Passage {
             wanted,
             most: f64::INFINITY,
-            turn: 0.0,
+            brake: 0.0,
         };
         let Some(plan) =
             OnlinePlan::blending(&start, way, &passage, &limits, &limits, cycle).expect("a plan")
@@ -146,7 +146,7 @@ fn a_larger_speed_is_reached_at_the_end() {
         let passage = Passage {
             wanted: 80.0,
             most: f64::INFINITY,
-            turn: 0.0,
+            brake: 0.0,
         };
         let plan = OnlinePlan::blending(&Setpoint::at_rest(0.0), 200.0, &passage, &limits, &limits, CYCLE);
         let plan = plan.expect("a plan").expect("a way");
@@ -176,7 +176,7 @@ fn a_way_of_a_few_scans_is_passed() {
         let passage = Passage {
             wanted: random.between(0.999 * speed, limits.velocity),
             most: f64::INFINITY,
-            turn: 0.0,
+            brake: 0.0,
         };
         let slower = Limits {
             velocity: limits.velocity * random.between(0.3, 1.0),

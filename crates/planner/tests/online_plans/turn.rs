@@ -2,14 +2,24 @@
 
 use super::support::{self, Random, integrate};
 use standstill_planner::kernel::MAX_STEPS;
-use standstill_planner::{DirectedLimits, Goal, Limits, OnlinePlan, Order, Setpoint};
+use standstill_planner::{DirectedLimits, Goal, Limits, OnlinePlan, Order, Passage, Setpoint};
 
 struct Seen {
     turned: u32,
+    /// With less acceleration than asked for.
+    softer: u32,
     solves: u32,
     steps: u32,
     /// Scans more than the shortest of all candidates takes, in part of them.
     longer: Vec<f64>,
+}
+
+/// A turn with this acceleration.
+fn turn(acceleration: f64) -> Passage {
+    Passage {
+        brake: acceleration,
+        ..Passage::REST
+    }
 }
 
 /// Turns of moves from rest and from any state of a move towards the same target.
@@ -17,6 +27,7 @@ fn turns(seed: u64, count: usize) -> Seen {
     let mut random = Random(seed);
     let mut all = Seen {
         turned: 0,
+        softer: 0,
         solves: 0,
         steps: 0,
         longer: Vec::new(),
@@ -36,18 +47,23 @@ fn turns(seed: u64, count: usize) -> Seen {
         };
         let acceleration = limits.lower_acceleration() * random.between(0.05, 1.0);
         let context = || format!("case {case}: {start:?} -> {target} {acceleration} {limits:?} {cycle}");
-        let plan = OnlinePlan::turning(&start, target, acceleration, &limits, &limits, cycle)
+        let plan = OnlinePlan::braking(&start, target, &turn(acceleration), &limits, &limits, cycle)
             .unwrap_or_else(|error| panic!("{error} {}", context()));
         let Some(plan) = plan else { continue };
         all.turned += 1;
         all.solves = all.solves.max(plan.solves());
         all.steps = all.steps.max(plan.steps());
         let last = u64::from(plan.turn().expect("a turn"));
-        let end = Setpoint {
-            acceleration: -side * acceleration,
+        let end = plan.at(last);
+        let turned = Setpoint {
+            acceleration: end.acceleration,
             ..Setpoint::at_rest(target)
         };
-        assert_eq!(plan.at(last), end, "{}", context());
+        assert_eq!(end, turned, "{}", context());
+        // Less where only that makes the scans whole.
+        let back = -side * end.acceleration;
+        assert!(0.0 < back && back <= acceleration, "{end:?} {}", context());
+        all.softer += u32::from(back < acceleration);
         let mut before = start.position;
         for scan in 1..=last {
             let here = plan.at(scan).position;
@@ -101,14 +117,64 @@ fn turns_are_in_a_scan_exactly_on_their_target_within_the_limits() {
     seen.longer.sort_by(f64::total_cmp);
     let at = |share: f64| seen.longer[(share * (seen.longer.len() - 1) as f64) as usize];
     let (turned, steps, solves) = (seen.turned, seen.steps, seen.solves);
-    println!("{turned} turned, at most {solves} ramps, {steps} steps");
+    let softer = seen.softer;
+    println!("{turned} turned, {softer} of them softer, at most {solves} ramps, {steps} steps");
     println!(
         "beside the shortest: {:.3} {:.3} {:.3}",
         at(0.5),
         at(0.95),
         at(1.0)
     );
-    assert!(turned > 1_000 && steps <= MAX_STEPS);
+    assert!(turned > 1_000 && softer > 50 && steps <= MAX_STEPS);
+}
+
+/// The target is passed slowing down with just this acceleration, at most as fast as wanted.
+#[test]
+fn what_brakes_through_its_target_keeps_the_limits_and_comes_to_rest() {
+    let mut random = Random(42);
+    let mut passed = 0;
+    for case in 0..3_000 {
+        let order = [Order::Three, Order::Four][case % 2];
+        let limits = support::limits(&mut random, order);
+        let cycle = limits.velocity / limits.acceleration * random.log(0.01, 0.2);
+        let side = random.sign();
+        let start = Setpoint::at_rest(limits.velocity * cycle * random.between(-30.0, 30.0));
+        let way = side * limits.velocity * cycle * random.log(3.0, 300.0);
+        let target = start.position + way;
+        let passage = Passage {
+            wanted: limits.velocity * random.between(0.1, 1.2),
+            brake: limits.deceleration * random.between(0.05, 0.9),
+            ..Passage::REST
+        };
+        let context = || format!("case {case}: {start:?} -> {target} {passage:?} {limits:?} {cycle}");
+        let plan = OnlinePlan::braking(&start, target, &passage, &limits, &limits, cycle)
+            .unwrap_or_else(|error| panic!("{error} {}", context()));
+        let Some(plan) = plan else { continue };
+        passed += 1;
+        let last = u64::from(plan.scans());
+        let is_past = |scan: &u64| side * (plan.at(*scan).position - target) >= 0.0;
+        let scan = (0..=last).find(is_past).expect("it passes");
+        let state = plan.at(scan);
+        let slowing = -side * state.acceleration;
+        assert!(
+            (slowing - passage.brake).abs() <= 1e-9 * limits.deceleration,
+            "{state:?} {}",
+            context()
+        );
+        assert!(
+            side * state.velocity <= passage.wanted * (1.0 + 1e-9),
+            "{}",
+            context()
+        );
+        assert!(
+            (1..=scan).all(|scan| side * plan.at(scan).velocity >= 0.0),
+            "goes back, {}",
+            context()
+        );
+        assert_eq!(plan.at(last), Setpoint::at_rest(plan.target()), "{}", context());
+        kept(&start, &plan, &limits, &context);
+    }
+    assert!(passed > 1_000, "only {passed}");
 }
 
 #[test]
@@ -120,6 +186,6 @@ fn at_order_2_nothing_is_gained_by_a_turn() {
         ..Limits::NONE
     };
     let rest = Setpoint::at_rest(0.0);
-    let plan = OnlinePlan::turning(&rest, 1.0, 10.0, &limits, &limits, 1e-3);
+    let plan = OnlinePlan::braking(&rest, 1.0, &turn(10.0), &limits, &limits, 1e-3);
     assert_eq!(plan, Ok(None));
 }

@@ -1,0 +1,248 @@
+//! Ends that are passed on a ramp: between moves with other dynamics a short one need not come to a constant velocity at its end.
+//!
+//! Where a way is too short for the speed that is asked for at its end, the ramp to that speed leads through the end. Where the next way
+//! is too short to come down from that speed, the axis passes the end braking. What stands here: which of the two, and whether the
+//! next command is done sooner for it. The maths is the planner's.
+//!
+//! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; B14, B15. `docs/buffering.md`.
+
+use super::Axis;
+use super::commands::{Entry, ROUNDING, Work};
+use super::run::goal_past;
+use standstill_planner::{Limits, MoveProfile, Passage, Plan, Planner, Setpoint};
+
+/// The part of the deceleration it has at the end on the way down to the speed of the next one, with which an end is passed braking: some
+/// of it is left to build up the jerk.
+const BRAKE: f64 = 0.8;
+
+/// The part of the lower deceleration that it is at least.
+const LEAST: f64 = 0.2;
+
+/// What comes behind an end.
+pub(super) struct Behind<'a> {
+    next: &'a Entry,
+    end: f64,
+    target: f64,
+    forward: bool,
+    /// How the next command passes its own end.
+    exit: Passage,
+}
+
+impl<P: Planner> Axis<P> {
+    /// The plan of `entry` past the end with which its next command is done soonest: `passing`, which has no acceleration there, or one on
+    /// a ramp; `None` if it is with a rest.
+    ///
+    /// Cost: the plan on a ramp, two plans behind it, and with a rest two more.
+    pub(super) fn soonest_past(
+        &self,
+        entry: &Entry,
+        start: &Setpoint,
+        (behind, passage): (&Behind<'_>, &Passage),
+        before: &Limits,
+        passing: Option<P::Plan>,
+    ) -> Option<P::Plan> {
+        let speed = passing
+            .as_ref()
+            .map_or(0.0, |plan| plan.at(u64::from(plan.scans())).velocity.abs());
+        let is_wanted = speed >= passage.wanted * (1.0 - ROUNDING);
+        let ramp = if is_wanted {
+            self.braking_through(entry, start, passage, before, behind)
+        } else {
+            self.speeding_through(entry, start, passage.wanted, before, behind)
+        };
+        let ramp = ramp.filter(|plan| {
+            keeps_rates(plan) && self.beyond_bound(plan).is_none() && !self.turns(plan, behind.forward)
+        });
+        let is_certain = is_wanted && !is_braking(start);
+        match (passing, ramp) {
+            (None, None) => return None,
+            (Some(passing), None) if is_certain => return Some(passing),
+            _ => {}
+        }
+        let scans = |plan: &P::Plan| {
+            let goal = goal_past(plan, 0, behind.end, behind.forward);
+            goal.saturating_add(self.scans_behind(&plan.at(goal), behind))
+        };
+        let with_rest = || {
+            let to_rest = self.scans_to_rest(entry, start, behind.end, before);
+            to_rest.saturating_add(self.scans_behind(&Setpoint::at_rest(behind.end), behind))
+        };
+        let counted = |plan: P::Plan| {
+            let scans = scans(&plan);
+            (plan, scans)
+        };
+        // What is too late for anything passes as it can; nothing else has to.
+        let ramp = ramp.map(counted).filter(|(_, scans)| *scans < u64::MAX);
+        let plans = [passing.map(counted), ramp].into_iter().flatten();
+        let (plan, scans) = plans.min_by_key(|(_, scans)| *scans)?;
+        let goes_on = || {
+            let with_rest = with_rest();
+            // Too late for a rest it is too late for what follows, too.
+            scans < with_rest || with_rest == u64::MAX
+        };
+        (is_certain || goes_on()).then_some(plan)
+    }
+
+    /// Whether the owner is on its way to pass its end on a ramp.
+    pub(super) fn is_on_a_ramp(&self) -> bool {
+        let is_one = |owner: &Entry| owner.run.count == 0 && owner.passage.wanted > 0.0;
+        self.mover.motion().goes_on()
+            && !self.mover.setpoint().is_at_rest()
+            && self.owner.as_ref().is_some_and(is_one)
+    }
+
+    /// What comes behind the `end` of `entry`, if it is a move that leads on and can be looked through.
+    pub(super) fn behind(&self, entry: &Entry, end: f64, forward: bool) -> Option<Behind<'_>> {
+        let number = self.number_behind(entry);
+        let next = self.queue.iter().nth(number)?;
+        let is_move = matches!(next.work, Work::Position(_) | Work::Distance(_));
+        let target = self.end_of_leg(next, end, forward)?;
+        let is_onward = is_move && target != end && (target > end) == forward;
+        if self.modulo.is_some() || next.limits == entry.limits || !is_onward {
+            return None;
+        }
+        let aimed = Entry {
+            end: Some(target),
+            ..*next
+        };
+        Some(Behind {
+            next,
+            end,
+            target,
+            forward,
+            exit: self.passage(&aimed, end, number + 1),
+        })
+    }
+
+    /// The ramp to the `wanted` speed through the end, with rates that the next command may have, too.
+    fn speeding_through(
+        &self,
+        entry: &Entry,
+        start: &Setpoint,
+        wanted: f64,
+        before: &Limits,
+        behind: &Behind<'_>,
+    ) -> Option<P::Plan> {
+        let (own, next) = (&entry.limits, &behind.next.limits);
+        let limits = Limits {
+            velocity: own.velocity.max(wanted),
+            acceleration: own.acceleration.min(next.acceleration),
+            deceleration: own.deceleration,
+            jerk: own.jerk.min(next.jerk),
+            snap: own.snap.min(next.snap),
+        };
+        let velocity = if behind.forward { wanted } else { -wanted };
+        let ramp = self.planner.ramp_to(start, velocity, &limits, before).ok()?;
+        let at_end = ramp.at(goal_past(&ramp, 0, behind.end, behind.forward));
+        let is_past = (at_end.position >= behind.end) == behind.forward;
+        (is_past && self.stops_inside(&at_end)).then_some(ramp)
+    }
+
+    /// The plan that passes the end braking, with the speed from which the next command comes down to that of its own end.
+    fn braking_through(
+        &self,
+        entry: &Entry,
+        start: &Setpoint,
+        passage: &Passage,
+        before: &Limits,
+        behind: &Behind<'_>,
+    ) -> Option<P::Plan> {
+        let Behind {
+            next, end, target, ..
+        } = *behind;
+        let asked = self.asked(entry, next, end, behind.forward);
+        if passage.wanted >= asked * (1.0 - ROUNDING) {
+            return None;
+        }
+        let way = (target - end).abs();
+        let most = entry.limits.deceleration.min(next.limits.deceleration);
+        let steepness = self.deceleration_before(way, asked.min(entry.limits.velocity), behind)?;
+        let brake = (BRAKE * steepness.min(most)).max(LEAST * most);
+        let speed = self
+            .planner
+            .entry_speed(asked, brake, way, behind.exit.wanted, &next.limits);
+        let braking = Passage {
+            wanted: speed,
+            most: speed,
+            brake,
+        };
+        let is_one = speed > 0.0;
+        let planned = is_one.then(|| self.planner.blend(start, end, &braking, &entry.limits, before))?;
+        planned.ok().flatten()
+    }
+
+    /// The deceleration (u/s^2) that the next command has a `way` (u) before it has come down from `speed` to that of its end.
+    fn deceleration_before(&self, way: f64, speed: f64, behind: &Behind<'_>) -> Option<f64> {
+        let begin = Setpoint {
+            velocity: speed,
+            ..Setpoint::at_rest(0.0)
+        };
+        let limits = Limits {
+            velocity: speed.max(behind.next.limits.velocity),
+            ..behind.next.limits
+        };
+        let ramp = self.planner.ramp_to(&begin, behind.exit.wanted, &limits, &limits);
+        let ramp = ramp.ok()?;
+        let there = ramp.at(u64::from(ramp.scans())).position - way;
+        if there <= 0.0 {
+            return Some(0.0);
+        }
+        let state = ramp.at(goal_past(&ramp, 0, there, true));
+        Some((-state.acceleration).max(0.0))
+    }
+
+    /// The speed asked for at `end`, as far as software limits leave it.
+    fn asked(&self, entry: &Entry, next: &Entry, end: f64, forward: bool) -> f64 {
+        let asked = next
+            .mode
+            .speed_between(entry.limits.velocity, next.limits.velocity);
+        let passage = Passage {
+            wanted: asked,
+            most: asked,
+            ..Passage::REST
+        };
+        let direction = if forward { 1.0 } else { -1.0 };
+        self.stoppable(passage, Some(end), direction).wanted
+    }
+
+    /// Scans that the next command takes from a state at its begin.
+    fn scans_behind(&self, from: &Setpoint, behind: &Behind<'_>) -> u64 {
+        let Behind {
+            next, target, exit, ..
+        } = behind;
+        let limits = &next.limits;
+        let blended = || {
+            let planned = self.planner.blend(from, *target, exit, limits, limits);
+            planned.ok().flatten()
+        };
+        let to_rest = || {
+            let planned = self
+                .planner
+                .move_to(MoveProfile::Online, from, *target, limits, limits);
+            planned.ok()
+        };
+        let plan = if exit.rests() { None } else { blended() };
+        let Some(plan) = plan.or_else(to_rest) else {
+            return u64::MAX;
+        };
+        let goal = goal_past(&plan, 0, *target, behind.forward);
+        let is_slow = plan.at(goal).velocity.abs() <= exit.most * (1.0 + ROUNDING);
+        let is_straight = plan.turn().is_some() || !self.turns(&plan, behind.forward);
+        if is_slow && is_straight && keeps_rates(&plan) {
+            goal
+        } else {
+            u64::MAX
+        }
+    }
+}
+
+/// Whether a motion slows down.
+pub(super) fn is_braking(state: &Setpoint) -> bool {
+    state.velocity * state.acceleration < 0.0
+}
+
+/// Whether a plan exceeds no more than a velocity.
+pub(super) fn keeps_rates<P: Plan>(plan: &P) -> bool {
+    plan.excess()
+        .is_none_or(|excess| excess.acceleration == 0.0 && excess.jerk == 0.0)
+}
