@@ -189,6 +189,8 @@ pub struct Beside {
     /// Scans of the owner's plan until a command that waits or was lowered is tried again; the largest
     /// number if it waits for the next plan.
     pub tried_in: u32,
+    /// What has been found for such a command, and where the search for more goes on, as bits.
+    pub found: [u64; 9],
     /// Position and velocity of the owner's own set-point, as bits.
     pub base: (u64, u64),
     /// The added position and the distance left to add, as bits.

@@ -13,6 +13,7 @@ mod plan;
 mod soonest;
 mod update;
 
+use self::soonest::Search;
 use super::commands::{Entry, REST, Work, WorkKind};
 use super::{Axis, Motion};
 use crate::{AxisEvent, AxisState, CommandId, ErrorId, Event, Fate, InstanceId, Scope, Superimpose};
@@ -104,6 +105,8 @@ pub(super) struct Layer<Plan> {
     command: Option<Added>,
     /// Scan of the owner's plan from which a command that waits or was lowered may find more room.
     retry: u64,
+    /// What has been found for the command.
+    search: Search,
 }
 
 impl<P: Plan> Layer<P> {
@@ -117,6 +120,7 @@ impl<P: Plan> Layer<P> {
             before: *limits,
             command: None,
             retry: 0,
+            search: Search::NEW,
         }
     }
 
@@ -138,6 +142,7 @@ impl<P: Plan> Layer<P> {
     /// The owner is at `base` at the end of this scan, and the added motion goes on. Returns their sum.
     pub fn step(&mut self, base: Setpoint) -> Setpoint {
         self.base = base;
+        self.search.pass();
         if let Motion::Run { plan, elapsed, .. } = &mut self.motion {
             *elapsed = elapsed.saturating_add(1);
             self.added = plan.next(*elapsed);
@@ -162,6 +167,14 @@ impl<P: Plan> Layer<P> {
     /// Whether there is still something to add. A halt that finds nothing in motion adds nothing.
     fn is_busy(&self) -> bool {
         self.moves() || matches!(&self.command, Some(command) if command.adds != Adds::Halt)
+    }
+
+    /// Scans left of the motion of `command`; the largest number if it waits or stands.
+    fn scans_in_progress(&self, command: &Added) -> u64 {
+        match &self.motion {
+            Motion::Run { elapsed, scans, .. } if command.runs() => scans.saturating_sub(*elapsed),
+            _ => u64::MAX,
+        }
     }
 
     /// The distance that is still to be added (u).
@@ -221,6 +234,7 @@ impl<P: Plan> Layer<P> {
     /// The owner's motion has changed: a command that waits or was lowered is tried again.
     pub fn try_soon(&mut self) {
         self.retry = 0;
+        self.search = Search::NEW;
     }
 
     /// The place of the axis once everything is added to the owner at `position` (u).
@@ -241,7 +255,7 @@ impl<P: Planner> Axis<P> {
     /// Takes MC_MoveSuperimposed, or refuses it without any effect (R38). It aborts only an earlier
     /// superimposed command (R66), and takes over from its motion.
     ///
-    /// Cost: where the owner moves that of `Axis::soonest`: at most 50 plans; else at most 7. Each is laid over the owner's.
+    /// Cost: where the owner moves that of `Axis::soonest`: at most 48 plans, and 16 in a later scan; else at most 7. Each is laid over the owner's.
     ///
     /// # Errors
     /// The [`ErrorId`] the block shows; the refusal is recorded with pin, value and limit. A lack of room
@@ -267,7 +281,8 @@ impl<P: Planner> Axis<P> {
             self.await_room(layer, command);
             return Ok(id);
         }
-        let proposed = self.propose(&layer, &command).map_err(refuse)?;
+        let mut search = Search::NEW;
+        let proposed = self.propose(&layer, &command, &mut search).map_err(refuse)?;
         if self.state == AxisState::Standstill {
             self.enter(AxisEvent::StartDiscrete);
         }
@@ -275,6 +290,7 @@ impl<P: Planner> Axis<P> {
         self.stir();
         let layer = self.mover.layer_or(layer);
         layer.command = Some(command);
+        layer.search = search;
         self.add(proposed, scope);
         self.rest_before_outside(scope);
         Ok(command.id)
@@ -334,8 +350,9 @@ impl<P: Planner> Axis<P> {
             self.await_room(layer, command);
             return Ok(command.id);
         }
+        let mut search = Search::NEW;
         let proposed = if layer.moves() {
-            self.propose(&layer, &command)
+            self.propose(&layer, &command, &mut search)
                 .map_err(|error| self.refuse("Deceleration", limits.deceleration, f64::NAN, error, scope))?
         } else {
             None
@@ -550,7 +567,7 @@ impl<P: Planner> Axis<P> {
                     self.end_superimposed_command(Fate::Done);
                 }
                 // It is at rest now, so more may fit.
-                Some(_) if stopped => layer.retry = 0,
+                Some(_) if stopped => layer.try_soon(),
                 Some(_) | None => {}
             }
         }
@@ -606,6 +623,10 @@ impl<P: Planner> Axis<P> {
                     u32::try_from(layer.retry.saturating_sub(*elapsed)).unwrap_or(u32::MAX)
                 }
                 _ => 0,
+            },
+            found: match &layer.command {
+                Some(command) if command.lacks_room() => layer.search.bits(),
+                _ => [0; 9],
             },
             base: (layer.base.position.to_bits(), layer.base.velocity.to_bits()),
             added: (layer.added.position.to_bits(), layer.left().to_bits()),

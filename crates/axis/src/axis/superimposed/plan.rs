@@ -1,6 +1,6 @@
 //! Finding a superimposed motion that leaves the sum inside the axis limits.
 
-use super::soonest::Below;
+use super::soonest::{Below, Search};
 use super::{Added, Adds, Layer, Progress};
 use crate::axis::commands::{Entry, Work, refusal};
 use crate::axis::{Axis, Motion};
@@ -106,6 +106,7 @@ impl<P: Planner> Axis<P> {
         &self,
         layer: &Layer<P::Plan>,
         command: &Added,
+        search: &mut Search,
     ) -> Result<Option<Proposal<P::Plan>>, ErrorId> {
         let axis = &self.slowed(&self.config.limits);
         let base = self.mover.plan();
@@ -114,10 +115,10 @@ impl<P: Planner> Axis<P> {
             endless: base.is_some_and(|(plan, _)| plan.at(u64::from(plan.scans())).velocity != 0.0),
         };
         let range = self.range(layer.taken);
-        let begins = matches!(command.adds, Adds::Distance { .. }) && !layer.moves() && !command.halting;
-        if let (Some(rest), true) = (base, begins) {
+        let is_distance = matches!(command.adds, Adds::Distance { .. }) && !command.halting;
+        if let (Some(rest), true) = (base, is_distance) {
             self.admit_way(layer, command)?;
-            return self.soonest(layer, command, &room(), &Below { rest, axis, range });
+            return self.soonest(layer, command, &room(), &Below { rest, axis, range }, search);
         }
         // A motion over nothing may not turn outside the software limits either.
         let still = Setpoint::at_rest(layer.base.position);
@@ -173,7 +174,8 @@ impl<P: Planner> Axis<P> {
                     // own limits are too low. That motion may continue instead.
                     let motion = Motion::along(plan);
                     if !self.exceeds(&motion) && fits(&plan) {
-                        return Ok(Some(Proposal {
+                        let is_faster = u64::from(plan.scans()) < layer.scans_in_progress(command);
+                        return Ok(is_faster.then_some(Proposal {
                             plan,
                             limits,
                             lowered: index > 0,
@@ -198,8 +200,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Starts the layer's command as proposed, or lets it wait. A motion in progress continues if the
-    /// proposal is not faster.
+    /// Starts the layer's command as proposed. Without a proposal it waits, or its motion continues.
     pub(super) fn add(&mut self, proposed: Option<Proposal<P::Plan>>, scope: &mut Scope<'_>) {
         let next_switch = self
             .mover
@@ -214,16 +215,14 @@ impl<P: Planner> Axis<P> {
         let Some(command) = &mut layer.command else { return };
         let first = layer.retry == 0;
         let before = if moves { before } else { layer.in_force };
-        layer.retry = match next_switch {
-            Some((switch, now)) if switch > now => switch,
+        layer.retry = next_switch
+            .and_then(|(switch, now)| {
+                let ahead = (switch > now).then(|| switch.saturating_sub(now));
+                Some(now.saturating_add(layer.search.pause(ahead)?))
+            })
             // Nothing changes until the owner does.
-            _ => u64::MAX,
-        };
-        let left = match &layer.motion {
-            Motion::Run { elapsed, scans, .. } if command.runs() => scans.saturating_sub(*elapsed),
-            _ => u64::MAX,
-        };
-        match proposed.filter(|proposal| u64::from(proposal.plan.scans()) < left) {
+            .unwrap_or(u64::MAX);
+        match proposed {
             Some(Proposal {
                 plan,
                 limits,
@@ -313,7 +312,11 @@ impl<P: Planner> Axis<P> {
         }
         // The planner accepts again what it accepted before. If not, or while the direction is barred,
         // nothing changes.
-        if let Ok(proposed) = self.propose(layer, command) {
+        let mut search = layer.search;
+        if let Ok(proposed) = self.propose(layer, command, &mut search) {
+            if let Some(layer) = self.mover.layer_mut() {
+                layer.search = search;
+            }
             self.add(proposed, scope);
         }
     }

@@ -1,35 +1,54 @@
-//! A superimposed distance from rest, on top of an owner in motion. Of all starts, now or later, as
-//! commanded or slower, it takes the one that ends first.
+//! A superimposed distance on top of an owner in motion: of all motions that are tried it takes the one that ends first.
 //!
-//! Usually a short piece of the owner's plan prevents the commanded motion from starting at once. So each
-//! pace is tried from now and from each switch of that plan. A slower motion that starts now may end even
-//! sooner: at one of the next switches it is tried again as commanded.
+//! Where the owner uses a limit to the full, no pace is slow enough for the added motion to change the same way. So what
+//! matters is where its changes lie beside those of the owner. Which limits put them there is found by trying: motions with
+//! some of the limits lowered start now or, from rest, at a later switch of the owner's plan. A slower one now may end even
+//! sooner: it goes on faster at one of the next switches.
+//!
+//! The trials are spread over the scans. What was found is kept until something better is, and each scan tries from where the
+//! motion is then. All trials come from one fixed sequence, so the same program always finds the same motion.
 
-use super::plan::{PROPOSALS, Proposal, Room, limits_of, slower};
+use super::plan::{Proposal, Room, limits_of, slower};
 use super::{Added, Adds, Layer};
 use crate::ErrorId;
 use crate::axis::commands::refusal;
 use crate::axis::{Axis, Motion};
-use standstill_planner::{Limits, Plan, Planner};
+use standstill_planner::math::{max, min, sqrt};
+use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
-/// Additional paces: the same path in longer time ..
-const BETWEEN: [f64; 3] = [0.875, 0.625, 0.375];
+/// Most plans in a scan in which the command, or the owner's motion, is new ..
+const FIRST: u32 = 48;
+
+/// .. and in a later one.
+const LATER: u32 = 16;
+
+/// Most limits that are drawn in a scan. Many of them can't end sooner than what is known, and cost no plan.
+const DRAWS: u32 = 200;
+
+/// In so many scans nothing better was found: there will hardly be, until the owner comes to a switch.
+const FRUITLESS: u32 = 12;
+
+/// The scans before a switch in which it is tried again.
+const AHEAD: u64 = 3;
+
+/// Switches of the owner's plan that are looked at. Only a curve has more, and no motion can be added to a curve.
+const SWITCHES: usize = 16;
+
+/// The simple ones: the same path at these rates ..
+const PACES: [f64; 7] = [0.875, 0.75, 0.625, 0.5, 0.375, 0.25, 0.125];
 
 /// .. and only the velocity lowered.
 const VELOCITIES: [f64; 6] = [0.8, 0.6, 0.45, 0.3, 0.2, 0.1];
 
-/// All of them.
-const PACES: usize = PROPOSALS + BETWEEN.len() + VELOCITIES.len();
+/// The share of the limits that are lowered, and how far.
+const LOWERED: f64 = 0.3;
+const LOWEST: f64 = 0.1;
 
-/// Switches of the owner's plan that are tried. Only a curve has more, and no motion can be added to a
-/// curve.
-const SWITCHES: usize = 16;
-
-/// Slower motions that are tried before the commanded one ..
-const BEFORE: usize = 3;
-
-/// .. and switches at which the commanded one may begin.
-const AFTER: usize = 6;
+/// Starts at later switches that are tried for a motion: one that is in progress, one at the velocity that is always free, and
+/// any other.
+const AFTER_CURRENT: u32 = 1;
+const AFTER_FREE: u32 = 4;
+const AFTER_OTHER: u32 = 1;
 
 /// The owner's plan and the limits of the sum.
 pub(super) struct Below<'a, Plan> {
@@ -40,41 +59,140 @@ pub(super) struct Below<'a, Plan> {
     pub range: Option<(f64, f64)>,
 }
 
-/// A motion, and the scans after which it starts.
-struct Start<Plan> {
-    proposal: Proposal<Plan>,
-    wait: u64,
+/// What has been found for a command so far.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Search {
+    /// The command or the owner's motion is new.
+    fresh: bool,
+    /// Scans to the end of the best that is known; the largest number if nothing fits.
+    end: u64,
+    /// The scans after which that goes on within other limits, or starts.
+    next: Option<(u64, Limits)>,
+    /// Number of the last draw.
+    drawn: u32,
+    /// Scans in which nothing better was found, and the switches that were left then.
+    fruitless: u32,
+    switches: usize,
 }
 
-impl<P: Plan> Start<P> {
-    /// Scans from now to its end.
-    fn end(&self) -> u64 {
-        self.wait.saturating_add(self.proposal.plan.scans().into())
+impl Search {
+    pub const NEW: Self = Self {
+        fresh: true,
+        end: u64::MAX,
+        next: None,
+        drawn: 0,
+        fruitless: 0,
+        switches: 0,
+    };
+
+    /// A scan is over.
+    pub fn pass(&mut self) {
+        self.end = if self.end == u64::MAX {
+            self.end
+        } else {
+            self.end.saturating_sub(1)
+        };
+        if let Some((wait, _)) = &mut self.next {
+            *wait = wait.saturating_sub(1);
+        }
+    }
+
+    /// Scans until it is worth trying again; `None` if nothing will change. The owner's next switch is in `switch` scans.
+    pub fn pause(&self, switch: Option<u64>) -> Option<u64> {
+        let start = self.next.map(|(wait, _)| wait);
+        let near = switch.map(|wait| wait.saturating_sub(AHEAD));
+        let pause = match (start, near) {
+            (_, Some(_)) if self.fruitless < FRUITLESS => 1,
+            (Some(start), Some(near)) => start.min(near),
+            (start, near) => start.or(near)?,
+        };
+        Some(pause.max(1))
+    }
+
+    /// All of it, for [`crate::Outlook`].
+    pub fn bits(&self) -> [u64; 9] {
+        let progress = u64::from(self.drawn) << 32 | u64::from(self.fruitless);
+        let flags = (self.switches as u64) << 1 | u64::from(self.fresh);
+        let (wait, limits) = match &self.next {
+            Some((wait, limits)) => (
+                *wait,
+                [
+                    limits.velocity,
+                    limits.acceleration,
+                    limits.deceleration,
+                    limits.jerk,
+                    limits.snap,
+                ],
+            ),
+            None => (u64::MAX, [0.0; 5]),
+        };
+        let [velocity, acceleration, deceleration, jerk, snap] = limits.map(f64::to_bits);
+        [
+            self.end,
+            wait,
+            progress,
+            flags,
+            velocity,
+            acceleration,
+            deceleration,
+            jerk,
+            snap,
+        ]
+    }
+
+    /// The next number of a fixed sequence, from 0 to less than 1.
+    fn draw(&mut self) -> f64 {
+        self.drawn = self.drawn.wrapping_add(1);
+        // The increment is the golden section of the range. Mixing the bits makes neighbours independent of each other.
+        let mut bits = self.drawn.wrapping_mul(0x9E37_79B9);
+        bits = (bits ^ (bits >> 16)).wrapping_mul(0x85EB_CA6B);
+        bits = (bits ^ (bits >> 13)).wrapping_mul(0xC2B2_AE35);
+        f64::from(bits ^ (bits >> 16)) / (f64::from(u32::MAX) + 1.0)
+    }
+
+    /// One of `count` numbers from 0.
+    fn pick(&mut self, count: usize) -> usize {
+        (self.draw() * count as f64) as usize
+    }
+
+    /// A limit, or less than that.
+    fn lower(&mut self, limit: f64) -> f64 {
+        if self.draw() >= LOWERED {
+            return limit;
+        }
+        let share = self.draw();
+        limit * (LOWEST + (1.0 - LOWEST) * share * share)
     }
 }
 
-/// The limits of pace `index`; `None` if there is no room for it.
-fn pace(index: usize, asked: &Limits, room: &Room) -> Option<Limits> {
-    if index < PROPOSALS {
-        return limits_of(index, asked, room);
-    }
-    let index = index - PROPOSALS;
-    if let Some(rate) = BETWEEN.get(index) {
-        return Some(slower(asked, *rate));
-    }
-    let rate = VELOCITIES.get(index.checked_sub(BETWEEN.len())?)?;
-    Some(Limits {
-        velocity: asked.velocity * rate,
-        ..*asked
-    })
+/// The trials of one scan.
+struct Trials<'a, P: Planner> {
+    axis: &'a Axis<P>,
+    below: &'a Below<'a, P::Plan>,
+    /// Scans to the next switches of the owner's plan.
+    switches: ([u64; SWITCHES], usize),
+    /// The limits that the owner's plan uses: faster than that it does not make room.
+    used: Limits,
+    start: &'a Setpoint,
+    /// The limits that apply at the start until those of the motion do; none at rest.
+    before: Option<Limits>,
+    target: f64,
+    asked: &'a Limits,
+    /// The highest velocity: as commanded, or that of the commanded motion from this start.
+    highest: f64,
+    /// Plans that may still be made.
+    plans: u32,
+    search: Search,
+    best: Option<Proposal<P::Plan>>,
 }
 
 impl<P: Planner> Axis<P> {
-    /// The motion that starts now for `command`, which begins at rest; `Ok(None)` if a later start ends
-    /// sooner, or nothing fits.
+    /// The motion that starts now for `command`; `Ok(None)` if what is in progress or a later start ends sooner, or nothing
+    /// fits. `search` is what was found in the scans before.
     ///
-    /// Cost: at most 32 plans from rest, two for each pace; 18 from a moving state, [`BEFORE`] times
-    /// [`AFTER`]; and a check of the sum of both plans for each pace and switch, and for each of the 18.
+    /// Cost: at most [`FIRST`] plans in the scan of the command and where the owner's motion changes, then [`LATER`] in a scan;
+    /// each is laid over the owner's, those from rest once for each of its [`SWITCHES`]. After [`FRUITLESS`] scans without gain
+    /// only near a switch.
     ///
     /// # Errors
     /// As [`Axis::propose`].
@@ -84,141 +202,335 @@ impl<P: Planner> Axis<P> {
         command: &Added,
         room: &Room,
         below: &Below<'_, P::Plan>,
-    ) -> Result<Option<Proposal<P::Plan>>, ErrorId> {
-        let mut best: Option<Start<P::Plan>> = None;
-        for index in 0..PACES {
-            let Some(proposal) = self.with_pace(index, layer, command, room)? else {
-                continue;
-            };
-            let scans = u64::from(proposal.plan.scans());
-            let most = best.as_ref().map_or(u64::MAX, Start::end);
-            if let Some(wait) = self.first_wait(&proposal.plan, most.saturating_sub(scans), below) {
-                best = Some(Start { proposal, wait });
-            }
-            if best
-                .as_ref()
-                .is_some_and(|best| best.wait == 0 && !best.proposal.lowered)
-            {
-                break;
-            }
-        }
-        let Some(best) = best else { return Ok(None) };
-        if !best.proposal.lowered && best.wait == 0 {
-            return Ok(Some(best.proposal));
-        }
-        self.before(best, layer, command, room, below)
-    }
-
-    /// The motion of a pace; `Ok(None)` if the axis alone could not make it.
-    fn with_pace(
-        &self,
-        index: usize,
-        layer: &Layer<P::Plan>,
-        command: &Added,
-        room: &Room,
-    ) -> Result<Option<Proposal<P::Plan>>, ErrorId> {
-        let (Some(limits), Adds::Distance { target, .. }) =
-            (pace(index, &command.limits, room), command.adds)
-        else {
-            return Ok(None);
-        };
-        let planned = self
-            .planner
-            .move_to(self.config.profile, &layer.added, target, &limits, &limits);
-        let plan = match planned {
-            Ok(plan) => plan,
-            Err(error) if index == 0 => return Err(refusal(error)),
-            Err(_) => return Ok(None),
-        };
-        if let Some(error) = self.barred((&plan, 0), &limits, &limits) {
-            return Err(error);
-        }
-        let lowered = index > 0;
-        Ok((!self.exceeds(&Motion::along(plan))).then_some(Proposal {
-            plan,
-            limits,
-            lowered,
-        }))
-    }
-
-    /// The first wait below `most` scans, to now or to a switch of the owner's plan, after which `plan` fits from its start.
-    fn first_wait(&self, plan: &P::Plan, most: u64, below: &Below<'_, P::Plan>) -> Option<u64> {
-        let (owner, now) = below.rest;
-        let mut scan = now;
-        for _ in 0..=SWITCHES {
-            let wait = scan - now;
-            if wait >= most {
-                return None;
-            }
-            if self.fits_after(plan, wait, below) {
-                return Some(wait);
-            }
-            let next = self.planner.next_switch((owner, scan));
-            if next <= scan {
-                return None;
-            }
-            scan = next;
-        }
-        None
-    }
-
-    fn fits_after(&self, plan: &P::Plan, wait: u64, below: &Below<'_, P::Plan>) -> bool {
-        let (owner, now) = below.rest;
-        let later = (owner, now.saturating_add(wait));
-        self.planner.fits(later, (plan, 0), below.axis, below.range)
-    }
-
-    /// A slower motion that starts now, speeds up at a switch and ends before `best`; otherwise `best`,
-    /// if that starts now.
-    fn before(
-        &self,
-        best: Start<P::Plan>,
-        layer: &Layer<P::Plan>,
-        command: &Added,
-        room: &Room,
-        below: &Below<'_, P::Plan>,
+        search: &mut Search,
     ) -> Result<Option<Proposal<P::Plan>>, ErrorId> {
         let Adds::Distance { target, .. } = command.adds else {
             return Ok(None);
         };
-        let mut least = best.end();
-        let mut soonest = (best.wait == 0).then_some(best.proposal);
+        let moving = self.limits_in_state(&layer.added, &layer.in_force, &layer.before);
+        let mut trials = Trials {
+            axis: self,
+            below,
+            switches: self.switches(below),
+            used: self.used(below, &command.limits),
+            start: &layer.added,
+            before: layer.moves().then_some(moving),
+            target,
+            asked: &command.limits,
+            highest: command.limits.velocity,
+            plans: if search.fresh { FIRST } else { LATER },
+            search: Search {
+                fresh: false,
+                ..*search
+            },
+            best: None,
+        };
+        if trials.search.next.is_none() {
+            trials.search.end = layer.scans_in_progress(command);
+        }
+        let known = trials.search.end;
+        if !trials.as_commanded()? {
+            trials.go_on(layer);
+            trials.free(room, layer);
+            if search.fresh {
+                trials.simple();
+            }
+            trials.draw();
+        }
+        let mut found = trials.search;
+        let switches = trials.switches.1;
+        if found.end < known || found.switches != switches {
+            found.fruitless = 0;
+        } else {
+            found.fruitless = found.fruitless.saturating_add(1);
+        }
+        found.switches = switches;
+        let best = trials.best;
+        *search = found;
+        Ok(best)
+    }
+
+    /// The scans from now to the next switches of the owner's plan, and their number.
+    fn switches(&self, below: &Below<'_, P::Plan>) -> ([u64; SWITCHES], usize) {
         let (owner, now) = below.rest;
-        let mut tried = 0;
-        for index in 1..PACES {
-            let Some(slow) = self.with_pace(index, layer, command, room)? else {
-                continue;
+        let (mut waits, mut count) = ([0; SWITCHES], 0);
+        let mut scan = now;
+        for wait in &mut waits {
+            let next = self.planner.next_switch((owner, scan));
+            if next <= scan {
+                break;
+            }
+            scan = next;
+            *wait = next.saturating_sub(now);
+            count += 1;
+        }
+        (waits, count)
+    }
+
+    /// The part of `asked` that the owner uses of each limit, and the whole where it uses none.
+    fn used(&self, below: &Below<'_, P::Plan>, asked: &Limits) -> Limits {
+        let peaks = self.planner.peaks(below.rest).unwrap_or_default();
+        let part = |asked: f64, peak: f64| if peak > 0.0 { min(asked, peak) } else { asked };
+        Limits {
+            velocity: asked.velocity,
+            acceleration: part(asked.acceleration, peaks.acceleration),
+            deceleration: part(asked.deceleration, peaks.acceleration),
+            jerk: part(asked.jerk, peaks.jerk),
+            snap: part(asked.snap, peaks.snap),
+        }
+    }
+}
+
+impl<P: Planner> Trials<'_, P> {
+    /// The motion from the start as commanded. Returns whether it fits and ends first; then there is nothing to gain.
+    fn as_commanded(&mut self) -> Result<bool, ErrorId> {
+        let asked = *self.asked;
+        let before = self.before.unwrap_or(asked);
+        self.plans = self.plans.saturating_sub(1);
+        let plan = self.move_to(self.start, &asked, &before).map_err(refusal)?;
+        if let Some(error) = self.axis.barred((&plan, 0), &asked, &before) {
+            return Err(error);
+        }
+        let peaks = self.axis.planner.peaks((&plan, 0)).unwrap_or_default();
+        self.highest = max(self.highest, peaks.velocity);
+        if !self.axis.exceeds(&Motion::along(plan)) {
+            self.see(&plan, &asked);
+        }
+        Ok(self.best.as_ref().is_some_and(|best| !best.lowered))
+    }
+
+    /// What was found to start in this scan starts. The motion in progress may go on faster at a later switch.
+    fn go_on(&mut self, layer: &Layer<P::Plan>) {
+        if let Some((0, limits)) = self.search.next {
+            self.search.next = None;
+            self.search.end = u64::MAX;
+            if let Some(plan) = self.plan(self.start, &limits, self.before) {
+                self.see(&plan, &limits);
+            }
+        }
+        if let (Motion::Run { plan, elapsed, .. }, Some(_), None) = (&layer.motion, self.before, &self.best) {
+            self.faster_later((plan, *elapsed), &layer.in_force, AFTER_CURRENT, None);
+        }
+    }
+
+    /// The motion at the velocity that is always free, and the one within all limits that are.
+    fn free(&mut self, room: &Room, layer: &Layer<P::Plan>) {
+        let velocity = room.limits.velocity;
+        if velocity > 0.0 && velocity < self.asked.velocity {
+            let limits = Limits {
+                velocity,
+                ..*self.asked
             };
-            if !self.fits_after(&slow.plan, 0, below) {
-                continue;
+            self.take(&limits, AFTER_FREE);
+        }
+        if let (false, Some(limits)) = (layer.moves(), limits_of(2, self.asked, room)) {
+            self.take(&limits, 0);
+        }
+    }
+
+    /// The same path in more time, and only the velocity lowered.
+    fn simple(&mut self) {
+        let asked = *self.asked;
+        let longer = PACES.into_iter().map(|rate| slower(&asked, rate));
+        let gentler = VELOCITIES.into_iter().map(|rate| Limits {
+            velocity: asked.velocity * rate,
+            ..asked
+        });
+        for limits in longer.chain(gentler) {
+            if self.may_end_sooner(&limits) {
+                self.take(&limits, 0);
             }
-            let mut scan = now;
-            let mut end = None;
-            for _ in 0..AFTER {
-                let next = self.planner.next_switch((owner, scan));
-                let wait = next - now;
-                if next <= scan || wait >= least.min(slow.plan.scans().into()) {
-                    break;
-                }
-                scan = next;
-                let there = slow.plan.at(wait);
-                let (profile, asked) = (self.config.profile, &command.limits);
-                let fast = self.planner.move_to(profile, &there, target, asked, &slow.limits);
-                if let Ok(fast) = fast
-                    && self.fits_after(&fast, wait, below)
-                {
-                    end = Some(wait.saturating_add(fast.scans().into()));
-                    break;
-                }
+        }
+    }
+
+    /// Motions with some of the limits lowered.
+    fn draw(&mut self) {
+        for _ in 0..DRAWS {
+            if self.plans == 0 {
+                return;
             }
-            if let Some(end) = end.filter(|end| *end < least) {
-                (least, soonest) = (end, Some(slow));
+            let limits = self.lowered();
+            if limits != *self.asked && self.may_end_sooner(&limits) {
+                self.take(&limits, AFTER_OTHER);
             }
-            tried += 1;
-            if tried == BEFORE {
+        }
+    }
+
+    fn lowered(&mut self) -> Limits {
+        let asked = self.asked;
+        let search = &mut self.search;
+        let mut limits = Limits {
+            velocity: search.lower(asked.velocity),
+            acceleration: search.lower(asked.acceleration),
+            deceleration: search.lower(asked.deceleration),
+            jerk: search.lower(asked.jerk),
+            snap: asked.snap,
+        };
+        let toward = (self.target - self.start.position).signum();
+        if self.before.is_some() && !(self.start.acceleration * toward > 0.0) {
+            limits.acceleration = asked.acceleration;
+        } else if search.draw() < LOWERED {
+            self.end_at_a_switch(&mut limits);
+        }
+        limits
+    }
+
+    /// A jerk that is reached in whole scans, and an acceleration that is left, or reached, at a switch of the owner's plan.
+    fn end_at_a_switch(&mut self, limits: &mut Limits) {
+        let asked = self.asked;
+        let cycle = self.axis.planner.cycle();
+        let longest = min(asked.jerk / (asked.snap * cycle) + 0.5, 8.0);
+        let scans = 1.0 + (self.search.draw() * max(longest, 1.0)) as u32 as f64;
+        let nearest = self.switches.1.min(6);
+        let index = self.search.pick(nearest);
+        let switch = self.switches.0.get(index).map_or(0.0, |wait| *wait as f64);
+        let both = if self.search.draw() < 0.5 {
+            switch
+        } else {
+            switch - scans
+        };
+        if both >= scans {
+            limits.jerk = min(asked.snap * scans * cycle, asked.jerk);
+            limits.acceleration = min(limits.jerk * both * cycle, asked.acceleration);
+        }
+    }
+
+    /// Whether a motion within `limits` may end sooner than what is known, if it comes to the velocity at once.
+    fn may_end_sooner(&self, limits: &Limits) -> bool {
+        let left = self.target - self.start.position;
+        let rise = max(limits.velocity - self.start.velocity * left.signum(), 0.0);
+        let ramp = |change: f64, rate: f64| max(change / rate, 2.0 * sqrt(change / limits.jerk));
+        let (up, down) = (
+            ramp(rise, limits.acceleration),
+            ramp(limits.velocity, limits.deceleration),
+        );
+        let way = (limits.velocity - 0.5 * rise) * up + 0.5 * limits.velocity * down;
+        let even = (left.abs() - way) / limits.velocity;
+        let time = if even > 0.0 {
+            up + down + even
+        } else {
+            left.abs() / limits.velocity
+        };
+        time < (self.search.end as f64 + 1.0) * self.axis.planner.cycle()
+    }
+
+    /// Tries a motion, and if it fits from now also that it goes on faster later.
+    fn take(&mut self, limits: &Limits, after: u32) {
+        let Some(plan) = self.plan(self.start, limits, self.before) else {
+            return;
+        };
+        if self.see(&plan, limits) {
+            self.faster_later((&plan, 0), limits, after, Some(&plan));
+        }
+    }
+
+    /// Notes a motion that ends before what is known: from now or, at rest, from a later switch. Returns whether it fits now.
+    fn see(&mut self, plan: &P::Plan, limits: &Limits) -> bool {
+        let scans = u64::from(plan.scans());
+        if self.fits(plan, 0) {
+            if scans < self.search.end {
+                self.note(Some(plan), limits, scans, None);
+            }
+            return true;
+        }
+        if self.before.is_some() {
+            return false;
+        }
+        let (waits, count) = self.switches;
+        for wait in waits.into_iter().take(count) {
+            let end = wait.saturating_add(scans);
+            if end >= self.search.end {
+                break;
+            }
+            if self.fits(plan, wait) {
+                self.note(None, limits, end, Some((wait, *limits)));
                 break;
             }
         }
-        Ok(soonest)
+        false
+    }
+
+    /// Tries `count` times that a motion goes on faster from a later switch of the owner's plan. `starts` is the motion, unless
+    /// it is in progress.
+    fn faster_later(
+        &mut self,
+        (slow, elapsed): (&P::Plan, u64),
+        in_force: &Limits,
+        count: u32,
+        starts: Option<&P::Plan>,
+    ) {
+        let (waits, switches) = self.switches;
+        let scans = u64::from(slow.scans()).saturating_sub(elapsed);
+        let per_scan = self.asked.velocity * self.axis.planner.cycle();
+        for _ in 0..count {
+            let index = self.search.pick(2 * switches);
+            let limits = match self.search.pick(3) {
+                0 => *self.asked,
+                1 => self.used,
+                _ => Limits {
+                    jerk: 0.6 * self.used.jerk,
+                    ..self.used
+                },
+            };
+            let Some(switch) = waits.get(index / 2) else {
+                return;
+            };
+            let wait = switch.saturating_add(index as u64 % 2);
+            let there = slow.at(elapsed.saturating_add(wait));
+            let soonest = wait as f64 + (self.target - there.position).abs() / per_scan;
+            if wait == 0 || wait >= scans || soonest >= self.search.end as f64 || self.plans == 0 {
+                continue;
+            }
+            let Some(fast) = self.plan(&there, &limits, Some(*in_force)) else {
+                continue;
+            };
+            let end = wait.saturating_add(fast.scans().into());
+            if end < self.search.end && self.fits(&fast, wait) {
+                self.note(starts, in_force, end, Some((wait, limits)));
+            }
+        }
+    }
+
+    /// The best so far: `plan` from now, or what is in progress; and what follows.
+    fn note(&mut self, plan: Option<&P::Plan>, limits: &Limits, end: u64, next: Option<(u64, Limits)>) {
+        self.search.end = end;
+        self.search.next = next;
+        self.best = plan.map(|plan| Proposal {
+            plan: *plan,
+            limits: *limits,
+            lowered: *limits != *self.asked,
+        });
+    }
+
+    /// The motion from `start` within `limits`, if the axis alone can make it and it is not faster than commanded.
+    fn plan(&mut self, start: &Setpoint, limits: &Limits, before: Option<Limits>) -> Option<P::Plan> {
+        self.plans = self.plans.checked_sub(1)?;
+        let before = before.unwrap_or(*limits);
+        let plan = self.move_to(start, limits, &before).ok()?;
+        let planner = &self.axis.planner;
+        // Lowered rates may not be enough to end a rise in time.
+        let peak = planner.peaks((&plan, 0)).map_or(0.0, |peaks| peaks.velocity);
+        let is_good = peak <= self.highest * (1.0 + 1e-9)
+            && self.axis.barred((&plan, 0), limits, &before).is_none()
+            && !self.axis.exceeds(&Motion::along(plan));
+        is_good.then_some(plan)
+    }
+
+    fn move_to(
+        &self,
+        start: &Setpoint,
+        limits: &Limits,
+        before: &Limits,
+    ) -> Result<P::Plan, standstill_planner::PlanError> {
+        let profile = self.axis.config.profile;
+        self.axis
+            .planner
+            .move_to(profile, start, self.target, limits, before)
+    }
+
+    fn fits(&self, plan: &P::Plan, wait: u64) -> bool {
+        let Below { rest, axis, range } = self.below;
+        let later = (rest.0, rest.1.saturating_add(wait));
+        self.axis.planner.fits(later, (plan, 0), axis, *range)
     }
 }

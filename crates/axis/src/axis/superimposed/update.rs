@@ -1,5 +1,6 @@
 //! The values at the pins of MC_MoveSuperimposed: as a new command, and changed while it runs.
 
+use super::soonest::Search;
 use super::{Added, Adds, Layer, Progress};
 use crate::axis::Axis;
 use crate::{CommandId, ErrorId, Scope, Superimpose};
@@ -37,9 +38,11 @@ impl<P: Planner> Axis<P> {
             self.await_room(layer, command);
             return Ok(());
         }
-        let proposed = self.propose(&layer, &command).map_err(refuse)?;
+        let mut search = Search::NEW;
+        let proposed = self.propose(&layer, &command, &mut search).map_err(refuse)?;
         layer.command = Some(command);
         layer.try_soon();
+        layer.search = search;
         self.stir();
         self.mover.lay(layer);
         self.add(proposed, scope);
