@@ -8,7 +8,6 @@ use standstill_trace::Cell;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use std::sync::OnceLock;
 use std::{env, fs};
 
 const EXAMPLES: [&str; 7] = [
@@ -62,42 +61,32 @@ fn text(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
-/// Builds the libraries with a prefix; the paths of the static and the shared one.
-fn build(prefix: &str, folder: &Path) -> (PathBuf, PathBuf) {
+/// The static (`a`) or the shared library (`so`) as everybody gets them: cargo has built both for this test, beside it.
+fn library(ending: &str) -> PathBuf {
+    let name = format!("libstandstill_capi.{ending}");
+    let library = env::current_exe().unwrap().with_file_name(name);
+    assert!(library.is_file(), "there is no {}", library.display());
+    library
+}
+
+/// Builds the shared library with a prefix of its own, and no information for a debugger; the path.
+fn with_prefix(prefix: &str, folder: &Path) -> PathBuf {
     let mut cargo = Command::new(env!("CARGO"));
     cargo
-        .args(["build", "--offline", "--quiet", "--lib", "--message-format=json"])
+        .args(["rustc", "--offline", "--quiet", "--lib", "--crate-type=cdylib"])
         .arg("--manifest-path")
         .arg(root().join("Cargo.toml"))
         .arg("--target-dir")
         .arg(folder)
+        .env("CARGO_PROFILE_DEV_DEBUG", "false")
         .env("STANDSTILL_PREFIX", prefix);
     let output = cargo.output().unwrap();
-    let messages = String::from_utf8(output.stdout).unwrap();
     assert!(
         output.status.success(),
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
-    let mut files = Vec::new();
-    for line in messages.lines() {
-        let message: serde_json::Value = serde_json::from_str(line).unwrap();
-        if message["target"]["name"] == "standstill_capi" {
-            files.extend(message["filenames"].as_array().into_iter().flatten().cloned());
-        }
-    }
-    let ending = |ending: &str| {
-        let found = files.iter().filter_map(serde_json::Value::as_str);
-        let mut found = found.filter(|path| path.ends_with(ending));
-        PathBuf::from(found.next().unwrap_or_else(|| panic!("no {ending} was built")))
-    };
-    (ending(".a"), ending(".so"))
-}
-
-/// The libraries as everybody gets them.
-fn libraries() -> &'static (PathBuf, PathBuf) {
-    static BUILT: OnceLock<(PathBuf, PathBuf)> = OnceLock::new();
-    BUILT.get_or_init(|| build("standstill", &scratch("c-library")))
+    folder.join("debug/libstandstill_capi.so")
 }
 
 /// Compiles a program with one of the libraries; everything a compiler may say is an error.
@@ -127,15 +116,15 @@ fn the_examples_run_from_c_and_cpp_with_both_libraries() {
     if !has("cc") || !has("c++") {
         return;
     }
-    let (fixed, shared) = libraries();
+    let (fixed, shared) = (library("a"), library("so"));
     let folder = scratch("c-examples");
     for example in EXAMPLES {
         let source = root().join("examples").join(format!("{example}.c"));
         let mut printed = Vec::new();
         for (name, compiler, library) in [
-            ("c", &C[..], fixed),
-            ("c99", &C99[..], shared),
-            ("cpp", &CPP[..], fixed),
+            ("c", &C[..], &fixed),
+            ("c99", &C99[..], &shared),
+            ("cpp", &CPP[..], &fixed),
         ] {
             let program = folder.join(format!("{example}-{name}"));
             compile(compiler, &source, &root().join("include"), library, &program);
@@ -155,7 +144,7 @@ fn the_diagnostic_ring_tells_c_what_happened() {
     }
     let program = scratch("c-ring").join("diagnostics");
     let source = root().join("examples/diagnostics.c");
-    compile(&C, &source, &root().join("include"), &libraries().0, &program);
+    compile(&C, &source, &root().join("include"), &library("a"), &program);
     // Clamped, planned to a position, refused: 102 is a velocity that is not above 0.
     assert_eq!(
         text(&run(&program, &[])),
@@ -175,7 +164,7 @@ fn valgrind_has_nothing_to_report() {
     for example in EXAMPLES {
         let program = folder.join(example);
         let source = root().join("examples").join(format!("{example}.c"));
-        compile(&C, &source, &root().join("include"), &libraries().0, &program);
+        compile(&C, &source, &root().join("include"), &library("a"), &program);
         let options = [
             "--quiet",
             "--error-exitcode=9",
@@ -196,7 +185,7 @@ fn same_bits(example: &str, script: &str, reals: &[&str], flags: &[&str]) {
     }
     let program = scratch("c-digest").join(example);
     let source = root().join("examples").join(format!("{example}.c"));
-    compile(&C, &source, &root().join("include"), &libraries().0, &program);
+    compile(&C, &source, &root().join("include"), &library("a"), &program);
     let printed = text(&run(&program, &[OsStr::new("trace")]));
     same_rows(&printed, script, reals, flags);
 }
@@ -246,9 +235,10 @@ fn ctypes_and_a_scan_script_move_by_the_same_bits() {
     }
     let program = root().join("examples/single_axis.py");
     let include = root().join("include");
+    let shared = library("so");
     let arguments = [
         program.as_os_str(),
-        libraries().1.as_os_str(),
+        shared.as_os_str(),
         include.as_os_str(),
         OsStr::new("bits"),
     ];
@@ -334,7 +324,7 @@ fn gears_of_a_c_host_are_refused_with_their_numbers() {
     }
     let program = scratch("c-gears").join("gears");
     let source = root().join("examples/gears.c");
-    compile(&C, &source, &root().join("include"), &libraries().0, &program);
+    compile(&C, &source, &root().join("include"), &library("a"), &program);
     assert_eq!(
         text(&run(&program, &[])),
         "self 151, zero 150, nobody 100, stranger 100, ring 151\n"
@@ -351,7 +341,7 @@ fn the_dump_of_a_c_host_is_a_trace() {
     let folder = scratch("c-recorder");
     let program = folder.join("recorder");
     let source = root().join("examples/recorder.c");
-    compile(&C, &source, &root().join("include"), &libraries().0, &program);
+    compile(&C, &source, &root().join("include"), &library("a"), &program);
     let (table, lines) = (folder.join("recorded.csv"), folder.join("recorded.jsonl"));
     let told = text(&run(&program, &[table.as_os_str()]));
     assert_eq!(told, "scans 501 to 800, axis 1 in scan 700\n");
@@ -395,7 +385,7 @@ fn two_libraries_of_different_prefixes_live_in_one_program() {
     for file in export(Target::C, &prefix, &Dialect::default()) {
         fs::write(folder.join(file.name), file.text).unwrap();
     }
-    let (_, shared) = build("acme", &scratch("c-library-acme"));
+    let shared = with_prefix("acme", &scratch("c-library-acme"));
     let source = folder.join("both.c");
     fs::write(
         &source,
@@ -408,7 +398,7 @@ fn two_libraries_of_different_prefixes_live_in_one_program() {
     .unwrap();
     let program = folder.join("both");
     let rpath = format!("-Wl,-rpath,{}", shared.parent().unwrap().display());
-    let include = root().join("include");
+    let (include, fixed) = (root().join("include"), library("a"));
     let arguments: Vec<&OsStr> = vec![
         OsStr::new("-std=c11"),
         OsStr::new("-Werror"),
@@ -417,7 +407,7 @@ fn two_libraries_of_different_prefixes_live_in_one_program() {
         source.as_os_str(),
         OsStr::new("-o"),
         program.as_os_str(),
-        libraries().0.as_os_str(),
+        fixed.as_os_str(),
         shared.as_os_str(),
         OsStr::new(&rpath),
         OsStr::new("-lpthread"),
@@ -452,7 +442,7 @@ fn every_block_has_its_function() {
     )
     .unwrap();
     let program = folder.join("all");
-    compile(&C, &source, &root().join("include"), &libraries().0, &program);
+    compile(&C, &source, &root().join("include"), &library("a"), &program);
     run(&program, &[]);
 }
 
@@ -499,6 +489,6 @@ int main(void) {
     )
     .unwrap();
     let program = folder.join("host");
-    compile(&C, &source, &folder, &libraries().0, &program);
+    compile(&C, &source, &folder, &library("a"), &program);
     run(&program, &[]);
 }

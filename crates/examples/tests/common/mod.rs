@@ -172,28 +172,11 @@ pub fn run(program: impl AsRef<OsStr>, arguments: impl IntoIterator<Item = impl 
     output
 }
 
-/// The static C library, which the tests of `standstill-capi` build in the same place.
+/// The static C library: cargo has built it for the tests, beside them.
 pub fn library() -> PathBuf {
-    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("../capi/Cargo.toml");
-    let mut cargo = Command::new(env!("CARGO"));
-    cargo
-        .args(["build", "--offline", "--quiet", "--lib", "--message-format=json"])
-        .arg("--manifest-path")
-        .arg(manifest)
-        .arg("--target-dir")
-        .arg(scratch("c-library"))
-        .env("STANDSTILL_PREFIX", "standstill");
-    let output = cargo.output().unwrap();
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{told}");
-    let messages = String::from_utf8(output.stdout).unwrap();
-    let messages = messages
-        .lines()
-        .map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
-    let files = messages.flat_map(|message| message["filenames"].as_array().cloned().unwrap_or_default());
-    let mut files = files.filter_map(|file| Some(PathBuf::from(file.as_str()?)));
-    let library = files.find(|file| file.ends_with("libstandstill_capi.a"));
-    library.expect("no static library was built")
+    let library = env::current_exe().unwrap().with_file_name("libstandstill_capi.a");
+    assert!(library.is_file(), "there is no {}", library.display());
+    library
 }
 
 /// Puts what `standstill export` writes for a target into a folder.
