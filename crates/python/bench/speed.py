@@ -1,6 +1,6 @@
 """Speed of the package beside the command line and the planner, in one run: prints ratios and differences.
 
-    cargo build --profile dist -p standstill-cli && cargo build --profile dist -p standstill-python --example plan_natively
+    cargo build --profile dist -p standstill-cli --bins --examples
     target/python/tried/bin/python crates/python/bench/speed.py target/dist [SCANS]
 
 A figure is the least of several tries, taken in turn."""

@@ -1,4 +1,4 @@
-//! The planner's part of `plan`, for `bench/speed.py`: reads lines, and prints the nanoseconds for each,
+//! The planner's part of `plan`, for `crates/python/bench/speed.py`: reads lines, and prints the nanoseconds for each,
 //! from keys and numbers to the plan with its segments. The least of several tries.
 
 use standstill_cli::plan::{Given, Member, planned};
