@@ -1,12 +1,16 @@
 //! The repository is tidy: generated files are fresh, packages are complete, forbidden words stay out.
 
-use standstill_xtask::{Compliance, Faults, Package, Requirements, files, generated, root};
+use standstill_xtask::{Compliance, Faults, Generated, Package, Requirements, files, generated, root};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+/// Made once: scripts run for it.
+static GENERATED: LazyLock<Vec<Generated>> = LazyLock::new(generated);
 
 #[test]
 fn generated_files_are_fresh() {
-    for file in generated() {
+    for file in GENERATED.iter() {
         let found = fs::read_to_string(root().join(&file.path)).unwrap_or_default();
         assert!(
             found == file.text,
@@ -89,13 +93,47 @@ fn libraries_that_are_not_tested_have_no_tests() {
     }
 }
 
+/// Rust in its docs would not be tried.
+#[test]
+fn libraries_without_tests_of_docs_have_none() {
+    let files = files();
+    let untried = files
+        .iter()
+        .filter(|path| path.ends_with("Cargo.toml"))
+        .filter(|manifest| {
+            fs::read_to_string(manifest)
+                .unwrap()
+                .contains("\ndoctest = false\n")
+        });
+    for manifest in untried {
+        let sources = manifest.with_file_name("src");
+        for path in files
+            .iter()
+            .filter(|path| path.starts_with(&sources) && is(path, "rs"))
+        {
+            let text = fs::read_to_string(path).unwrap();
+            let docs = text.lines().map(str::trim_start);
+            let fences = docs.filter_map(|line| {
+                let line = line.strip_prefix("///").or_else(|| line.strip_prefix("//!"))?;
+                line.trim_start().strip_prefix("```")
+            });
+            for language in fences.step_by(2) {
+                assert!(
+                    !language.is_empty() && !language.starts_with("rust"),
+                    "{} has Rust in its docs, which nothing tries",
+                    path.display()
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn every_block_has_a_timing_picture() {
-    let files = generated();
     for info in standstill_blocks::REGISTRY {
         let path = format!("docs/blocks/{}.svg", info.name.to_lowercase());
         assert!(
-            files.iter().any(|file| file.path == path),
+            GENERATED.iter().any(|file| file.path == path),
             "{} has no line in crates/xtask/pictures.txt",
             info.name
         );
@@ -133,15 +171,14 @@ fn packages_say_what_a_registry_asks_for() {
 /// A file outside its folder is not in the package.
 #[test]
 fn published_sources_include_nothing_from_outside_their_package() {
+    let root = root().canonicalize().unwrap();
+    let sources = files().into_iter().filter(|path| is(path, "rs"));
+    let all: Vec<_> = sources.map(|path| path.canonicalize().unwrap()).collect();
     for package in Package::published() {
-        let folder = root().join(&package.folder).canonicalize().unwrap();
+        let folder = root.join(&package.folder);
         let sources = folder.join("src");
-        for path in files().iter().filter(|path| is(path, "rs")) {
-            let path = path.canonicalize().unwrap();
-            if !path.starts_with(&sources) {
-                continue;
-            }
-            let text = fs::read_to_string(&path).unwrap();
+        for path in all.iter().filter(|path| path.starts_with(&sources)) {
+            let text = fs::read_to_string(path).unwrap();
             for (at, _) in text.match_indices("include_str!(\"") {
                 // The README's examples are tests of the facade, in this repository only.
                 if text[..at].ends_with("#[cfg(doctest)]\n#[doc = ") {
