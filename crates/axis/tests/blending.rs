@@ -10,7 +10,7 @@ use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Dynamics, Fate, Limits, Log,
     Request, Scope, Standard, StartState, steps,
 };
-use standstill_testkit::Random;
+use standstill_testkit::{Random, cases};
 use std::slice;
 
 /// A move of a chain.
@@ -232,7 +232,7 @@ fn many(seeds: core::ops::Range<u64>) {
 
 #[test]
 fn chains_are_passed_in_order_within_the_limits() {
-    many(0..10_000);
+    many(0..cases(10_000));
 }
 
 /// Short moves behind faster ones: their ramps are rounding beside the positions.

@@ -12,7 +12,7 @@ use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId,
     Factors, Fate, Limits, Log, QUEUE_MAX, Request, Scope, Standard, StartState, steps,
 };
-use standstill_testkit::Random;
+use standstill_testkit::{Random, cases};
 use std::slice;
 
 pub const CYCLE: f64 = 0.001;
@@ -242,7 +242,7 @@ fn drawn_ends(random: &mut Random, limits: &Limits) -> Vec<f64> {
 /// Covers: B2, B14
 #[test]
 fn random_chains_take_the_scans_of_one_move() {
-    for seed in 0..2_000 {
+    for seed in 0..cases(2_000) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let ends = drawn_ends(&mut random, &limits);
@@ -286,7 +286,7 @@ fn ways_of_ramps(limits: Limits) -> (f64, f64) {
 #[test]
 fn ends_are_passed_at_full_speed_where_there_is_room_for_it() {
     let mut at_full_speed = 0;
-    for seed in 0..1_000 {
+    for seed in 0..cases(1_000) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let ends = drawn_ends(&mut random, &limits);
@@ -306,7 +306,7 @@ fn ends_are_passed_at_full_speed_where_there_is_room_for_it() {
             }
         }
     }
-    assert!(at_full_speed > 500, "only {at_full_speed}");
+    assert!(at_full_speed > cases(500), "only {at_full_speed}");
 }
 
 /// When each of the moves is commanded.
@@ -337,7 +337,7 @@ fn chain_in_time(
 /// Covers: B15
 #[test]
 fn commanded_when_ever_a_chain_is_no_later_than_buffered() {
-    for seed in 0..3_000 {
+    for seed in 0..cases(3_000) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let ends = drawn_ends(&mut random, &limits);
@@ -364,7 +364,7 @@ fn commanded_when_ever_a_chain_is_no_later_than_buffered() {
 /// Covers: B17
 #[test]
 fn an_override_on_the_way_keeps_order_and_limits() {
-    for seed in 0..2_000 {
+    for seed in 0..cases(2_000) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let ends = drawn_ends(&mut random, &limits);
@@ -385,7 +385,7 @@ fn an_override_on_the_way_keeps_order_and_limits() {
 /// Covers: B17
 #[test]
 fn a_halt_on_the_way_is_no_reason_to_go_back() {
-    for seed in 0..2_000 {
+    for seed in 0..cases(2_000) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let ends = drawn_ends(&mut random, &limits);
@@ -426,7 +426,7 @@ fn a_halt_on_the_way_is_no_reason_to_go_back() {
 
 #[test]
 fn ends_closer_than_a_scan_are_passed_one_by_one() {
-    for seed in 0..500 {
+    for seed in 0..cases(500) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let way = limits.velocity * CYCLE;
@@ -490,7 +490,7 @@ fn round(limits: Limits, length: f64, ways: &[f64], relative: bool, mode: Buffer
 /// Covers: B8, B10
 #[test]
 fn a_modulo_axis_goes_round_as_one_motion() {
-    for seed in 0..1_000 {
+    for seed in 0..cases(1_000) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let ends = drawn_ends(&mut random, &limits);
@@ -544,7 +544,7 @@ fn a_modulo_axis_goes_round_as_one_motion() {
 
 #[test]
 fn a_successor_taken_away_leaves_no_limit() {
-    for seed in 0..2_000 {
+    for seed in 0..cases(2_000) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let ends = drawn_ends(&mut random, &limits);
@@ -585,7 +585,7 @@ fn a_successor_taken_away_leaves_no_limit() {
 
 #[test]
 fn what_interrupts_a_chain_takes_over_within_the_limits() {
-    for seed in 0..2_000 {
+    for seed in 0..cases(2_000) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let ends = drawn_ends(&mut random, &limits);
@@ -659,7 +659,7 @@ fn a_distance_behind_a_software_limit_ends_the_motion_before_it() {
 
 #[test]
 fn other_dynamics_or_another_way_end_one_motion() {
-    for seed in 0..2_000 {
+    for seed in 0..cases(2_000) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let mut ends = drawn_ends(&mut random, &limits);
@@ -715,7 +715,7 @@ pub fn drawn_dynamics(random: &mut Random, limits: &Limits) -> Dynamics {
 fn with_other_dynamics_a_chain_is_no_later_than_buffered() {
     let mut ratios = Vec::new();
     let mut later = Vec::new();
-    for seed in 0..4_000 {
+    for seed in 0..cases(4_000) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let ends = drawn_ends(&mut random, &limits);

@@ -10,7 +10,7 @@ use standstill_axis::{
     Dynamics, ErrorId, ExecutionMode, Followed, Limits, Log, Master, Request, Scaling, Scope, Standard,
     StartState, SyncMode, SyncPoint, ValueSource, couple, steps,
 };
-use standstill_testkit::Random;
+use standstill_testkit::{Random, cases};
 
 const CYCLE: f64 = 0.001;
 
@@ -304,9 +304,9 @@ fn nonsense(random: &mut Random, scans: usize) -> Vec<i64> {
 /// Covers: G83, G45, G46
 #[test]
 fn whatever_the_drive_tells_the_slave_keeps_its_limits() {
-    const EPISODES: u64 = 300;
+    let episodes = cases(300);
     let (mut worst, mut in_gear, mut scans) = (0.0_f64, 0_u64, 0_u64);
-    for seed in 0..EPISODES {
+    for seed in 0..episodes {
         let mut random = Random(seed);
         let limits = draw::limits(&mut random);
         let filter = [1, 4, 16, 16, 16, 40, 64][random.below(7) as usize];
@@ -348,7 +348,7 @@ fn whatever_the_drive_tells_the_slave_keeps_its_limits() {
         assert!(most <= 1.0 + 1e-6, "{seed}: {most} {limits:?} {filter}");
         worst = worst.max(most);
     }
-    println!("{EPISODES} episodes, {in_gear} of {scans} scans in gear, at most {worst} of a limit");
+    println!("{episodes} episodes, {in_gear} of {scans} scans in gear, at most {worst} of a limit");
     assert!(
         in_gear * 20 > scans,
         "the slaves were hardly ever in gear: {in_gear} of {scans}"

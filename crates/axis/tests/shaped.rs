@@ -12,7 +12,7 @@ use standstill_axis::{
 use standstill_axis::{Drive, PlanError};
 use standstill_planner::Shapers;
 use standstill_soak::rules::limits::Track;
-use standstill_testkit::Random;
+use standstill_testkit::{Random, cases};
 
 const CYCLE: f64 = 0.001;
 
@@ -241,7 +241,7 @@ fn stir(twins: &mut Twins, random: &mut Random, limits: &Limits) -> [CommandId; 
 /// Covers: VB1, VB4, VB5
 #[test]
 fn whatever_takes_over_the_rest_of_it_comes_out_first() {
-    for number in 0..400 {
+    for number in 0..cases(400) {
         let mut random = Random(0x5A_0000 + number);
         let limits = limits(&mut random);
         let second = (random.below(2) == 0).then(|| drawn_mode(&mut random));
@@ -283,7 +283,7 @@ fn whatever_takes_over_the_rest_of_it_comes_out_first() {
 /// Covers: VB4, VB11
 #[test]
 fn a_superimposed_move_is_shaped_with_what_it_is_on() {
-    for number in 0..200 {
+    for number in 0..cases(200) {
         let mut random = Random(0x5C_0000 + number);
         let limits = limits(&mut random);
         let mut twins = Twins::new(config(limits, [Some(drawn_mode(&mut random)), None]));

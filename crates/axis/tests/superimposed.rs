@@ -10,7 +10,7 @@ use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, Fate, Limits,
     Log, Plan, Raw, Request, Scope, Setpoint, Standard, StartState, Superimpose, steps,
 };
-use standstill_testkit::Random;
+use standstill_testkit::{Random, cases};
 use std::slice;
 
 const CYCLE: f64 = 0.01;
@@ -237,14 +237,14 @@ fn many_on_many(seed: u64) {
 
 #[test]
 fn the_move_under_it_keeps_its_bits_and_the_sum_its_limits() {
-    for seed in 0..CASES {
+    for seed in 0..cases(CASES) {
         one_on_one(seed);
     }
 }
 
 #[test]
 fn any_sequence_of_commands_keeps_the_limits_and_ends() {
-    for seed in 0..CASES {
+    for seed in 0..cases(CASES) {
         many_on_many(seed);
     }
 }

@@ -87,11 +87,12 @@ impl Rig {
     }
 }
 
-/// 1,000 moves 0 <-> 10.1 by MC_MoveAbsolute end on 0 to the bit, and so does every second one.
+/// 1,000 moves 0 <-> 10.1 by MC_MoveAbsolute, a tenth of them in a plain test run, end on 0 to the bit, and so does every
+/// second one.
 #[test]
 fn a_thousand_moves_there_and_back_end_on_zero() {
     let mut rig = Rig::new(&[None]);
-    for _ in 0..500 {
+    for _ in 0..standstill_testkit::cases(500) {
         rig.go(0, 10.1);
         assert_eq!(rig.position(0).to_bits(), 10.1_f64.to_bits());
         rig.go(0, 0.0);

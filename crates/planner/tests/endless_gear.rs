@@ -50,7 +50,7 @@ fn every_scan_at_three_sevenths_is_the_exact_place_rounded_once() {
     let scans = std::env::var("STANDSTILL_SOAK")
         .ok()
         .and_then(|scans| scans.parse().ok())
-        .unwrap_or(10_000_000_u64);
+        .unwrap_or_else(|| standstill_testkit::cases(10_000_000));
     let gear = Gear::new(3, 7, Some(TURN), Some(TURN)).unwrap();
     let at = |position| Place {
         position,

@@ -183,7 +183,8 @@ fn what_is_accepted_keeps_the_limits_and_what_is_refused_does_not() {
     };
     let mut random = Random(3);
     let mut accepted = [0; 2];
-    for case in 0..3000 {
+    let count = standstill_testkit::cases(3000) as usize;
+    for case in 0..count {
         let kind = KINDS[case % 3];
         let points = random_points(&mut random);
         let start = Setpoint::at_rest(0.0);
@@ -233,7 +234,7 @@ fn what_is_accepted_keeps_the_limits_and_what_is_refused_does_not() {
             }
         }
     }
-    assert!(accepted[0] > 100 && accepted[1] > 100, "{accepted:?}");
+    assert!(accepted.iter().all(|some| *some > count / 30), "{accepted:?}");
 }
 
 #[test]

@@ -86,7 +86,7 @@ fn follow(case: &Case, profile: &Profile) -> ([f64; 3], f64, f64) {
 fn every_state_arrives() {
     let mut random = Random(51);
     let (mut worst, mut steps, mut spans) = (0.0f64, 0, 0);
-    for index in 0..60_000 {
+    for index in 0..standstill_testkit::cases(60_000) {
         let outside = if index % 4 == 0 { 3.0 } else { 1.0 };
         let case = case(&mut random, outside);
         let profile = solve(&case);

@@ -1,4 +1,4 @@
-//! Many random moves with unequal rates. 10,000 in a plain test run; `STANDSTILL_SOAK=1000000` runs more
+//! Many random moves with unequal rates. 1,000 in a plain test run, 10,000 in `.ci/run`; `STANDSTILL_SOAK=1000000` runs more
 //! and prints the largest work of one.
 
 use crate::grid_support::{Move, Random, servo};
@@ -12,7 +12,7 @@ fn rounds() -> u64 {
     std::env::var("STANDSTILL_SOAK")
         .ok()
         .and_then(|count| count.parse().ok())
-        .unwrap_or(10_000)
+        .unwrap_or_else(|| standstill_testkit::cases(10_000))
 }
 
 /// A servo-like move whose deceleration is 0.2 to 5 times the acceleration, now and then 1000 times more or

@@ -284,7 +284,7 @@ fn every_script_of_the_gallery_kills_four_of_five_mutants() {
 /// How many mutants of a script are killed, and how many survive.
 fn score(path: &Path) -> [usize; 2] {
     let (script, original) = run_script(path, &[], &Allowed::default(), |_| {}).unwrap();
-    let fates: Vec<Fate> = mutants(&script, 1, 500)
+    let fates: Vec<Fate> = mutants(&script, 1, standstill_testkit::cases(500) as usize)
         .iter()
         .map(|mutant| mutant.judge(&script, &original))
         .collect();

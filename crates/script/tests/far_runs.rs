@@ -289,7 +289,7 @@ fn random_runs_far_ahead_are_the_runs_scan_by_scan() {
         .ok()
         .and_then(|count| count.parse().ok());
     let (mut scans, mut left_out, mut broken, mut refused) = (0, 0, 0, 0);
-    let count = count.unwrap_or(150);
+    let count = count.unwrap_or_else(|| standstill_testkit::cases(150));
     for seed in 0..count {
         let mut random = Random(seed);
         let text = script(&mut random).to_string();

@@ -14,7 +14,7 @@ use standstill_axis::{
     Log, MoveProfile, Plan, Raw, Request, Scope, Standard, StartState, Superimpose, steps,
 };
 use standstill_soak::rules::limits::Track;
-use standstill_testkit::Random;
+use standstill_testkit::{Random, cases};
 use std::slice;
 
 const CYCLE: f64 = 0.01;
@@ -383,7 +383,7 @@ fn run(cases: core::ops::Range<u64>) {
 /// Covers: R9, R12, R13, S6, B16, B17, V16
 #[test]
 fn changes_at_random_keep_the_limits_and_land_exactly() {
-    run(0..10_000);
+    run(0..cases(10_000));
 }
 
 /// Covers: R9, R12, R13, S6, B16, B17, V16

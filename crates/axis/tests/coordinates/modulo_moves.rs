@@ -113,7 +113,7 @@ fn random_moves_follow_the_table() {
         Direction::Current,
     ];
     let mut repetitions = 0;
-    for seed in 0..1500 {
+    for seed in 0..standstill_testkit::cases(1500) {
         let mut random = Random(seed);
         let config = random_config(&mut random);
         let length = config.modulo.unwrap();
@@ -199,12 +199,15 @@ fn random_moves_follow_the_table() {
             _ => {}
         }
     }
-    assert!(repetitions > 100, "{repetitions}");
+    assert!(
+        repetitions > standstill_testkit::cases(100) as usize,
+        "{repetitions}"
+    );
 }
 
 #[test]
 fn distances_beyond_a_turn_are_gone_in_full() {
-    for seed in 0..300 {
+    for seed in 0..standstill_testkit::cases(300) {
         let mut random = Random(seed);
         let config = random_config(&mut random);
         let length = config.modulo.unwrap();

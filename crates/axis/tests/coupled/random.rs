@@ -9,7 +9,7 @@ use standstill_axis::{
     AxisConfig, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorClass, ErrorId, Event,
     Factors, Fate, Limits, PhaseShift, Raw, Scope, StartState, Superimpose, SyncPoint,
 };
-use standstill_testkit::Random;
+use standstill_testkit::{Random, cases};
 use std::fmt::Write as _;
 
 /// What was seen.
@@ -457,7 +457,7 @@ fn slaves_of_episodes_that_failed_once_keep_their_limits() {
 /// Covers: G1, G11, G25, G45, G46
 #[test]
 fn random_slaves_have_a_plan_within_their_limits_and_are_on_their_law_to_the_bit() {
-    let count = number("STANDSTILL_SOAK").unwrap_or(1000);
+    let count = number("STANDSTILL_SOAK").unwrap_or_else(|| cases(1000));
     let first = number("STANDSTILL_FIRST").unwrap_or(0);
     let mut total = Seen::default();
     let mut failed = Vec::new();

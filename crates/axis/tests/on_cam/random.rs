@@ -8,7 +8,7 @@ use super::rig::{L1, MASTER, RELATIVE, Rig, WIDE, config, row};
 use standstill_axis::{AxisState, BufferMode, CamRow, CamSelection, Command, Dynamics, Limits, Raw};
 use standstill_planner::CamShape;
 use standstill_planner::turns::split;
-use standstill_testkit::Random;
+use standstill_testkit::{Random, cases};
 
 /// What was seen in all episodes.
 #[derive(Debug, Default)]
@@ -471,7 +471,7 @@ fn play_on(seed: u64, master_order: u64, kind: Kind, tally: &mut Tally) -> u64 {
 #[test]
 fn the_short_way_shows_the_bits_of_the_long_one() {
     let mut tally = Tally::default();
-    for seed in 5000..5060 {
+    for seed in 5000..5000 + cases(60) {
         let digests = [true, false].map(|drives_tell| play(seed, 4, seed % 2 == 0, drives_tell, &mut tally));
         assert_eq!(digests[0], digests[1], "seed {seed}");
     }
@@ -509,7 +509,7 @@ fn random_episodes_keep_limits_and_curve() {
         .ok()
         .and_then(|first| first.parse().ok());
     let first = first.unwrap_or(0);
-    for seed in first..first + count.unwrap_or(250) {
+    for seed in first..first + count.unwrap_or_else(|| cases(250)) {
         play(seed, 4, false, true, &mut tally);
         play(seed, 4, true, true, &mut tally);
         if seed % 4 == 0 {
@@ -536,7 +536,7 @@ fn random_cams_with_corners_keep_limits_and_curve() {
     };
     let number = |name: &str| std::env::var(name).ok().and_then(|number| number.parse().ok());
     let first = number("CAM_FIRST").unwrap_or(0);
-    for seed in first..first + number("CAM_EPISODES").unwrap_or(120) {
+    for seed in first..first + number("CAM_EPISODES").unwrap_or_else(|| cases(120)) {
         play_on(seed, 4, kind(false), &mut tally);
         play_on(seed, 4, kind(true), &mut tally);
         if seed % 4 == 0 {
@@ -555,7 +555,7 @@ fn random_axes_that_come_round_keep_limits_and_curve() {
     let mut tally = Tally::default();
     let number = |name: &str| std::env::var(name).ok().and_then(|number| number.parse().ok());
     let first = number("CAM_FIRST").unwrap_or(0);
-    for seed in first..first + number("CAM_EPISODES").unwrap_or(120) {
+    for seed in first..first + number("CAM_EPISODES").unwrap_or_else(|| cases(120)) {
         let kind = Kind {
             more: seed % 2 == 0,
             drives_tell: true,

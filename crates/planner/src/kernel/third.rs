@@ -275,7 +275,7 @@ fn holding(left: f64, v: f64, a: f64, brake: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use standstill_testkit::Random;
+    use standstill_testkit::{Random, cases};
     use std::collections::BTreeSet;
     use std::vec::Vec;
 
@@ -294,7 +294,7 @@ mod tests {
     fn a_gain_is_the_slope_of_the_integral() {
         let mut random = Random(3);
         let mut shapes = BTreeSet::new();
-        for case in 0..60_000 {
+        for case in 0..cases(60_000) {
             let sides = |random: &mut Random| Sides {
                 minus: random.log(0.1, 10.0),
                 plus: random.log(0.1, 10.0),

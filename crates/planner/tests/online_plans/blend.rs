@@ -162,7 +162,7 @@ fn a_larger_speed_is_reached_at_the_end() {
 #[test]
 fn a_way_of_a_few_scans_is_passed() {
     let mut random = Random(73);
-    for case in 0..20_000 {
+    for case in 0..standstill_testkit::cases(20_000) as usize {
         let limits = support::limits(&mut random, ORDERS[case % 3]);
         let cycle = 0.02 * limits.velocity / limits.acceleration;
         let speed = limits.velocity * random.between(0.01, 0.9);

@@ -155,8 +155,8 @@ fn a_push_goes_for_the_bound_of_its_own_side() {
 #[test]
 fn a_start_beyond_its_bound_is_brought_inside() {
     let mut random = Random(79);
-    let mut outside = 0;
-    for case in 0..1500 {
+    let (mut outside, count) = (0, standstill_testkit::cases(1500) as usize);
+    for case in 0..count {
         let (before, cycle) = draw(&mut random, case, true);
         let rates = before.limits;
         let way = rates.velocity * rates.velocity / rates.acceleration;
@@ -204,10 +204,10 @@ fn a_start_beyond_its_bound_is_brought_inside() {
                 inside |= beyond <= 0.0 && plan.at(scan).acceleration * plan.at(scan).velocity <= 0.0;
             }
             assert!(seen <= told + 1e-9 * rates.velocity, "case {case} {seen} {told}");
-            outside += u32::from(told > 0.0);
+            outside += usize::from(told > 0.0);
         }
     }
-    assert!(outside > 300, "{outside}");
+    assert!(outside > count / 5, "{outside}");
 }
 
 #[test]

@@ -511,7 +511,8 @@ fn lowered_limits_keep_the_old_velocity() {
     const CYCLE: f64 = 0.001;
     let mut random = Random(29);
     let mut lowered = 0;
-    for case in 0..20_000 {
+    let count = standstill_testkit::cases(20_000) as usize;
+    for case in 0..count {
         let before = support::limits(&mut random, ORDERS[case % 3]);
         let mut factor = || [1.0, 1.0, 0.5, 0.2, 0.05][random.below(5) as usize];
         let limits = Limits {
@@ -549,5 +550,5 @@ fn lowered_limits_keep_the_old_velocity() {
             );
         }
     }
-    assert!(lowered > 15_000, "{lowered}");
+    assert!(lowered > count * 3 / 4, "{lowered}");
 }

@@ -583,7 +583,8 @@ fn unusable_inputs_are_refused_by_name() {
 fn absurd_inputs_end_in_a_plan_or_a_refusal() {
     let mut random = Random(35);
     let (mut planned, mut refused) = (0, 0);
-    for case in 0..20_000 {
+    let count = standstill_testkit::cases(20_000);
+    for case in 0..count {
         let size = |random: &mut Random| random.log(1e-40, 1e40);
         let signed = |random: &mut Random| match random.below(4) {
             0 => 0.0,
@@ -634,7 +635,7 @@ fn absurd_inputs_end_in_a_plan_or_a_refusal() {
         }
     }
     println!("planned {planned} refused {refused}");
-    assert!(planned > 2000);
+    assert!(planned > count / 10);
 }
 
 /// A ramp that takes its acceleration back for minutes, with a jerk far below all other limits, still ends on a goal close to

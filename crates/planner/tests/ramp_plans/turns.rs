@@ -64,7 +64,7 @@ fn late_turns(seed: u64, count: usize) -> (f64, usize, u32) {
 
 #[test]
 fn a_turn_begun_late_in_a_stop_keeps_every_limit() {
-    println!("{:?}", late_turns(81, 30_000));
+    println!("{:?}", late_turns(81, standstill_testkit::cases(30_000) as usize));
 }
 
 /// `cargo test --release -p standstill-planner --test all ramp_plans -- --ignored --nocapture`
@@ -80,7 +80,7 @@ fn millions_of_late_turns() {
 fn the_time_of_a_turn_does_not_jump() {
     let mut random = Random(83);
     let mut worst = 0.0f64;
-    for _ in 0..200 {
+    for _ in 0..standstill_testkit::cases(200) {
         let limits = apart(&mut random, Order::Four);
         let cruising = Setpoint {
             velocity: limits.velocity * random.log(1e-3, 1.0),

@@ -49,7 +49,7 @@ fn largest(scans: u32, cycle: f64, at: impl Fn(u64) -> Setpoint) -> ([f64; 4], [
 #[test]
 fn limits_hold_the_target_is_exact_and_a_way_out_is_the_way_back_mirrored() {
     let mut random = Random(2404);
-    for case in 0..400 {
+    for case in 0..standstill_testkit::cases(400) {
         let one = servo(&mut random);
         let plan = one.plan(standstill_planner::Method::Overlapped).expect("a plan");
         if plan.scans() > 4000 {
@@ -118,7 +118,7 @@ fn limits_hold_the_target_is_exact_and_a_way_out_is_the_way_back_mirrored() {
 #[test]
 fn a_mirror_image_has_the_mirrored_bits() {
     let mut random = Random(2405);
-    for _ in 0..100 {
+    for _ in 0..standstill_testkit::cases(100) {
         let cycle = 1e-3;
         let limits = limits(2 + random.below(3) as u32, 1.0, random.log(1.0, 20.0), 0.02);
         let shapers = shapers(&mut random, cycle, 300.0);

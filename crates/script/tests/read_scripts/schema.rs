@@ -1,7 +1,8 @@
 //! The JSON Schema against an independent validator, the committed file, and the reader.
 
 use super::cases::{By, GOOD, cases};
-use boon::{Compiler, SchemaIndex, Schemas};
+use boon::{Compiler, SchemaIndex, Schemas, ValidationError};
+use serde_json::Value;
 use standstill_script::{machine_schema, map_schema, read, schema, sweep_schema};
 use std::path::{Path, PathBuf};
 
@@ -24,11 +25,13 @@ impl Validator {
         Self { schemas, index }
     }
 
-    pub(crate) fn accepts(&self, script: &str) -> Result<(), String> {
+    pub(crate) fn check<'v>(&self, script: &'v Value) -> Result<(), ValidationError<'_, 'v>> {
+        self.schemas.validate(script, self.index)
+    }
+
+    fn accepts(&self, script: &str) -> Result<(), String> {
         let value = serde_json::from_str(script).map_err(|error| error.to_string())?;
-        self.schemas
-            .validate(&value, self.index)
-            .map_err(|error| format!("{error:#}"))
+        self.check(&value).map_err(|error| format!("{error:#}"))
     }
 }
 

@@ -4,7 +4,7 @@
 
 mod play;
 
-use standstill_testkit::Random;
+use standstill_testkit::{Random, cases};
 use std::fs;
 use std::path::Path;
 
@@ -61,7 +61,7 @@ fn no_damage_to_a_program_leads_to_a_panic() {
         set.unwrap_or(usual)
     };
     let first = number("STANDSTILL_ST_SEED", 0);
-    for seed in first..first + number("STANDSTILL_ST_DAMAGE", 3000) {
+    for seed in first..first + number("STANDSTILL_ST_DAMAGE", cases(3000)) {
         // Beyond, so many lines tell how far it is.
         if seed % 100_000 == 99_999 {
             eprintln!("{} done", seed + 1 - first);

@@ -129,7 +129,7 @@ fn same(seed: u64, count: usize) -> bool {
 /// Covers: ST13, ST14, ST30, ST31, ST32, ST33, ST34, ST35, ST40
 #[test]
 fn programs_are_worth_what_clang_says() {
-    let count = number("STANDSTILL_ST_PROGRAMS", 1000);
+    let count = number("STANDSTILL_ST_PROGRAMS", standstill_testkit::cases(1000) as usize);
     let seed = number("STANDSTILL_ST_SEED", 1) as u64;
     let files = count.div_ceil(PROGRAMS) as u64;
     let threads = std::thread::available_parallelism().map_or(1, usize::from).min(2) as u64;
