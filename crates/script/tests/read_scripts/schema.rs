@@ -25,8 +25,8 @@ impl Validator {
         Self { schemas, index }
     }
 
-    pub(crate) fn check<'v>(&self, script: &'v Value) -> Result<(), ValidationError<'_, 'v>> {
-        self.schemas.validate(script, self.index)
+    pub(crate) fn check<'v>(&self, script: &'v Value) -> Result<(), Box<ValidationError<'_, 'v>>> {
+        Ok(self.schemas.validate(script, self.index)?)
     }
 
     fn accepts(&self, script: &str) -> Result<(), String> {
