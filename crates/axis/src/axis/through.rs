@@ -221,13 +221,14 @@ impl<P: Planner> Axis<P> {
                 .move_to(MoveProfile::Online, from, *target, limits, limits);
             planned.ok()
         };
-        let plan = if exit.rests() { None } else { blended() };
+        // Where it is to turn it must be able to rest: what turns is decided when it begins.
+        let plan = if exit.wanted > 0.0 { blended() } else { None };
         let Some(plan) = plan.or_else(to_rest) else {
             return u64::MAX;
         };
         let goal = goal_past(&plan, 0, *target, behind.forward);
         let is_slow = plan.at(goal).velocity.abs() <= exit.most * (1.0 + ROUNDING);
-        let is_straight = plan.turn().is_some() || !self.turns(&plan, behind.forward);
+        let is_straight = !self.turns(&plan, behind.forward);
         if is_slow && is_straight && keeps_rates(&plan) {
             goal
         } else {
