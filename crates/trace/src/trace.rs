@@ -225,21 +225,19 @@ impl Trace {
         self.push_cells(cells.iter().copied())
     }
 
-    /// As [`Trace::push_row`], for cells that need not be put into a list. It takes memory only if
-    /// [`Trace::reserve`] has made no room, and for new names.
+    /// As [`Trace::push_row`], for cells that need not be put into a list.
     ///
     /// # Errors
     /// Those of [`Trace::push_row`].
     pub fn push_cells<'c>(&mut self, cells: impl IntoIterator<Item = Cell<'c>>) -> Result<(), RowError> {
         let mut found = 0;
-        let before = self.cells.iter().map(Cells::next).collect::<Vec<_>>();
-        let mut row = before.clone();
+        let mut row = Vec::with_capacity(self.columns.len());
         for cell in cells {
-            found += 1;
             // The rest of a row that is too long is only counted.
-            if let (Some(column), Some(word)) = (self.columns.get(found - 1), row.get_mut(found - 1)) {
-                *word = word_of(&mut self.names, column, cell, *word)?;
+            if let (Some(column), Some(before)) = (self.columns.get(found), self.cells.get(found)) {
+                row.push(word_of(&mut self.names, column, cell, before.next())?);
             }
+            found += 1;
         }
         if found != self.columns.len() {
             return Err(RowError::Length {
