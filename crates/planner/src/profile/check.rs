@@ -170,6 +170,7 @@ fn first_broken(
     range: Option<(f64, f64)>,
 ) -> Option<(ProfileCause, f64, f64)> {
     let both = |limit: f64| (-limit, limit);
+    let speeds = hull(&piece.velocity);
     if let Some((min, max)) = range {
         let (least, most) = hull(&piece.position);
         let places = (least + piece.from, most + piece.from);
@@ -178,8 +179,16 @@ fn first_broken(
         if let Some(found) = broken(ProfileCause::Position, places, bounds) {
             return Some(found);
         }
+        // .. and not go out again once it is in.
+        let still = ROUNDING * limits.velocity;
+        let leading_out = (
+            if speeds.0 < -still { places.0 } else { min },
+            if speeds.1 > still { places.1 } else { max },
+        );
+        if let Some(found) = broken(ProfileCause::Position, leading_out, (min, max)) {
+            return Some(found);
+        }
     }
-    let speeds = hull(&piece.velocity);
     broken(ProfileCause::Velocity, speeds, both(limits.velocity))
         .or_else(|| broken_rate(speeds, hull(&piece.acceleration), limits))
         .or_else(|| broken(ProfileCause::Jerk, hull(&piece.jerk), both(limits.jerk)))
