@@ -15,6 +15,11 @@
 //! refused as [`LoadError::NotBuilt`]. The code that reads and runs scan scripts is the same with and
 //! without it.
 //!
+//! A build profile with `opt-level` 2 or 3 *and* `debug-assertions` needs
+//! `[profile.<name>.package] wasmi = { opt-level = 1 }`: with those checks the interpreter's stack
+//! grows with every instruction of a guest, and the process ends when it is full. `dev` and `release`
+//! as Cargo has them are fine.
+//!
 //! A [`Program`] is a compiled guest and a [`Guest`] a running one. Files, names of variables and tasks
 //! belong to `standstill-script`.
 #![forbid(unsafe_code)]
