@@ -68,6 +68,8 @@ pub(super) struct Box4 {
     pub(super) jerk_before: f64,
     /// Snap until the state is inside, as a multiple of the snap bound; at least 1.
     pub(super) snap_before: f64,
+    /// The velocity goes through zero afterwards, and `a.plus` holds from there on.
+    pub(super) turns: bool,
 }
 
 impl Box4 {
@@ -82,6 +84,7 @@ impl Box4 {
     fn turned(&self) -> Self {
         Self {
             brake_before: self.a.plus,
+            turns: false,
             ..self.mirrored()
         }
     }
@@ -313,7 +316,14 @@ fn hasten(state: State, limit: f64, goal: f64, low: f64, bounds: &Box4) -> (Span
         let rest = arrested(state, bounds.jerk);
         let present = (state.v - limit).min(rest - goal);
         let to_come = (top(state, rest) - limit).min(rest - low);
-        present.max(to_come)
+        let inside = present.max(to_come);
+        if bounds.turns && state.a < -bounds.a.plus {
+            // Back at the acceleration of the other side before the velocity is there.
+            let release = second(state.a, state.j, -bounds.a.plus, Sides::both(bounds.jerk));
+            inside.min(state.after_all(&release).v)
+        } else {
+            inside
+        }
     };
     let pushed = state.led(&push);
     let longest = push.duration() + (pushed.v - goal).max(0.0) / bounds.brake_before;

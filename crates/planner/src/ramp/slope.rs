@@ -22,6 +22,8 @@ pub(super) struct Box3 {
     pub(super) brake_before: f64,
     /// Jerk until the state is inside, as a multiple of the jerk bound; at least 1.
     pub(super) jerk_before: f64,
+    /// The velocity goes through zero afterwards, and `up` holds from there on.
+    pub(super) turns: bool,
 }
 
 impl Slope {
@@ -35,6 +37,11 @@ impl Slope {
     /// The velocity once the acceleration is zero as soon as can be (R2).
     pub(super) fn rest(self) -> f64 {
         self.v + 0.5 * self.a * self.a.abs()
+    }
+
+    /// The velocity once an acceleration below `-rate` is back there.
+    fn at_rate(self, rate: f64) -> f64 {
+        self.v - 0.5 * (self.a * self.a - rate * rate).max(0.0)
     }
 
     /// Whether the velocity stays in `0 ..= limit` on the way to [`Slope::rest`].
@@ -61,6 +68,7 @@ impl Slope {
                 down: bounds.up,
                 brake_before: bounds.up,
                 jerk_before: jerk,
+                turns: false,
             };
             let mirrored = Self {
                 v: -self.v,
@@ -83,7 +91,12 @@ impl Slope {
         };
         let above = |time: f64| {
             let state = self.after_all(&lead(time));
-            (state.v.max(state.rest()) - limit).min(state.rest() - goal)
+            let inside = (state.v.max(state.rest()) - limit).min(state.rest() - goal);
+            if bounds.turns {
+                inside.min(state.at_rate(bounds.up))
+            } else {
+                inside
+            }
         };
         let pushed = self.after_all(&push);
         let longest = push.duration() + (pushed.v - goal).max(0.0) / brake;

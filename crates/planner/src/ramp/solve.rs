@@ -376,6 +376,7 @@ impl Ramps {
             down: self.deceleration,
             brake_before: self.before.deceleration,
             jerk_before: self.before.input,
+            turns: goal < 0.0 && self.splits(course),
         };
         let (lead, steps) = start.lead_in(goal, range, &bounds);
         ramp.viable = lead.is_empty() && goal >= 0.0 && start.is_viable(range.plus);
@@ -406,6 +407,7 @@ impl Ramps {
             jerk: self.jerk,
             jerk_before: self.before.jerk,
             snap_before: self.before.input,
+            turns: goal < 0.0 && self.splits(course),
         };
         let own = |dips| Bounds {
             v: self.sides(goal, dips),

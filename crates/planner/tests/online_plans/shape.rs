@@ -455,6 +455,50 @@ fn over_a_lowered_velocity_limit() {
     }
 }
 
+/// Above a velocity limit that was lowered, the old limits hold; where the way back to the target begins at once, the
+/// acceleration has to be at its own limit when the velocity passes zero, however much more the deceleration may be.
+#[test]
+fn over_a_lowered_velocity_limit_it_turns_within_both_accelerations() {
+    let mut random = Random(67);
+    for order in ORDERS {
+        for case in 0..standstill_testkit::cases(20_000) {
+            let up = 10f64.powf(random.between(1.0, 5.0));
+            let jerk = up * 10f64.powf(random.between(1.0, 7.0));
+            let limits = Limits {
+                velocity: random.between(0.05, 1.0),
+                acceleration: up,
+                deceleration: up * 10f64.powf(random.between(-1.0, 7.0)),
+                jerk: if order > Order::Two { jerk } else { f64::INFINITY },
+                snap: if order > Order::Three {
+                    jerk * 10f64.powf(random.between(1.0, 6.0))
+                } else {
+                    f64::INFINITY
+                },
+            };
+            let before = Limits {
+                velocity: 1.0,
+                ..limits
+            };
+            let start = Setpoint {
+                velocity: 1.0,
+                ..Setpoint::at_rest(0.0)
+            };
+            let target = if case % 3 == 0 {
+                0.0
+            } else {
+                random.between(-0.01, 0.01)
+            };
+            let plan = OnlinePlan::new(&start, target, &limits, &before, 0.001).expect("a plan");
+            let excess = plan.excess().unwrap_or_default();
+            assert_eq!(
+                (excess.acceleration, excess.jerk),
+                (0.0, 0.0),
+                "{limits:?} to {target}"
+            );
+        }
+    }
+}
+
 #[test]
 fn unusable_inputs_are_refused_by_name() {
     let rest = Setpoint::at_rest(0.0);
