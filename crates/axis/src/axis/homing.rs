@@ -18,7 +18,7 @@ use super::commands::{Entry, refusal};
 use super::power::Reaction;
 use super::{Axis, Motion};
 use crate::{AxisState, ErrorId, HomeDirection, Procedure, Scope};
-use standstill_planner::{Planner, Setpoint};
+use standstill_planner::{Limits, PlanError, Planner, Setpoint};
 
 /// The step of a homing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -351,20 +351,11 @@ impl<P: Planner> Axis<P> {
     fn found(&mut self, reference: f64, to: Option<f64>, scope: &mut Scope<'_>) {
         self.homing.reference = reference;
         self.homing.phase = Phase::Found;
-        let Some(owner) = self.owner else { return };
-        let (start, limits) = (*self.mover.setpoint(), &owner.limits);
-        let planned = match to {
-            Some(end) => {
-                let profile = self.config.profile;
-                self.planner
-                    .move_to(profile, &start, end, limits, self.mover.in_force())
-            }
-            None => self.planner.ramp_to(&start, 0.0, limits, self.mover.in_force()),
-        };
-        match planned {
-            Ok(plan) => self.adopt(owner, Motion::along(plan), scope),
-            Err(error) => self.trip(refusal(error), 0, Reaction::Ramp, scope),
-        }
+        let (start, profile) = (*self.mover.setpoint(), self.config.profile);
+        self.go_along(scope, |planner, limits, before| match to {
+            Some(end) => planner.move_to(profile, &start, end, limits, before),
+            None => planner.ramp_to(&start, 0.0, limits, before),
+        });
     }
 
     /// Continues the search within the limits that its owner has now.
@@ -378,16 +369,33 @@ impl<P: Planner> Axis<P> {
     fn go_on(&mut self, phase: Phase, up: bool, scope: &mut Scope<'_>) {
         self.homing.phase = phase;
         self.homing.up = up;
-        let Some(owner) = self.owner else { return };
-        let velocity = self.velocity_of(&self.homing).unwrap_or(0.0);
-        let planned = self.planner.ramp_to(
-            self.mover.setpoint(),
-            velocity,
-            &owner.limits,
-            self.mover.in_force(),
+        let (start, velocity) = (
+            *self.mover.setpoint(),
+            self.velocity_of(&self.homing).unwrap_or(0.0),
         );
+        self.go_along(scope, |planner, limits, before| {
+            planner.ramp_to(&start, velocity, limits, before)
+        });
+    }
+
+    /// The motion of a step, which `planned` makes of its limits and those before. They are raised where they would
+    /// take the axis out of its own.
+    fn go_along(
+        &mut self,
+        scope: &mut Scope<'_>,
+        planned: impl Fn(&P, &Limits, &Limits) -> Result<P::Plan, PlanError>,
+    ) {
+        let Some(mut owner) = self.owner else { return };
+        let asked = owner.limits;
+        let planned = self.planned_inside(asked, |limits| {
+            planned(&self.planner, limits, self.mover.in_force())
+        });
         match planned {
-            Ok(plan) => self.adopt(owner, Motion::along(plan), scope),
+            Ok((plan, limits)) => {
+                owner.limits = limits;
+                self.record_raised(&asked, &limits, &mut scope.with(owner.instance));
+                self.adopt(owner, Motion::along(plan), scope);
+            }
             Err(error) => self.trip(refusal(error), 0, Reaction::Ramp, scope),
         }
     }

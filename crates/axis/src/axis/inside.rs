@@ -145,14 +145,28 @@ impl<P: Planner> Axis<P> {
         &self,
         start: &Setpoint,
         target: f64,
-        mut limits: Limits,
+        limits: Limits,
         before: &Limits,
     ) -> Result<(P::Plan, Limits), PlanError> {
-        let profile = self.config.profile;
-        let moved = |limits: &Limits| self.planner.move_to(profile, start, target, limits, before);
-        let first = moved(&limits)?;
+        self.planned_inside(limits, |limits| {
+            let profile = self.config.profile;
+            self.planner.move_to(profile, start, target, limits, before)
+        })
+    }
+
+    /// What `planned` makes of `limits`, or of higher ones if they cannot keep the axis inside its own, and the
+    /// limits it was made of. Cost: at most three plans.
+    ///
+    /// # Errors
+    /// That of `planned` with `limits`.
+    pub(super) fn planned_inside(
+        &self,
+        mut limits: Limits,
+        planned: impl Fn(&Limits) -> Result<P::Plan, PlanError>,
+    ) -> Result<(P::Plan, Limits), PlanError> {
+        let first = planned(&limits)?;
         let axis = self.slowed(&self.parameters.limits);
-        let plan = self.least_beyond(first, &mut limits, &axis, moved);
+        let plan = self.least_beyond(first, &mut limits, &axis, planned);
         Ok((plan, limits))
     }
 
