@@ -55,13 +55,15 @@ impl<P: Planner> Axis<P> {
         let is_last = matches!(self.mover.motion(), Motion::Run { elapsed, scans, .. } if elapsed >= scans);
         let slack = if is_last { LAST_SCAN } else { ROUNDING };
         let scan = (1.0 + slack) * self.planner.cycle();
-        steps_within(self.mover.setpoint(), next, &widest, scan, self.mover.coarsest())
+        // A plan may count its positions from its end, however far that is.
+        let coarsest = self.mover.coarsest().max(self.mover.end_of_plan().abs());
+        steps_within(self.mover.setpoint(), next, &widest, scan, coarsest)
     }
 }
 
 /// Whether position, velocity and acceleration change from `last` to `next` in a `scan` (s) by no more than
-/// `limits` allow, and the rounding. The rounding includes that of a position of magnitude `coarsest` (u) at
-/// which the plan was.
+/// `limits` allow, and the rounding. The rounding includes that of a position of magnitude `coarsest` (u), at
+/// which the plan was or which it leads to.
 #[inline(always)]
 pub(super) fn steps_within(
     last: &Setpoint,
