@@ -57,9 +57,15 @@ impl Factors {
     }
 }
 
-/// `asked` times `factor`, in magnitude at most `limit`.
+/// `asked` times `factor`, in magnitude at most `limit`; 0 only where one of them is.
 fn scaled(asked: f64, factor: f64, limit: f64) -> f64 {
-    let value = asked * factor;
+    let product = asked * factor;
+    // What is too small for a number is slow and not a command to stand still, which no limit is.
+    let value = if product == 0.0 && asked != 0.0 && factor != 0.0 {
+        f64::MIN_POSITIVE.copysign(asked)
+    } else {
+        product
+    };
     if value.abs() <= limit {
         value
     } else if value < 0.0 {
