@@ -3,7 +3,7 @@
 //! A motion that was inside does not leave the limits, for any command: a motion that would leave is
 //! refused or stops before. Exceptions are ramps to rest that cannot be refused, those after an error or
 //! without power, moves of the coordinates, an axis that a drive moves until it has power again, and what is
-//! in a shaper when limits are written.
+//! in a shaper when limits are written, or of a motion that began outside.
 
 use super::{Broken, rule};
 use standstill_axis::{Axis, AxisState, Planner};
@@ -33,7 +33,7 @@ pub struct Fence {
     limits: (f64, f64),
     /// It was inside with the last set-point, and must not leave.
     inside: bool,
-    /// A shaper may hold a motion that was outside before the limits were written.
+    /// A shaper may hold a place outside: of before the limits were written, or of where the motion began.
     comes_out: bool,
 }
 
@@ -59,9 +59,10 @@ impl Fence {
     #[inline]
     pub fn check<P: Planner>(&mut self, axis: &Axis<P>) -> Result<(), Broken> {
         let limits @ (min, max) = limits_of(axis);
+        let is_shaped = axis.config().vibration.iter().any(Option::is_some);
         if core::mem::replace(&mut self.limits, limits) != limits {
             self.forget();
-            self.comes_out = axis.config().vibration.iter().any(Option::is_some);
+            self.comes_out = is_shaped;
         }
         if limits == NONE {
             return Ok(());
@@ -75,6 +76,7 @@ impl Fence {
         let exempt = matches!(axis.state(), AxisState::ErrorStop | AxisState::Homing);
         let commanded = !(axis.is_following() || exempt || axis.outlook().going_off);
         self.comes_out &= axis.state() != AxisState::Standstill;
+        self.comes_out |= is_shaped && !is_inside;
         if axis.is_following() || self.comes_out {
             self.forget();
         }
