@@ -9,8 +9,9 @@
 //! asked for and its own (B3, B4). The search takes scans off one move, or gives some to another, as long as the programme has a
 //! solution. It was made with SciPy's HiGHS, with no part of this project.
 
-use crate::chains::Rig;
-use standstill_axis::{BufferMode, Dynamics, Limits};
+use crate::chains::{CYCLE, Rig};
+use standstill_axis::{AxisState, BufferMode, Dynamics, Limits};
+use standstill_planner::{OnlinePlan, Setpoint, ramp::solved};
 use std::collections::BTreeMap;
 
 struct Move {
@@ -147,4 +148,44 @@ fn a_blended_chain_takes_nearly_the_least_scans() {
         let seen = above[&kind];
         assert!(seen.0 == all && seen.1 <= too_many, "{kind:?}: {seen:?}");
     }
+}
+
+/// Ramps that `plan` solves.
+fn ramps(plan: impl FnOnce()) -> u64 {
+    let before = solved();
+    plan();
+    solved() - before
+}
+
+/// Whatever is looked ahead for at once, when a move is told or in a scan, costs at most eight times the dearest move from rest.
+#[test]
+fn looking_ahead_costs_at_most_eight_single_plans() {
+    let (mut single, mut most) = (0, 0);
+    for case in cases() {
+        let mut rig = Rig::new(case.limits);
+        let mut from = 0.0;
+        for next in &case.moves {
+            let or_none = |limit: f64| if limit > 0.0 { limit } else { f64::INFINITY };
+            let limits = Limits {
+                velocity: next.dynamics.velocity,
+                acceleration: next.dynamics.acceleration,
+                deceleration: next.dynamics.deceleration,
+                jerk: or_none(next.dynamics.jerk),
+                snap: or_none(next.dynamics.snap),
+            };
+            let rest = Setpoint::at_rest(from);
+            single = single.max(ramps(|| {
+                OnlinePlan::new(&rest, next.end, &limits, &limits, CYCLE).expect("a plan");
+            }));
+            from = next.end;
+            most = most.max(ramps(|| {
+                rig.move_with(next.end, next.mode, next.dynamics);
+            }));
+        }
+        while rig.axis.state() != AxisState::Standstill {
+            most = most.max(ramps(|| rig.step()));
+        }
+    }
+    println!("ramps: {single} for the dearest move from rest, {most} for the dearest look ahead");
+    assert!(most <= 8 * single, "{most} ramps, {single} for a single plan");
 }

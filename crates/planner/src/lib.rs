@@ -11,7 +11,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
-#[cfg(any(test, feature = "std"))]
+#[cfg(any(test, feature = "std", feature = "count"))]
 extern crate std;
 
 pub mod cam;

@@ -4,6 +4,8 @@
 //! maths of one transfer is in [`kernel`](crate::kernel). What does not: positions to reach. Equations (R1)
 //! and on, and the definition of a viable state, are in `docs/planner-ramps.md`.
 
+#[cfg(feature = "count")]
+mod count;
 pub(crate) mod excess;
 mod inside;
 pub(crate) mod path;
@@ -11,6 +13,8 @@ mod slope;
 pub(crate) mod solve;
 mod turn;
 
+#[cfg(feature = "count")]
+pub use count::solved;
 pub use excess::{Excess, Peaks};
 
 use crate::kernel::ON_LIMIT;

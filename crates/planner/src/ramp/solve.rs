@@ -250,6 +250,8 @@ impl Ramps {
 
     /// As [`Ramps::ramp`], in place of what `ramp` was.
     pub(crate) fn lay(&self, ramp: &mut Ramp, start: &Setpoint, goal: f64, heading: f64, course: Course) {
+        #[cfg(feature = "count")]
+        super::count::add();
         let state = State {
             v: heading * start.velocity,
             a: heading * start.acceleration,
@@ -292,6 +294,10 @@ impl Ramps {
             && a.abs() <= self.acceleration * (1.0 + ON_LIMIT)
             && coming(v)
             && coming(Slope { v, a }.rest());
+        #[cfg(feature = "count")]
+        if fits {
+            super::count::add();
+        }
         fits.then(|| third(p, v, a, target, &bounds))
     }
 
