@@ -140,7 +140,7 @@ fn a_blended_chain_takes_nearly_the_least_scans() {
     );
     let few = [
         (Kind::Same, (64, 0)),
-        (Kind::Turned, (87, 1)),
+        (Kind::Turned, (87, 0)),
         (Kind::Other, (84, 3)),
         (Kind::TurnedOther, (65, 1)),
     ];

@@ -2,7 +2,7 @@
 //!
 //! What stands here: the candidates. What verifies them is in [`ladder`](super::ladder). A way back in time is a way: seen
 //! from its end, and mirrored, a move begins in the end state with its acceleration turned round, and acceleration and
-//! deceleration change places. So the ramps that begin in any state serve for both ends. Equations (O16) to (O20) are in
+//! deceleration change places. So the ramps that begin in any state serve for both ends. Equations (O16) to (O20) and (O22) to (O24) are in
 //! `docs/planner-online.md`. Everything is in the kernel's units, with positions counted from the start.
 
 use core::cell::Cell;
@@ -336,8 +336,14 @@ impl<'a> Ends<'a> {
     /// part of the end acceleration it ends with.
     ///
     /// The least whole number of scans follows from the fastest such move, the velocity from that number, or, where it can't be lowered, the
-    /// end acceleration (O23).
+    /// end acceleration (O23). At order 4 from rest the top of the way has jerk, too (O24).
     pub(super) fn braking(&self, start: &Setpoint, side: f64, scan: Option<f64>) -> Option<(Wide, f64)> {
+        if let Some(scan) = scan
+            && self.ramps.order() == Order::Four
+            && start.is_at_rest()
+        {
+            return Some(self.stretched(start, scan));
+        }
         let end = self.end();
         let both = |velocity: f64| {
             (
@@ -445,6 +451,20 @@ impl<'a> Ends<'a> {
         spans.push(cruise, 0.0);
         spans.extend(&self.turned(&last));
         (cruise >= 0.0 && lack < 1.0).then_some((spans, 1.0 - lack))
+    }
+
+    /// From rest to the end in whole scans of the length `scan`, at order 4: the whole move of [`Ends::of_steady_start`], stretched in
+    /// time, which lowers every derivative (O24). Also the part of the end acceleration it ends with.
+    fn stretched(&self, start: &Setpoint, scan: f64) -> (Wide, f64) {
+        let spans = self.of_steady_start(start);
+        let scans = spans.duration() / scan;
+        let longer = ceil(scans * (1.0 - ON_LIMIT)) / scans;
+        let square = longer * longer;
+        let mut stretched = Wide::new();
+        for span in spans.iter() {
+            stretched.push(span.duration * longer, span.input / (square * square));
+        }
+        (stretched, 1.0 / square)
     }
 
     /// Acceleration and jerk to zero as soon as can be, then as from a constant velocity.

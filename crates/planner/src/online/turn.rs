@@ -2,7 +2,7 @@
 //! back.
 //!
 //! What stands here: the motion to the target. What does not: what comes behind it, and which speed and acceleration are best.
-//! Equations (O22) and (O23) are in `docs/planner-online.md`.
+//! Equations (O22) to (O24) are in `docs/planner-online.md`.
 
 use super::ends::Ends;
 use super::ladder::Found;
@@ -20,7 +20,7 @@ impl OnlinePlan {
     /// can, for the case that nobody takes over. An acceleration above what `limits` allow there is lowered to that, and one with which the
     /// way to a turn has no whole number of scans to what has.
     ///
-    /// Bounded work: a root of pairs of ramps, for a turn two and one of ramps.
+    /// Bounded work: a root of pairs of ramps, for a turn two and one of ramps; at order 4 from rest to a turn a plan alone.
     ///
     /// # Errors
     /// As [`OnlinePlan::new`].
