@@ -208,7 +208,8 @@ impl<'a> Ends<'a> {
             self.top,
             self.resolution,
         );
-        let spans = search.push_then_stop(&self.end());
+        let mut spans = Candidate::new();
+        search.push_then_stop(&mut spans, &self.end());
         self.counted(&search);
         self.turned(&spans)
     }
@@ -221,12 +222,16 @@ impl<'a> Ends<'a> {
         let ramps = self.ramps.of_velocity(range);
         let resolution = NOISE * (start.velocity.abs() + self.velocity.abs());
         let search = Search::new(&ramps, self.velocity, self.acceleration, range, resolution);
-        let spans = search.push_then_stop(&Setpoint {
-            position: start.velocity,
-            velocity: start.acceleration,
-            acceleration: start.jerk,
-            ..Setpoint::default()
-        });
+        let mut spans = Candidate::new();
+        search.push_then_stop(
+            &mut spans,
+            &Setpoint {
+                position: start.velocity,
+                velocity: start.acceleration,
+                acceleration: start.jerk,
+                ..Setpoint::default()
+            },
+        );
         self.counted(&search);
         let end = follow(self.ramps, start, &spans);
         let added_up = start.position.abs() + self.target.abs() + spans.duration() * start.velocity.abs();

@@ -145,7 +145,11 @@ impl OnlinePlan {
             let is_plan = match rung {
                 Rung::PushThenStop => match climb.search.profile(&from) {
                     Some(spans) => climb.verify(found, &spans),
-                    None => climb.verify(found, &climb.search.push_then_stop(&from)),
+                    None => {
+                        let mut spans = Candidate::new();
+                        climb.search.push_then_stop(&mut spans, &from);
+                        climb.verify(found, &spans)
+                    }
                 },
                 Rung::TwoPhase => climb.verify(found, &climb.search.two_phase(&from)),
                 Rung::Arrest => climb.verify(found, &climb.search.arrest_then_push(&from)),
@@ -361,13 +365,14 @@ impl<'a> Climb<'a> {
         path.pin_both(self.end_velocity, self.end_acceleration);
         found.residual = self.distance - path.end_position().unwrap_or(0.0);
         let fastest = self.limits.limits.velocity;
-        let way = fastest.max(self.start.velocity.abs()) * path.duration();
+        let duration = path.duration();
+        let way = fastest.max(self.start.velocity.abs()) * duration;
         let arrives = found.residual.abs() <= ON_LIMIT * way + NOISE * self.distance.abs()
             && (end.velocity - self.end_velocity).abs() <= ON_LIMIT * fastest
             && (self.end_acceleration == 0.0 || self.accelerates(&end));
-        let moving = scans(path.duration(), self.cycle).map_or(0.0, f64::from);
+        let moving = scans(duration, self.cycle).map_or(0.0, f64::from);
         found.is_rounding = found.residual.abs() <= self.resolved * moving;
-        if !arrives || !(found.is_rounding || self.closes_gently(found.residual, path.duration())) {
+        if !arrives || !(found.is_rounding || self.closes_gently(found.residual, duration)) {
             return false;
         }
         found.excess = excess::excess(path, self.end_velocity, None, self.limits);

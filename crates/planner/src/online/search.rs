@@ -56,6 +56,16 @@ struct Stop {
 }
 
 impl Stop {
+    /// No stop yet. It is large, so it is laid where it is to stay.
+    const fn nothing() -> Self {
+        Self {
+            start: Setpoint::at_rest(0.0),
+            ramp: Ramp::nothing(),
+            beyond: 0.0,
+            noise: 0.0,
+        }
+    }
+
     /// How far it ends beyond the target in the direction `side`, for the argument `at` of a root.
     fn ahead(&self, at: f64, side: f64) -> Point {
         Point {
@@ -135,23 +145,26 @@ impl<'a> Search<'a> {
     }
 
     /// Push towards a velocity bound, then the fastest stop, which begins where it ends on the target (O2).
-    pub(super) fn push_then_stop(&self, start: &Setpoint) -> Candidate {
-        let mut spans = Spans::new();
+    ///
+    /// They are laid in `spans`, which has none yet.
+    pub(super) fn push_then_stop(&self, spans: &mut Candidate, start: &Setpoint) {
         if let Some(profile) = self.profile(start) {
             spans.extend(&profile);
-            return spans;
+            return;
         }
-        let mut stop = self.stop(start);
+        let mut stop = Stop::nothing();
+        self.lay_to(&mut stop, start, self.end_velocity);
         if stop.beyond.abs() <= stop.noise.max(self.resolution) {
             spans.extend(&stop.ramp.spans);
-            return spans;
+            return;
         }
         let side = if stop.beyond < 0.0 { 1.0 } else { -1.0 };
         let top = self.top(side);
-        let push = self.whole_ramp(start, top);
+        let mut push = Ramp::nothing();
+        self.lay(&mut push, start, top);
         let mut way = Way::new(self.ramps.order(), start, self.ramps.lower());
-        if push.lead == 0 && self.cruises(&mut spans, start, &push.spans, top) {
-            return spans;
+        if push.lead == 0 && self.cruises(spans, start, &push.spans, top) {
+            return;
         }
         let parts = if self.end_velocity == 0.0 { 1 } else { PARTS };
         let leads_on = parts > 1 && self.leads_on(start, &push, side);
@@ -189,7 +202,7 @@ impl<'a> Search<'a> {
                         ahead(switch.at);
                         spans.push(switch.at, span.input);
                         spans.extend(&stop.ramp.spans);
-                        return spans;
+                        return;
                     }
                 }
                 spans.push(span.duration, span.input);
@@ -197,9 +210,8 @@ impl<'a> Search<'a> {
             }
         }
         self.stop_from(&mut stop, &steady(&way.state, top));
-        cruise(&mut spans, -stop.ahead(0.0, side).value, top);
+        cruise(spans, -stop.ahead(0.0, side).value, top);
         spans.extend(&stop.ramp.spans);
-        spans
     }
 
     /// Whether the whole `push` to the velocity `top` and the stop behind it leave a move that ends at rest short of its
@@ -211,7 +223,8 @@ impl<'a> Search<'a> {
         if self.end_velocity != 0.0 || side * (self.target - end.position) < least {
             return false;
         }
-        let stop = self.stop(&steady(&end, top));
+        let mut stop = Stop::nothing();
+        self.lay_to(&mut stop, &steady(&end, top), self.end_velocity);
         let left = -side * stop.beyond;
         let duration = push.duration() + stop.ramp.spans.duration();
         let cruises = left > ON_LIMIT * (top.abs() * duration);
@@ -286,7 +299,9 @@ impl<'a> Search<'a> {
         let state = steady(&follow(self.ramps, start, &ramp), velocity);
         let mut spans = Spans::new();
         spans.extend(&ramp);
-        spans.extend(&self.push_then_stop(&state));
+        let mut push = Spans::new();
+        self.push_then_stop(&mut push, &state);
+        spans.extend(&push);
         spans
     }
 
@@ -406,12 +421,7 @@ impl<'a> Search<'a> {
     }
 
     fn ramp_to(&self, start: &Setpoint, velocity: f64) -> Stop {
-        let mut stop = Stop {
-            start: *start,
-            ramp: Ramp::nothing(),
-            beyond: 0.0,
-            noise: 0.0,
-        };
+        let mut stop = Stop::nothing();
         self.lay_to(&mut stop, start, velocity);
         stop
     }

@@ -319,15 +319,18 @@ impl<const N: usize> Path<N> {
 
     /// Every piece, and the state at its start.
     pub(crate) fn stretches(&self) -> impl Iterator<Item = (Stretch, Setpoint)> {
-        let pieces = self.pieces.iter().take(self.len).enumerate();
-        pieces.map(move |(index, piece)| {
-            let stretch = Stretch {
-                duration: piece.duration,
-                is_last: index + 1 == self.len,
-                state: piece.state,
-            };
+        self.pieces_alone().map(|stretch| {
             let first = stretch.at(0.0);
             (stretch, first)
+        })
+    }
+
+    fn pieces_alone(&self) -> impl Iterator<Item = Stretch> {
+        let pieces = self.pieces.iter().take(self.len).enumerate();
+        pieces.map(move |(index, piece)| Stretch {
+            duration: piece.duration,
+            is_last: index + 1 == self.len,
+            state: piece.state,
         })
     }
 
@@ -389,7 +392,15 @@ impl<const N: usize> Path<N> {
         let Some(end) = self.last().map(|last| last.state) else {
             return false;
         };
-        let mut stretches = self.stretches();
+        // What no time adds to the state of a piece makes no difference here.
+        let mut stretches = self.pieces_alone().map(|stretch| {
+            let first = if stretch.is_last {
+                stretch.at(0.0)
+            } else {
+                stretch.state
+            };
+            (stretch, first)
+        });
         let mut next = stretches.next();
         while let Some((stretch, first)) = next {
             next = stretches.next();
