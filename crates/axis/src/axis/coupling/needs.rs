@@ -80,40 +80,62 @@ impl Step<'_> {
     /// value that some motion needs, and the limit. Each derivative is checked by itself, independent of
     /// the lower ones between the two.
     ///
-    /// The derivative is a function of time between -L and L, and the set-points give its first moments.
-    /// The possible moments of such a function are known: see [`are_possible`].
+    /// The derivative is a function of time between M - L and M + L, and the set-points give its first
+    /// moments. The possible moments of such a function are known: see [`are_possible`]. M is 0 but for
+    /// accelerations, if one way another limit applies than the other.
     pub(super) fn beyond(&self, most: &Limits) -> Option<Beyond> {
-        let steepest = most.acceleration.max(most.deceleration);
-        let limits = [steepest, most.jerk, most.snap];
+        let (middle, rate) = self.rates(most);
+        let limits = [(middle, rate), (0.0, most.jerk), (0.0, most.snap)];
         let mut all = DERIVATIVES.into_iter().enumerate().skip(1).zip(limits);
-        let ((number, name), limit) =
-            all.find(|((number, _), limit)| limit.is_finite() && !self.is_possible(number + 1, *limit))?;
-        Some((name, self.least(number + 1, limit), limit))
+        let ((number, name), range) = all.find(|((number, _), range)| {
+            let (_, limit) = range;
+            limit.is_finite() && !self.is_possible(number + 1, *range)
+        })?;
+        // The limit of the way in which the velocity changes.
+        let (middle, limit) = range;
+        let more = middle.copysign(middle * (self.next.velocity - self.last.velocity));
+        Some((name, self.least(number + 1, range) + more, limit + more))
     }
 
-    /// The least limit of the derivative of this order that a motion keeps, to a part in 2^20; more than
-    /// `limit`. Cost: at most 84 checks.
-    fn least(&self, order: usize, limit: f64) -> f64 {
+    /// The middle of the possible accelerations and their distance from it (u/s^2). While the velocity
+    /// keeps its sign, one way the acceleration limit applies and the other way the deceleration limit.
+    /// Where the scan is long enough to brake to rest and set off again, the larger one applies both ways.
+    fn rates(&self, most: &Limits) -> (f64, f64) {
+        let (from, to) = (self.last.velocity, self.next.velocity);
+        let (up, down) = (most.acceleration, most.deceleration);
+        let keeps_sign = from * to >= 0.0 && from.abs() / down + to.abs() / up > self.cycle;
+        if keeps_sign {
+            (0.5 * (up - down) * (from + to).signum(), 0.5 * up + 0.5 * down)
+        } else {
+            (0.0, up.max(down))
+        }
+    }
+
+    /// The least distance from the middle of the range that a motion keeps in the derivative of this order,
+    /// to a part in 2^20; more than that of `range`. Cost: at most 84 checks.
+    fn least(&self, order: usize, range: (f64, f64)) -> f64 {
+        let (middle, limit) = range;
         let (mut low, mut high) = (limit, 2.0 * limit);
         for _ in 0..64 {
-            if self.is_possible(order, high) {
+            if self.is_possible(order, (middle, high)) {
                 break;
             }
             (low, high) = (high, 2.0 * high);
         }
         for _ in 0..20 {
-            let middle = 0.5 * (low + high);
-            if self.is_possible(order, middle) {
-                high = middle;
+            let between = 0.5 * (low + high);
+            if self.is_possible(order, (middle, between)) {
+                high = between;
             } else {
-                low = middle;
+                low = between;
             }
         }
         high
     }
 
-    /// Whether some motion leads from one set-point to the next whose derivative of this order stays within `limit`.
-    fn is_possible(&self, order: usize, limit: f64) -> bool {
+    /// Whether some motion leads from one set-point to the next whose derivative of this order stays
+    /// within `limit` of `middle`, which is 0 above order 2.
+    fn is_possible(&self, order: usize, (middle, limit): (f64, f64)) -> bool {
         let Self {
             last, next, cycle, ..
         } = *self;
@@ -123,7 +145,7 @@ impl Step<'_> {
         // its rounding.
         let snapless = order < 4;
         let jerk = if snapless { 0.0 } else { last.jerk };
-        let acceleration = if order < 3 { 0.0 } else { last.acceleration };
+        let acceleration = if order < 3 { middle } else { last.acceleration };
         let place = resolved(last.position, next.position) + RESOLVED * self.coarsest;
         let off = [
             (next.jerk - jerk, resolved(last.jerk, next.jerk)),
@@ -374,6 +396,43 @@ mod tests {
         let (name, least, limit) = step(&start, &end).beyond(&limits(1e4)).unwrap();
         assert_eq!((name, limit), ("snap", 1e4));
         assert!((least / 1.02e4 - 1.0).abs() < 1e-4, "{least}");
+    }
+
+    /// A speed falls faster than the deceleration limit, but slower than the acceleration limit.
+    #[test]
+    fn each_way_has_its_own_limit() {
+        let limits = Limits {
+            velocity: 10.0,
+            acceleration: 400.0,
+            deceleration: 20.0,
+            jerk: f64::INFINITY,
+            snap: f64::INFINITY,
+        };
+        let state = |position, velocity| Setpoint {
+            position,
+            velocity,
+            ..Setpoint::default()
+        };
+        for sign in [1.0, -1.0] {
+            let reached = |rate: f64| {
+                let start = state(sign * 3.0, sign * 5.0);
+                let change = rate * CYCLE;
+                let end = state(
+                    sign * (3.0 + 5.0 * CYCLE + 0.5 * change * CYCLE),
+                    sign * (5.0 + change),
+                );
+                step(&start, &end).beyond(&limits)
+            };
+            assert_eq!((reached(-20.0), reached(400.0)), (None, None));
+            for (rate, most) in [(-21.0, 20.0), (401.0, 400.0)] {
+                let (name, least, limit) = reached(rate).unwrap();
+                assert_eq!((name, limit), ("acceleration", most));
+                assert!((least / rate.abs() - 1.0).abs() < 1e-3, "{least}");
+            }
+            // It brakes to rest within the scan, and sets off the other way.
+            let turns = step(&state(0.0, sign * 0.1), &state(sign * 0.00005, sign * -0.1)).beyond(&limits);
+            assert_eq!(turns, None);
+        }
     }
 
     #[test]
