@@ -169,7 +169,8 @@ impl<P: Planner> Axis<P> {
             was.at.position += late;
             if late.abs() > FURTHEST {
                 // At numbers of that size a step is lost in rounding.
-                (was.place, was.at.position) = (now.place, now.at.position);
+                let phase = was.place.phase;
+                (was.place, was.at.position) = (Place { phase, ..now.place }, now.at.position);
             }
         }
         let masters_moved = now.iter().any(|seen| seen.moved != 0.0);
