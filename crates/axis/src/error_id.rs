@@ -63,8 +63,8 @@ error_ids! {
 
     AxisUnknown = 100, "The Axis, Master, Slave, Input or Output pin names no axis of this runtime.",
         "Wire it to a configured axis.";
-    PositionInvalid = 101, "Position or Distance is NaN or infinite, or the target is not representable.",
-        "Give a finite number.";
+    PositionInvalid = 101, "Position or Distance is NaN or infinite, the target is not representable, or MC_SetPosition or MC_Home would call a place by a number so large that two set-points have the same.",
+        "Give a finite number; for a new name of a place at most 2^52 times the way in a scan at the velocity limit.";
     VelocityInvalid = 102, "Velocity is NaN or infinite, or zero or negative where a positive value is needed.",
         "Positioning moves and MC_Jog need a Velocity above 0; give the direction by the target or the button.";
     AccelerationInvalid = 103, "Acceleration is NaN, infinite or negative.",

@@ -270,6 +270,9 @@ impl<P: Planner> Axis<P> {
                 let position = self.finite("Position", position, scope)?;
                 self.in_first_turn(position)
                     .map_err(|(length, error)| self.refuse("Position", position, length, error, scope))?;
+                if !self.is_resolved(position) {
+                    return Err(self.refuse("Position", position, f64::NAN, ErrorId::PositionInvalid, scope));
+                }
                 self.has_signals_to_home()
                     .map_err(|error| self.refuse("", f64::NAN, f64::NAN, error, scope))?;
                 let limits = if self.config.homing.searches() {

@@ -25,8 +25,9 @@ impl<P: Planner> Axis<P> {
     ///
     /// # Errors
     /// The [`ErrorId`] the block shows. Causes: a position that is not finite or outside the first turn
-    /// of a modulo axis; in motion, a position so large that two set-points have the same number; an
-    /// undefined mode; a full buffer; a move that could not be planned anew. Nothing changes then.
+    /// of a modulo axis; a position so large that two set-points would have the same number, or in motion
+    /// have it now; an undefined mode; a full buffer; a move that could not be planned anew. Nothing
+    /// changes then.
     pub fn set_position(
         &mut self,
         position: f64,
@@ -120,8 +121,8 @@ impl<P: Planner> Axis<P> {
             && (self.frame.shift() + by).is_finite();
         // If set-points were equal at the old numbers, their difference cannot be recovered at the new
         // ones.
-        let is_resolved = self.mover.setpoint().is_at_rest()
-            || (self.is_resolved(at) && self.is_resolved(self.mover.setpoint().position));
+        let is_resolved = self.is_resolved(at)
+            && (self.mover.setpoint().is_at_rest() || self.is_resolved(self.mover.setpoint().position));
         if !(is_finite && is_resolved) {
             return Err(ErrorId::PositionInvalid);
         }
@@ -162,8 +163,8 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Whether a 64-bit number distinguishes `position` (u) from the position one scan later at the
-    /// velocity limit.
-    fn is_resolved(&self, position: f64) -> bool {
+    /// velocity limit. An axis at other numbers could not move, and its slaves would lose its motion.
+    pub(super) fn is_resolved(&self, position: f64) -> bool {
         position.abs() * f64::EPSILON <= self.config.limits.velocity * self.planner.cycle()
     }
 
