@@ -367,7 +367,8 @@ What is published, by lines of `standstill plan`: the move before it is shaped, 
 - **One rate.** `limits.deceleration` must be `limits.acceleration`: in a mean of two directions neither of two rates would be kept. Commands may have
   two. A `stop.deceleration` above it may show while the speed still grows, if the stop comes within a delay after a reversal.
 - **Software limits** hold for the motion before it is shaped, and so for what is published. If one is written in motion, what is in the
-  shaper still comes out, even beyond it.
+  shaper still comes out, even beyond it. The same where a motion begins outside: what is published may go out once more, never further than
+  it was, until the shaper holds no place outside.
 - **By number** ([parameters.md](parameters.md)) modes are read, and written while the axis rests: a frequency down to half of that of the
   set-up, as its memory is made for that.
 - A period has from 4 to 4096 cycles. A shaped axis costs each scan one set-point for each part of its shapers: 2 or 4, of `period` as
