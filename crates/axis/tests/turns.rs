@@ -8,7 +8,7 @@ use crate::chains::{BLENDING, CYCLE, LONGEST, Rig, drawn_dynamics, drawn_limits}
 use standstill_axis::{
     AxisConfig, AxisState, BufferMode, Command, Dynamics, Fate, Limits, Scope, Superimpose, steps,
 };
-use standstill_testkit::Random;
+use standstill_testkit::{Random, cases};
 use std::slice;
 
 struct Move {
@@ -94,7 +94,7 @@ fn told_to(config: AxisConfig, moves: &[Move], is_blended: bool, mut disturb: im
 fn chains_that_turn_are_no_later_than_buffered() {
     let mut ratios = Vec::new();
     let mut later = Vec::new();
-    for seed in 0..4_000 {
+    for seed in 0..cases(4_000) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let longest = [1, 10, 100, 400][random.below(4) as usize];
@@ -119,7 +119,7 @@ fn chains_that_turn_are_no_later_than_buffered() {
 #[test]
 fn a_turn_is_on_its_end_without_velocity() {
     let mut turned = 0;
-    for seed in 0..1_000 {
+    for seed in 0..cases(1_000) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let moves = moves(&mut random, &limits, 1);
@@ -128,7 +128,7 @@ fn a_turn_is_on_its_end_without_velocity() {
             let point = rig.axis.setpoint();
             if point.velocity == 0.0 {
                 visited.push(point.position);
-                turned += u32::from(point.acceleration != 0.0);
+                turned += u64::from(point.acceleration != 0.0);
             }
         });
         let ends = [0.0].into_iter().chain(moves.iter().map(|next| next.end));
@@ -142,12 +142,12 @@ fn a_turn_is_on_its_end_without_velocity() {
             );
         }
     }
-    assert!(turned > 500, "only {turned}");
+    assert!(turned > cases(500), "only {turned}");
 }
 
 #[test]
 fn overrides_leave_the_turns_where_they_are() {
-    for seed in 0..2_000 {
+    for seed in 0..cases(2_000) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let mut moves = moves(&mut random, &limits, 1);
@@ -170,7 +170,7 @@ fn overrides_leave_the_turns_where_they_are() {
 /// Where the software limits are a little or far behind the ends, at any time something stops the axis.
 #[test]
 fn a_stop_before_a_turn_stays_inside_the_software_limits() {
-    for seed in 0..2_000 {
+    for seed in 0..cases(2_000) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let moves = moves(&mut random, &limits, 1);
@@ -203,7 +203,7 @@ fn a_stop_before_a_turn_stays_inside_the_software_limits() {
 
 #[test]
 fn a_turn_whose_command_is_taken_away_goes_no_further() {
-    for seed in 0..2_000 {
+    for seed in 0..cases(2_000) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let mut moves = moves(&mut random, &limits, 1);
@@ -240,7 +240,7 @@ fn a_turn_whose_command_is_taken_away_goes_no_further() {
 /// The differences of the sum, whatever waits for what.
 #[test]
 fn what_is_superimposed_at_a_turn_keeps_the_limits() {
-    for seed in 0..2_000 {
+    for seed in 0..cases(2_000) {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let moves = moves(&mut random, &limits, 1);

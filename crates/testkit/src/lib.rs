@@ -17,6 +17,14 @@ pub fn cases(whole: u64) -> u64 {
     }
 }
 
+/// How far apart the entries of a long list are that a search through it tries: every one with `STANDSTILL_SEARCH` in the
+/// environment; else every eleventh, which is a prime, so that no column of a table is left out.
+#[cfg(not(target_os = "none"))]
+#[must_use]
+pub fn stride() -> usize {
+    if cases(10) == 10 { 1 } else { 11 }
+}
+
 /// splitmix64 (Steele, Lea, Flood 2014): a counter and a mixing function. The seed is the first value of
 /// the counter.
 #[derive(Clone, Copy, Debug)]

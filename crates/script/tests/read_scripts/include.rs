@@ -168,13 +168,13 @@ fn the_number_of_files_is_bounded() {
 /// Blocks of which each is overridden, tasks of which each has a block: work in proportion, not with the square.
 #[test]
 fn many_entries_take_work_in_proportion() {
-    const MANY: usize = 40_000;
-    let each = |text: &dyn Fn(usize) -> String| (0..MANY).map(text).collect::<Vec<_>>().join(",");
+    let many = standstill_testkit::cases(40_000) as usize;
+    let each = |text: &dyn Fn(usize) -> String| (0..many).map(text).collect::<Vec<_>>().join(",");
     let blocks = each(&|n| format!(r#"{{"name":"b{n}","type":"R_TRIG"}}"#));
     let machine = format!(r#"{{"standstill":1,"blocks":[{blocks}]}}"#);
     let names = each(&|n| format!(r#""B{n}""#));
     let tasks = each(&|n| format!(r#""t{n}":{{"interval":1}}"#));
-    let in_tasks = each(&|n| format!(r#"{{"name":"b{n}","type":"R_TRIG","task":"t{}"}}"#, MANY - 1 - n));
+    let in_tasks = each(&|n| format!(r#"{{"name":"b{n}","type":"R_TRIG","task":"t{}"}}"#, many - 1 - n));
     let text = format!(
         r#"{{"standstill":1,"cycle":"T#1ms","scans":20,"axes":{{}},"include":"m.machine.json","override":[{names}],
             "tasks":{{{tasks}}},"blocks":[{in_tasks}]}}"#
@@ -184,14 +184,14 @@ fn many_entries_take_work_in_proportion() {
     let outcome = standstill_script::run(&script).expect("it runs");
     assert_eq!(outcome.trace.scans(), 20);
     let took = begin.elapsed();
-    // It takes half a second; with the square of the entries it was minutes.
+    // All of them take half a second; with the square of the entries it was minutes.
     assert!(took < std::time::Duration::from_secs(30), "{took:?}");
     // Of so many mistakes only the first get the nearest name.
     let begin = std::time::Instant::now();
     let error = read_with(&text.replace(":\"t", ":\"u"), "a.scan.json", &[], &mut |_| {
         Ok(machine.clone())
     });
-    assert_eq!(error.expect_err("no such task").diagnostics().len(), MANY);
+    assert_eq!(error.expect_err("no such task").diagnostics().len(), many);
     let took = begin.elapsed();
     assert!(took < std::time::Duration::from_secs(30), "{took:?}");
 }
