@@ -8,6 +8,7 @@ use standstill_trace::Cell;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::LazyLock;
 use std::{env, fs};
 
 const EXAMPLES: [&str; 7] = [
@@ -69,25 +70,47 @@ fn library(ending: &str) -> PathBuf {
     library
 }
 
-/// Builds the library anew, `staticlib` or `cdylib`, not optimised and with no information for a debugger; the path.
-fn build(prefix: &str, kind: &str, folder: &Path) -> PathBuf {
+/// A prefix that is not ours.
+const OTHER: &str = "acme";
+
+/// The libraries with that prefix, not optimised and with no information for a debugger, and its headers: made once. As in what
+/// is given away, nothing checks anything that only a debug build does; the other tests have those checks.
+static ACME: LazyLock<PathBuf> = LazyLock::new(|| {
+    let folder = scratch("c-library-acme");
+    for file in export(Target::C, &Prefix::new(OTHER).unwrap(), &Dialect::default()) {
+        fs::write(folder.join(file.name), file.text).unwrap();
+    }
     let mut cargo = Command::new(env!("CARGO"));
     cargo
-        .args(["rustc", "--offline", "--quiet", "--lib", "--crate-type", kind])
+        .args([
+            "rustc",
+            "--offline",
+            "--quiet",
+            "--lib",
+            "--crate-type",
+            "staticlib,cdylib",
+        ])
         .arg("--manifest-path")
         .arg(root().join("Cargo.toml"))
         .arg("--target-dir")
-        .arg(folder)
+        .arg(&folder)
         .env("CARGO_PROFILE_DEV_DEBUG", "false")
-        .env("STANDSTILL_PREFIX", prefix);
+        .env("CARGO_PROFILE_DEV_DEBUG_ASSERTIONS", "false")
+        .env("CARGO_PROFILE_DEV_OVERFLOW_CHECKS", "false")
+        .env("CARGO_INCREMENTAL", "0")
+        .env("STANDSTILL_PREFIX", OTHER);
     let output = cargo.output().unwrap();
     assert!(
         output.status.success(),
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
-    let ending = if kind == "cdylib" { "so" } else { "a" };
-    folder.join(format!("debug/libstandstill_capi.{ending}"))
+    folder
+});
+
+/// One of them, by its ending.
+fn acme(ending: &str) -> PathBuf {
+    ACME.join(format!("debug/libstandstill_capi.{ending}"))
 }
 
 /// Compiles a program with one of the libraries; everything a compiler may say is an error.
@@ -156,6 +179,7 @@ fn the_diagnostic_ring_tells_c_what_happened() {
     );
 }
 
+/// The library under another prefix, so that it has every example with it, too.
 #[test]
 fn valgrind_has_nothing_to_report() {
     if !has("cc") || !has("valgrind") {
@@ -163,11 +187,16 @@ fn valgrind_has_nothing_to_report() {
     }
     let folder = scratch("c-valgrind");
     // Where code is optimised, valgrind sees branches on what is not there that change nothing.
-    let library = build("standstill", "staticlib", &scratch("c-library"));
+    let library = acme("a");
     for example in EXAMPLES {
         let program = folder.join(example);
-        let source = root().join("examples").join(format!("{example}.c"));
-        compile(&C, &source, &root().join("include"), &library, &program);
+        let source = folder.join(format!("{example}.c"));
+        let ours = fs::read_to_string(root().join("examples").join(format!("{example}.c"))).unwrap();
+        let theirs = ours
+            .replace("standstill", OTHER)
+            .replace("STANDSTILL", &OTHER.to_uppercase());
+        fs::write(&source, theirs).unwrap();
+        compile(&C, &source, &ACME, &library, &program);
         let options = [
             "--quiet",
             "--error-exitcode=9",
@@ -384,11 +413,7 @@ fn two_libraries_of_different_prefixes_live_in_one_program() {
         return;
     }
     let folder = scratch("c-prefix");
-    let prefix = Prefix::new("acme").unwrap();
-    for file in export(Target::C, &prefix, &Dialect::default()) {
-        fs::write(folder.join(file.name), file.text).unwrap();
-    }
-    let shared = build("acme", "cdylib", &scratch("c-library-acme"));
+    let shared = acme("so");
     let source = folder.join("both.c");
     fs::write(
         &source,
@@ -407,6 +432,8 @@ fn two_libraries_of_different_prefixes_live_in_one_program() {
         OsStr::new("-Werror"),
         OsStr::new("-I"),
         include.as_os_str(),
+        OsStr::new("-I"),
+        ACME.as_os_str(),
         source.as_os_str(),
         OsStr::new("-o"),
         program.as_os_str(),
