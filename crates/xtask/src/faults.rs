@@ -92,7 +92,7 @@ impl Faults {
             });
         }
         // A refusal at the edge says more than the end of a command that waited.
-        self.first(|event| event.shows(id.number()) && event.text.starts_with("+Execute"))
+        self.first(|event| event.text.starts_with("+Execute") && event.shows(id.number()))
             .or_else(|| self.first(|event| event.shows(id.number())))
     }
 

@@ -17,11 +17,14 @@ pub struct Event {
 impl Event {
     /// Whether it shows this error, at a pin or as a record.
     pub fn shows(&self, number: u16) -> bool {
-        let pins = [format!("ErrorID={number}"), format!("AxisErrorID={number}")];
-        self.text
-            .split(' ')
-            .any(|word| pins.iter().any(|pin| pin == word))
-            || self.text.starts_with(&format!("fault {number} "))
+        let is_it = |text: &str| text.parse() == Ok(number);
+        let mut words = self.text.split(' ');
+        let mut record = words.clone();
+        (record.next() == Some("fault") && record.next().is_some_and(is_it))
+            || words.any(|word| {
+                let pin = word.strip_prefix("Axis").unwrap_or(word);
+                pin.strip_prefix("ErrorID=").is_some_and(is_it)
+            })
     }
 }
 
