@@ -462,15 +462,15 @@ fn over_a_lowered_velocity_limit_it_turns_within_both_accelerations() {
     let mut random = Random(67);
     for order in ORDERS {
         for case in 0..standstill_testkit::cases(20_000) {
-            let up = 10f64.powf(random.between(1.0, 5.0));
-            let jerk = up * 10f64.powf(random.between(1.0, 7.0));
+            let up = random.log(10.0, 1e5);
+            let jerk = up * random.log(10.0, 1e7);
             let limits = Limits {
                 velocity: random.between(0.05, 1.0),
                 acceleration: up,
-                deceleration: up * 10f64.powf(random.between(-1.0, 7.0)),
+                deceleration: up * random.log(0.1, 1e7),
                 jerk: if order > Order::Two { jerk } else { f64::INFINITY },
                 snap: if order > Order::Three {
-                    jerk * 10f64.powf(random.between(1.0, 6.0))
+                    jerk * random.log(10.0, 1e6)
                 } else {
                     f64::INFINITY
                 },
