@@ -58,16 +58,11 @@ impl<P: Planner, D: Drive> Machine<P, D> {
             .ok()
             .filter(|id| *id != AxisId::NONE)
             .ok_or(MachineError::TooManyAxes)?;
-        // At once where it stays: it is large.
-        match Axis::new(id, config, planner) {
-            Ok(axis) => self.axes.push(axis),
-            Err(error) => return Err(MachineError::Axis(error)),
-        }
-        if let Some(axis) = self.axes.last_mut() {
-            axis.set_history(self.history.len());
-            let places = self.history.len() + axis.history_needed();
-            self.history.resize(places, Setpoint::default());
-        }
+        let mut axis = Axis::new(id, config, planner).map_err(MachineError::Axis)?;
+        axis.set_history(self.history.len());
+        let places = self.history.len() + axis.history_needed();
+        self.history.resize(places, Setpoint::default());
+        self.axes.push(axis);
         self.drives.push(drive);
         // Room for a whole scan, so that reading feedback never allocates.
         self.feedback.reserve(self.drives.len());

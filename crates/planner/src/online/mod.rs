@@ -181,6 +181,15 @@ impl OnlinePlan {
         } else {
             acting(&given.or_larger(before))
         };
+        let mut plan = Self {
+            start: *start,
+            target,
+            end_velocity,
+            end_acceleration: 0.0,
+            cycle,
+            scans: 0,
+            found: Found::nothing(limits.limits.order()),
+        };
         let too_long = PlanError::TooLong {
             field: Field::Target,
             value: target,
@@ -192,36 +201,13 @@ impl OnlinePlan {
             minus: top.minus.min(limits.negative),
             plus: top.plus.min(limits.positive),
         };
-        let nothing = Self {
-            start: *start,
-            target,
-            end_velocity,
-            end_acceleration: 0.0,
-            cycle,
-            scans: 0,
-            found: Found::nothing(limits.limits.order()),
-        };
-        nothing.filled(|plan| {
-            plan.climb(first, top, limits, &wider)?;
-            plan.found.excess = plan.excess_beyond(given);
-            let moving = ramp::scans(plan.found.path.duration(), cycle).ok_or(too_long)?;
-            // Both counts are below 2^31, so the sum fits.
-            let grid = plan.found.tail.as_ref().and_then(Tail::grid);
-            plan.scans = moving + grid.map_or(0, |(grid, _)| grid.scans());
-            Ok(())
-        })
-    }
-
-    /// The plan once `fill` has found it. It is large, so it is found where the caller wants it.
-    #[inline(always)]
-    fn filled(self, fill: impl FnOnce(&mut Self) -> Result<(), PlanError>) -> Result<Self, PlanError> {
-        let mut made = Ok(self);
-        if let Ok(plan) = &mut made
-            && let Err(error) = fill(plan)
-        {
-            made = Err(error);
-        }
-        made
+        plan.climb(first, top, limits, &wider)?;
+        plan.found.excess = plan.excess_beyond(given);
+        let moving = ramp::scans(plan.found.path.duration(), cycle).ok_or(too_long)?;
+        // Both counts are below 2^31, so the sum fits.
+        let grid = plan.found.tail.as_ref().and_then(Tail::grid);
+        plan.scans = moving + grid.map_or(0, |(grid, _)| grid.scans());
+        Ok(plan)
     }
 
     /// Plans from `start` to a `goal` that may have an acceleration, with a velocity bound for each direction: the first
