@@ -160,7 +160,7 @@ fn ramps(plan: impl FnOnce()) -> u64 {
 /// Whatever is looked ahead for at once, when a move is told or in a scan, costs at most eight times the dearest move from rest.
 #[test]
 fn looking_ahead_costs_at_most_eight_single_plans() {
-    let (mut single, mut most) = (0, 0);
+    let (mut single, mut looks) = (0, Vec::new());
     for case in cases() {
         let mut rig = Rig::new(case.limits);
         let mut from = 0.0;
@@ -178,14 +178,20 @@ fn looking_ahead_costs_at_most_eight_single_plans() {
                 OnlinePlan::new(&rest, next.end, &limits, &limits, CYCLE).expect("a plan");
             }));
             from = next.end;
-            most = most.max(ramps(|| {
+            looks.push(ramps(|| {
                 rig.move_with(next.end, next.mode, next.dynamics);
             }));
         }
         while rig.axis.state() != AxisState::Standstill {
-            most = most.max(ramps(|| rig.step()));
+            looks.push(ramps(|| rig.step()));
         }
     }
-    println!("ramps: {single} for the dearest move from rest, {most} for the dearest look ahead");
+    looks.retain(|solved| *solved > 0);
+    looks.sort_unstable();
+    let mean = looks.iter().sum::<u64>() as f64 / looks.len() as f64;
+    let (nearly_all, most) = (looks[looks.len() * 95 / 100], looks[looks.len() - 1]);
+    println!(
+        "ramps: {single} for the dearest move from rest; a look ahead {mean:.1} in the mean, {nearly_all} in 95 %, {most} at most"
+    );
     assert!(most <= 8 * single, "{most} ramps, {single} for a single plan");
 }

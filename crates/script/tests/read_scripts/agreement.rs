@@ -221,9 +221,10 @@ fn the_schema_and_the_reader_accept_the_same() {
         differing.len(),
         differing.join("\n")
     );
-    let is_whole = stride() == 1;
-    for piece in ONLY_THE_READER.iter().filter(|_| is_whole) {
-        assert!(known.contains_key(piece), "not needed: {piece}");
+    if stride() == 1 {
+        for piece in ONLY_THE_READER {
+            assert!(known.contains_key(piece), "not needed: {piece}");
+        }
     }
     assert!(tried > 10_000 / stride(), "{tried}");
 }
