@@ -128,12 +128,21 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The same for a ramp to rest that no command asked for, on an axis with limits `axis`.
-    pub(super) fn stopped_inside(&self, plan: P::Plan, limits: &mut Limits, axis: &Limits) -> P::Plan {
-        self.least_beyond(plan, limits, axis, |higher| {
-            self.planner
-                .ramp_to(self.mover.setpoint(), 0.0, higher, self.mover.in_force())
-        })
+    /// The ramp from `start`, a state of a motion within `before`, to rest that no command asked for: within `limits`, or within
+    /// higher ones if they cannot keep an axis with limits `axis` inside them. `limits` then are those. Cost: at most three ramps.
+    ///
+    /// # Errors
+    /// That of the ramp within `limits`.
+    pub(super) fn stopped_inside(
+        &self,
+        start: &Setpoint,
+        limits: &mut Limits,
+        before: &Limits,
+        axis: &Limits,
+    ) -> Result<P::Plan, PlanError> {
+        let planned = |limits: &Limits| self.planner.ramp_to(start, 0.0, limits, before);
+        let first = planned(limits)?;
+        Ok(self.least_beyond(first, limits, (before, axis), planned))
     }
 
     /// A move of the axis to `target`, and its limits: these, or higher ones if they cannot keep the axis
@@ -166,16 +175,16 @@ impl<P: Planner> Axis<P> {
     ) -> Result<(P::Plan, Limits), PlanError> {
         let first = planned(&limits)?;
         let axis = self.slowed(&self.parameters.limits);
-        let plan = self.least_beyond(first, &mut limits, &axis, planned);
+        let plan = self.least_beyond(first, &mut limits, (self.mover.in_force(), &axis), planned);
         Ok((plan, limits))
     }
 
-    /// `plan`, or a plan made `again` with higher limits if it keeps those of `axis` better.
+    /// `plan`, or a plan made `again` with higher limits, those `before` or those of `axis`, if it keeps those of `axis` better.
     fn least_beyond(
         &self,
         plan: P::Plan,
         limits: &mut Limits,
-        axis: &Limits,
+        (before, axis): (&Limits, &Limits),
         again: impl Fn(&Limits) -> Result<P::Plan, PlanError>,
     ) -> P::Plan {
         let beyond = |plan: &P::Plan| plan.excess().and_then(|_| plan.excess_over(axis));
@@ -183,7 +192,7 @@ impl<P: Planner> Axis<P> {
             return plan;
         };
         let mut kept = plan;
-        for higher in self.higher(limits, self.mover.in_force(), axis) {
+        for higher in self.higher(limits, before, axis) {
             let Ok(plan) = again(&higher) else {
                 continue;
             };

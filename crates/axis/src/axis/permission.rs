@@ -102,7 +102,8 @@ impl<P: Planner> Axis<P> {
         let (start, goal) = (plan.at(elapsed), plan.at(u64::from(plan.scans())).velocity);
         let (up, down) = self.planner.ways(rest);
         // A stop is no motion of its own, wherever it leads.
-        let (braking_up, braking_down) = match self.planner.ramp_to(&start, 0.0, limits, before) {
+        let axis = &self.slowed(&self.hardest_limits());
+        let (braking_up, braking_down) = match self.stopped_inside(&start, &mut { *limits }, before, axis) {
             Ok(ramp) if !start.is_at_rest() => self.planner.ways((&ramp, 0)),
             _ => (0.0, 0.0),
         };
@@ -167,8 +168,9 @@ impl<P: Planner> Axis<P> {
                 ..setpoint
             });
         }
-        let (start, limits) = (self.mover.base(), self.slowed(&self.stop_limits()));
-        let motion = match self.planner.ramp_to(&start, 0.0, &limits, self.mover.in_force()) {
+        let (start, mut limits) = (self.mover.base(), self.slowed(&self.stop_limits()));
+        let axis = &self.slowed(&self.hardest_limits());
+        let motion = match self.stopped_inside(&start, &mut limits, self.mover.in_force(), axis) {
             Ok(plan) if !start.is_at_rest() => {
                 if let Some(excess) = self.beyond_axis(&plan) {
                     self.record(Event::Unavoidable(excess), scope);

@@ -318,12 +318,10 @@ impl<P: Planner> Axis<P> {
             self.mover.hold();
             return;
         }
-        let motion = match self
-            .planner
-            .ramp_to(self.mover.setpoint(), 0.0, &limits, self.mover.in_force())
-        {
+        let (start, before) = (self.mover.setpoint(), self.mover.in_force());
+        let motion = match self.stopped_inside(start, &mut limits, before, axis) {
             Ok(plan) => {
-                let plan = self.onto_limit(self.stopped_inside(plan, &mut limits, axis));
+                let plan = self.onto_limit(plan);
                 if let Some(excess) = self.beyond_axis(&plan) {
                     self.record(Event::Unavoidable(excess), scope);
                 }

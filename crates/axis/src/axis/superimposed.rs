@@ -594,12 +594,18 @@ impl<P: Planner> Axis<P> {
     /// The superimposed motion comes to rest with the stop dynamics; the rest of its distance waits.
     #[cold]
     pub(super) fn brake_superimposed(&mut self) {
-        let limits = self.slowed(&self.stop_limits());
+        let (mut limits, axis) = (
+            self.slowed(&self.stop_limits()),
+            self.slowed(&self.hardest_limits()),
+        );
+        let planned = self
+            .mover
+            .layer()
+            .map(|layer| self.stopped_inside(&layer.added, &mut limits, &layer.in_force, &axis));
         let Some(layer) = self.mover.layer_mut() else {
             return;
         };
-        let planned = self.planner.ramp_to(&layer.added, 0.0, &limits, &layer.in_force);
-        if let (Ok(plan), Some(command)) = (planned, &mut layer.command) {
+        if let (Some(Ok(plan)), Some(command)) = (planned, &mut layer.command) {
             layer.motion = Motion::along(plan);
             layer.in_force = limits;
             command.wait();
