@@ -172,9 +172,10 @@ impl<P: Planner> Axis<P> {
         ramp
     }
 
-    /// Where a ramp to rest from `state` within `limits` ends (u).
+    /// Where a ramp to rest from `state` ends (u): within `limits`, or more, as the axis would stop.
     fn rest(&self, state: &Setpoint, limits: &Limits) -> f64 {
-        match self.planner.ramp_to(state, 0.0, limits, self.mover.in_force()) {
+        let (before, axis) = (self.mover.in_force(), &self.hardest_limits());
+        match self.stopped_inside(state, &mut { *limits }, before, axis) {
             Ok(ramp) => ramp.at(u64::from(ramp.scans())).position,
             Err(_) => state.position,
         }
