@@ -80,8 +80,13 @@ fn most(config: &AxisConfig) -> Limits {
     let limits = config.limits;
     let stop = config.stop.unwrap_or_default();
     let larger = |limit: f64, stop: Option<f64>| stop.map_or(limit, |stop| limit.max(stop));
+    let deceleration = larger(limits.deceleration, stop.deceleration);
+    // In a mean of two directions the deceleration of a stop may show while the speed still grows (docs/vibration.md).
+    let is_shaped = config.vibration.iter().any(Option::is_some);
+    let acceleration = if is_shaped { deceleration } else { 0.0 };
     Limits {
-        deceleration: larger(limits.deceleration, stop.deceleration),
+        acceleration: limits.acceleration.max(acceleration),
+        deceleration,
         jerk: larger(limits.jerk, stop.jerk),
         snap: larger(limits.snap, stop.snap),
         ..limits
