@@ -6,9 +6,9 @@
 //! solution. In it each end is passed in its scan, not before, with at most the speed its blending mode asks for, where the next move
 //! leads back without velocity and exactly there; every move keeps its limits at every scan end, and goes its way only. Faster than its own
 //! velocity a move is only where the speed at an end is, no faster than that speed, and within the least-time ramp between the speed
-//! asked for and its own (B3, B4): a ramp up to that speed may end at any time in the scan that passes the end, one down from it begins with
-//! the set-point of that scan, where the next move takes over. The search takes scans off one move, or gives some to another, as long as the programme has a
-//! solution. It was made with SciPy's HiGHS, with no part of this project.
+//! asked for and its own (B3, B4): a ramp up to that speed may end at any time in the scan that passes the end, one down from it begins
+//! with the set-point of that scan, where the next move takes over. The search takes scans off one move, or gives some to another, as
+//! long as the programme has a solution. It was made with SciPy's HiGHS, with no part of this project.
 
 use crate::chains::{CYCLE, Rig};
 use standstill_axis::{AxisState, BufferMode, Dynamics, Limits};

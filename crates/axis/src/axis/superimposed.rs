@@ -598,14 +598,13 @@ impl<P: Planner> Axis<P> {
             self.slowed(&self.stop_limits()),
             self.slowed(&self.hardest_limits()),
         );
-        let planned = self
-            .mover
-            .layer()
-            .map(|layer| self.stopped_inside(&layer.added, &mut limits, &layer.in_force, &axis));
-        let Some(layer) = self.mover.layer_mut() else {
+        let Some(layer) = self.mover.layer() else {
             return;
         };
-        if let (Some(Ok(plan)), Some(command)) = (planned, &mut layer.command) {
+        let planned = self.stopped_inside(&layer.added, &mut limits, &layer.in_force, &axis);
+        if let (Ok(plan), Some(layer)) = (planned, self.mover.layer_mut())
+            && let Some(command) = &mut layer.command
+        {
             layer.motion = Motion::along(plan);
             layer.in_force = limits;
             command.wait();

@@ -83,9 +83,12 @@ fn most(config: &AxisConfig) -> Limits {
     let deceleration = larger(limits.deceleration, stop.deceleration);
     // In a mean of two directions the deceleration of a stop may show while the speed still grows (docs/vibration.md).
     let is_shaped = config.vibration.iter().any(Option::is_some);
-    let acceleration = if is_shaped { deceleration } else { 0.0 };
     Limits {
-        acceleration: limits.acceleration.max(acceleration),
+        acceleration: if is_shaped {
+            deceleration
+        } else {
+            limits.acceleration
+        },
         deceleration,
         jerk: larger(limits.jerk, stop.jerk),
         snap: larger(limits.snap, stop.snap),
