@@ -500,7 +500,7 @@ impl Planner for Standard {
         limits: &Limits,
         before: &Limits,
     ) -> Result<Option<StandardPlan>, PlanError> {
-        let plan = if passage.brake > 0.0 {
+        let plan = if passage.brake != 0.0 {
             OnlinePlan::braking(start, target, passage, limits, before, self.cycle)
         } else {
             OnlinePlan::blending(start, target, passage, limits, before, self.cycle)

@@ -18,12 +18,17 @@ const BRAKE: f64 = 0.8;
 /// The part of the lower deceleration that it is at least.
 const LEAST: f64 = 0.2;
 
+/// The part of the lower acceleration with which an end is passed speeding up.
+const PUSH: f64 = 0.8;
+
 /// What comes behind an end.
 pub(super) struct Behind<'a> {
     next: &'a Entry,
     end: f64,
     target: f64,
     forward: bool,
+    /// Its number in the queue.
+    number: usize,
     /// How the next command passes its own end.
     exit: Passage,
 }
@@ -45,35 +50,39 @@ impl<P: Planner> Axis<P> {
             .as_ref()
             .map_or(0.0, |plan| plan.at(u64::from(plan.scans())).velocity.abs());
         let is_wanted = speed >= passage.wanted * (1.0 - ROUNDING);
-        let ramp = if is_wanted {
-            self.braking_through(entry, start, passage, before, behind)
+        let ramps = if is_wanted {
+            [self.braking_through(entry, start, passage, before, behind), None]
         } else {
-            self.speeding_through(entry, start, passage.wanted, before, behind)
+            [
+                self.speeding_through(entry, start, passage.wanted, before, behind),
+                if start.acceleration == 0.0 {
+                    self.pushing_through(entry, start, passage.wanted, before, behind)
+                } else {
+                    self.letting_go(entry, start, passage.most, before, behind)
+                },
+            ]
         };
-        let ramp = ramp.filter(|plan| {
-            keeps_rates(plan) && self.beyond_bound(plan).is_none() && !self.turns(plan, behind.forward)
-        });
+        let keeps = |plan: &P::Plan| self.beyond_bound(plan).is_none() && !self.turns(plan, behind.forward);
+        let ramps = ramps.map(|ramp| ramp.filter(keeps));
         let is_certain = is_wanted && !is_braking(start);
-        match (passing, ramp) {
-            (None, None) => return None,
-            (Some(passing), None) if is_certain => return Some(passing),
+        match (passing, ramps) {
+            (None, [None, None]) => return None,
+            (Some(passing), [None, None]) if is_certain => return Some(passing),
             _ => {}
         }
-        let scans = |plan: &P::Plan| {
-            let goal = goal_past(plan, 0, behind.end, behind.forward);
-            goal.saturating_add(self.scans_behind(&plan.at(goal), behind))
+        let counted = |plan: P::Plan| {
+            let goal = goal_past(&plan, 0, behind.end, behind.forward);
+            let scans = goal.saturating_add(self.scans_behind(&plan.at(goal), behind));
+            (plan, scans)
         };
         let with_rest = || {
             let to_rest = self.scans_to_rest(entry, start, behind.end, before);
             to_rest.saturating_add(self.scans_behind(&Setpoint::at_rest(behind.end), behind))
         };
-        let counted = |plan: P::Plan| {
-            let scans = scans(&plan);
-            (plan, scans)
-        };
         // What is too late for anything passes as it can; nothing else has to.
-        let ramp = ramp.map(counted).filter(|(_, scans)| *scans < u64::MAX);
-        let plans = [passing.map(counted), ramp].into_iter().flatten();
+        let ramps = ramps.into_iter().flatten().map(counted);
+        let ramps = ramps.filter(|(_, scans)| *scans < u64::MAX);
+        let plans = passing.map(counted).into_iter().chain(ramps);
         let (plan, scans) = plans.min_by_key(|(_, scans)| *scans)?;
         let goes_on = || {
             let with_rest = with_rest();
@@ -93,7 +102,10 @@ impl<P: Planner> Axis<P> {
 
     /// What comes behind the `end` of `entry`, if it is a move that leads on and can be looked through.
     pub(super) fn behind(&self, entry: &Entry, end: f64, forward: bool) -> Option<Behind<'_>> {
-        let number = self.number_behind(entry);
+        self.behind_at(self.number_behind(entry), entry, end, forward)
+    }
+
+    fn behind_at(&self, number: usize, entry: &Entry, end: f64, forward: bool) -> Option<Behind<'_>> {
         let next = self.queue.iter().nth(number)?;
         let is_move = matches!(next.work, Work::Position(_) | Work::Distance(_));
         let target = self.end_of_leg(next, end, forward)?;
@@ -110,6 +122,7 @@ impl<P: Planner> Axis<P> {
             end,
             target,
             forward,
+            number,
             exit: self.passage(&aimed, end, number + 1),
         })
     }
@@ -126,16 +139,62 @@ impl<P: Planner> Axis<P> {
         let (own, next) = (&entry.limits, &behind.next.limits);
         let limits = Limits {
             velocity: own.velocity.max(wanted),
-            acceleration: own.acceleration.min(next.acceleration),
-            deceleration: own.deceleration,
-            jerk: own.jerk.min(next.jerk),
-            snap: own.snap.min(next.snap),
+            ..rates_of_both(own, next)
         };
         let velocity = if behind.forward { wanted } else { -wanted };
         let ramp = self.planner.ramp_to(start, velocity, &limits, before).ok()?;
         let at_end = ramp.at(goal_past(&ramp, 0, behind.end, behind.forward));
         let is_past = (at_end.position >= behind.end) == behind.forward;
-        (is_past && self.stops_inside(&at_end)).then_some(ramp)
+        // What begins with more acceleration than it may pass the end with is down to that there.
+        let within = |value: f64, limit: f64| value.abs() <= limit * (1.0 + ROUNDING);
+        let is_kept = within(at_end.acceleration, limits.acceleration) && within(at_end.jerk, limits.jerk);
+        let keeps = is_kept && keeps_rates_of(&ramp, own);
+        (is_past && keeps && self.stops_inside(&at_end)).then_some(ramp)
+    }
+
+    /// The ramp through the end that lets go of its acceleration at once, if that leads to `most` velocity at most (u/s): the one of
+    /// [`Axis::speeding_through`] that leads the least far.
+    fn letting_go(
+        &self,
+        entry: &Entry,
+        start: &Setpoint,
+        most: f64,
+        before: &Limits,
+        behind: &Behind<'_>,
+    ) -> Option<P::Plan> {
+        let rates = rates_of_both(&entry.limits, &behind.next.limits);
+        let arrested = self.planner.coasting(start, &rates).abs();
+        let ramp = || self.speeding_through(entry, start, arrested, before, behind);
+        (arrested <= most).then(ramp)?
+    }
+
+    /// The plan that passes the end still speeding up, as much as the next command may, with the speed a ramp of its own rates comes to.
+    fn pushing_through(
+        &self,
+        entry: &Entry,
+        start: &Setpoint,
+        wanted: f64,
+        before: &Limits,
+        behind: &Behind<'_>,
+    ) -> Option<P::Plan> {
+        let (own, next) = (&entry.limits, &behind.next.limits);
+        let is_lower = next.acceleration < own.acceleration || next.jerk < own.jerk || next.snap < own.snap;
+        if !is_lower {
+            return None;
+        }
+        let limits = Limits {
+            velocity: own.velocity.max(wanted),
+            ..*own
+        };
+        let pushing = Passage {
+            wanted,
+            most: wanted,
+            brake: -PUSH * own.acceleration.min(next.acceleration),
+        };
+        let planned = self.planner.blend(start, behind.end, &pushing, &limits, before);
+        let plan = planned.ok().flatten()?;
+        let at_end = plan.at(goal_past(&plan, 0, behind.end, behind.forward));
+        (keeps_rates(&plan) && self.stops_inside(&at_end)).then_some(plan)
     }
 
     /// The plan that passes the end braking, with the speed from which the next command comes down to that of its own end.
@@ -168,7 +227,7 @@ impl<P: Planner> Axis<P> {
         };
         let is_one = speed > 0.0;
         let planned = is_one.then(|| self.planner.blend(start, end, &braking, &entry.limits, before))?;
-        planned.ok().flatten()
+        planned.ok().flatten().filter(keeps_rates)
     }
 
     /// The deceleration (u/s^2) that the next command has a `way` (u) before it has come down from `speed` to that of its end.
@@ -205,8 +264,16 @@ impl<P: Planner> Axis<P> {
         self.stoppable(passage, Some(end), direction).wanted
     }
 
-    /// Scans that the next command takes from a state at its begin.
+    /// Scans that the next command takes from a state at its begin, [`u64::MAX`] if it can't.
     fn scans_behind(&self, from: &Setpoint, behind: &Behind<'_>) -> u64 {
+        let scans = self.scans_as_asked(from, behind);
+        scans
+            .or_else(|| self.scans_speeding(from, behind))
+            .unwrap_or(u64::MAX)
+    }
+
+    /// The same where it passes its own end as asked, or comes to rest there.
+    fn scans_as_asked(&self, from: &Setpoint, behind: &Behind<'_>) -> Option<u64> {
         let Behind {
             next, target, exit, ..
         } = behind;
@@ -223,23 +290,56 @@ impl<P: Planner> Axis<P> {
         };
         // Where it is to turn it must be able to rest: what turns is decided when it begins.
         let plan = if exit.wanted > 0.0 { blended() } else { None };
-        let Some(plan) = plan.or_else(to_rest) else {
-            return u64::MAX;
-        };
+        let plan = plan.or_else(to_rest)?;
         let goal = goal_past(&plan, 0, *target, behind.forward);
-        let is_slow = plan.at(goal).velocity.abs() <= exit.most * (1.0 + ROUNDING);
-        let is_straight = !self.turns(&plan, behind.forward);
-        if is_slow && is_straight && keeps_rates(&plan) {
-            goal
-        } else {
-            u64::MAX
+        self.arrives(&plan, goal, behind).then_some(goal)
+    }
+
+    /// The same where it passes its own end on a ramp, too, and what follows does as asked.
+    fn scans_speeding(&self, from: &Setpoint, behind: &Behind<'_>) -> Option<u64> {
+        if (behind.target > from.position) != behind.forward {
+            return None;
         }
+        let entry = Entry {
+            end: Some(behind.target),
+            ..*behind.next
+        };
+        let after = self.behind_at(behind.number + 1, &entry, behind.target, behind.forward)?;
+        let plan = self.letting_go(&entry, from, behind.exit.most, &entry.limits, &after)?;
+        let goal = goal_past(&plan, 0, behind.target, behind.forward);
+        let at_end = plan.at(goal);
+        let is_speeding = at_end.velocity * at_end.acceleration > 0.0;
+        let goes_on = || self.scans_as_asked(&at_end, &after).is_some();
+        (is_speeding && self.arrives(&plan, goal, behind) && goes_on()).then_some(goal)
+    }
+
+    /// Whether a `plan` of the next command is at its end in the scan `goal` as it may be.
+    fn arrives(&self, plan: &P::Plan, goal: u64, behind: &Behind<'_>) -> bool {
+        let is_slow = plan.at(goal).velocity.abs() <= behind.exit.most * (1.0 + ROUNDING);
+        is_slow && !self.turns(plan, behind.forward) && keeps_rates_of(plan, &behind.next.limits)
     }
 }
 
 /// Whether a motion slows down.
 pub(super) fn is_braking(state: &Setpoint) -> bool {
     state.velocity * state.acceleration < 0.0
+}
+
+/// The limits of a command with the lower rates of it and the next, but its own deceleration.
+fn rates_of_both(own: &Limits, next: &Limits) -> Limits {
+    Limits {
+        velocity: own.velocity,
+        acceleration: own.acceleration.min(next.acceleration),
+        deceleration: own.deceleration,
+        jerk: own.jerk.min(next.jerk),
+        snap: own.snap.min(next.snap),
+    }
+}
+
+/// The same, of other limits.
+fn keeps_rates_of<P: Plan>(plan: &P, limits: &Limits) -> bool {
+    plan.excess_over(limits)
+        .is_none_or(|excess| excess.acceleration == 0.0 && excess.jerk == 0.0)
 }
 
 /// Whether a plan exceeds no more than a velocity.

@@ -22,7 +22,8 @@ pub struct Passage {
     /// The speed from which what comes after the target can still be done (u/s); exceeded only if every way
     /// without turning exceeds it.
     pub most: f64,
-    /// The acceleration (u/s^2) against the way to pass it with, 0 or more. Without a wanted speed the move turns there.
+    /// The acceleration (u/s^2) against the way to pass it with; below 0 it speeds up. Without a wanted speed the move turns there, with
+    /// one above 0.
     pub brake: f64,
 }
 

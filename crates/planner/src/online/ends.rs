@@ -2,7 +2,7 @@
 //!
 //! What stands here: the candidates. What verifies them is in [`ladder`](super::ladder). A way back in time is a way: seen
 //! from its end, and mirrored, a move begins in the end state with its acceleration turned round, and acceleration and
-//! deceleration change places. So the ramps that begin in any state serve for both ends. Equations (O16) to (O20) and (O22) to (O24) are in
+//! deceleration change places. So the ramps that begin in any state serve for both ends. Equations (O16) to (O20) and (O22) to (O26) are in
 //! `docs/planner-online.md`. Everything is in the kernel's units, with positions counted from the start.
 
 use core::cell::Cell;
@@ -28,6 +28,9 @@ const NEAREST: f64 = 1e-7;
 
 /// How well the fastest way to a turn is known, in scans.
 const ROUGHLY: f64 = 1e-3;
+
+/// Scans by which a turn in one go is looked for to be sooner than one by way of a velocity that is held.
+const SOONER: u32 = 16;
 
 /// How often a velocity is halved on the last rung, and an end acceleration that is refused.
 const HALVINGS: u32 = 64;
@@ -419,7 +422,111 @@ impl<'a> Ends<'a> {
             laid(speed.at, Some(whole))
         };
         let held = if comes_faster { coming } else { fastest.at };
-        slower.or_else(|| self.braking_softly(start, side * held, whole))
+        let found = slower.or_else(|| self.braking_softly(start, side * held, whole))?;
+        Some(self.in_one_go(start, side, scan, found))
+    }
+
+    /// To the end from a constant velocity by one ramp, and the speed it ends with: that with which the ramp is as long as the way (O26). `None`
+    /// where a ramp to the end velocity is too short, or the slowest too long.
+    pub(super) fn speeding(&self, start: &Setpoint, side: f64) -> Option<(Wide, f64)> {
+        let ramp = |speed: f64| {
+            let end = Setpoint {
+                velocity: side * speed,
+                ..self.end()
+            };
+            (end, self.ramp(&self.back, &end, start.velocity))
+        };
+        let beyond = |speed: f64| {
+            let (end, last) = ramp(speed);
+            Point {
+                at: speed,
+                value: side * (follow(&self.back, &end, &last).position - self.target),
+                noise: 0.25 * NOISE * (self.target.abs() + last.duration() * speed),
+                slope: f64::NAN,
+            }
+        };
+        let gained = self.ramps.arrested(&Setpoint {
+            acceleration: self.acceleration.abs(),
+            ..Setpoint::default()
+        });
+        let (low, high) = (
+            beyond(side * start.velocity + gained),
+            beyond(side * self.velocity),
+        );
+        if low.at >= high.at || low.value > 0.0 || high.value < 0.0 {
+            return None;
+        }
+        let speed = self.zero(low, high, beyond).at;
+        let mut spans = Wide::new();
+        spans.extend(&self.turned(&ramp(speed).1));
+        Some((spans, speed))
+    }
+
+    /// The turn `found` by way of a velocity that is held, or a sooner one at order 3 that brakes all the way from a constant velocity
+    /// (O25): jerk against the way, along it, against it, and then the end acceleration held.
+    ///
+    /// Less of the end acceleration is as much later as its jerk takes to make up for it.
+    fn in_one_go(&self, start: &Setpoint, side: f64, scan: f64, found: (Wide, f64)) -> (Wide, f64) {
+        let speed = side * start.velocity;
+        if self.ramps.order() != Order::Three || start.acceleration != 0.0 || speed <= 0.0 {
+            return found;
+        }
+        let rise = self.acceleration.abs() / self.ramps.jerk();
+        let lateness = |(spans, part): &(Wide, f64)| spans.duration() - part * rise;
+        let whole = found.0.duration();
+        (1..=SOONER)
+            .map(|fewer| whole - f64::from(fewer) * scan)
+            .take_while(|time| *time > rise)
+            .filter_map(|time| self.braking_all_the_way(speed, side, time))
+            .fold(found, |best, other| {
+                if lateness(&other) < lateness(&best) {
+                    other
+                } else {
+                    best
+                }
+            })
+    }
+
+    /// The move of [`Ends::in_one_go`] from `speed` that takes this `time`, and the part of the end acceleration it ends with.
+    fn braking_all_the_way(&self, speed: f64, side: f64, time: f64) -> Option<(Wide, f64)> {
+        let jerk = self.ramps.jerk();
+        let rise = self.acceleration.abs() / jerk;
+        let way = side * self.target;
+        // Of the time the end acceleration is built up and held for: how long it is held, how long the jerk is along the way, and that
+        // times its distance from the end, which follows from the velocity.
+        let phases = |last: f64| {
+            let held = (last - rise).max(0.0);
+            let along = 0.5 * (time - last);
+            let moment = 0.25 * (time * time - held * held) - 0.5 * speed / jerk;
+            (held, along, moment)
+        };
+        let beyond = |last: f64| {
+            let (held, along, moment) = phases(last);
+            let square = along * along;
+            let against = speed * time - jerk / 6.0 * (time * time * time - held * held * held) - way;
+            Point {
+                at: last,
+                value: along * against + jerk * (moment * moment + square * square / 12.0),
+                noise: 0.25 * NOISE * along * (way + speed * time),
+                slope: f64::NAN,
+            }
+        };
+        let (low, high) = (beyond(0.0), beyond(time));
+        if low.value >= 0.0 || high.value <= 0.0 {
+            return None;
+        }
+        let last = self.zero(low, high, beyond).at;
+        let (held, along, moment) = phases(last);
+        let middle = moment / along;
+        let (first, third) = (time - middle - 0.5 * along, middle - 0.5 * along - held);
+        // What comes faster than the move may is to be as slow as by a ramp to its velocity, at any time.
+        let too_fast = (speed - self.top.plus).max(0.0);
+        let brakes = first >= along && third >= 0.0 && jerk * first * first >= too_fast;
+        let mut spans = Wide::new();
+        for (duration, input) in [(first, -jerk), (along, jerk), (third, -jerk), (held, 0.0)] {
+            spans.push(duration, side * input);
+        }
+        brakes.then_some((spans, last.min(rise) / rise))
     }
 
     /// To the end in the `whole` time by way of `velocity`, with the part of the end acceleration with which it takes just that long.

@@ -1,8 +1,8 @@
-//! Moves that brake at their target: they pass it slowing down, or turn there: velocity 0, in a scan, with the acceleration that leads
-//! back.
+//! Moves with an acceleration at their target: they pass it slowing down or speeding up, or turn there: velocity 0, in a scan, with the
+//! acceleration that leads back.
 //!
 //! What stands here: the motion to the target. What does not: what comes behind it, and which speed and acceleration are best.
-//! Equations (O22) to (O24) are in `docs/planner-online.md`.
+//! Equations (O22) to (O26) are in `docs/planner-online.md`.
 
 use super::ends::Ends;
 use super::ladder::Found;
@@ -12,12 +12,13 @@ use crate::ramp::{self, solve::Ramps};
 use crate::{Limits, Order, PlanError, Setpoint};
 
 impl OnlinePlan {
-    /// Comes to `target` as `passage` says, with an acceleration against its way; `None` where that can't be had without going
-    /// back before, and at order 2, where acceleration may jump.
+    /// Comes to `target` as `passage` says, with an acceleration against its way, or along it; `None` where that can't be had without
+    /// going back before, and at order 2, where acceleration may jump.
     ///
     /// With a wanted speed it passes the target at most that fast, somewhere between two scans, and keeps the acceleration for a scan.
     /// Without one it turns there, in the least number of whole scans known ([`OnlinePlan::turn`]). Then it comes to rest as soon as it
-    /// can, for the case that nobody takes over. An acceleration above what `limits` allow there is lowered to that, and one with which the
+    /// can, for the case that nobody takes over. Speeding up it passes the target only from a constant velocity, with the speed to which one
+    /// ramp leads in that way; `None` if that is not below the wanted one. An acceleration above what `limits` allow there is lowered to that, and one with which the
     /// way to a turn has no whole number of scans to what has.
     ///
     /// Bounded work: a root of pairs of ramps, for a turn two and one of ramps; at order 4 from rest to a turn a plan alone.
@@ -36,8 +37,11 @@ impl OnlinePlan {
         check(start, target, 0.0, given, before, cycle)?;
         let distance = target - start.position;
         let turns = passage.wanted <= 0.0;
-        let most = passage.brake.min(if turns {
+        let pushes = passage.brake < 0.0;
+        let most = passage.brake.abs().min(if turns {
             limits.lower_acceleration()
+        } else if pushes {
+            limits.acceleration
         } else {
             limits.deceleration
         });
@@ -45,7 +49,7 @@ impl OnlinePlan {
             return Ok(None);
         }
         let side = distance.signum();
-        let back = -side * most;
+        let back = if pushes { side * most } else { -side * most };
         let steepest = Setpoint {
             acceleration: start.acceleration.abs().max(most),
             ..*start
@@ -61,7 +65,8 @@ impl OnlinePlan {
             acceleration: most,
             ..Setpoint::default()
         });
-        let speed = wanted.min(limits.lower_velocity() - released);
+        let held = if pushes { most * cycle } else { 0.0 };
+        let speed = wanted.min(limits.lower_velocity() - released - held);
         if !turns && speed <= most * cycle {
             return Ok(None);
         }
@@ -88,10 +93,18 @@ impl OnlinePlan {
         };
         let scan = ramps.scale().moments(cycle);
         let from = ramps.state_inward(&origin);
-        let Some((spans, part)) = ends.braking(&from, side, turns.then_some(scan)) else {
+        let is_steady = from.acceleration == 0.0 && from.jerk == 0.0;
+        let found = if pushes {
+            let found = is_steady.then(|| ends.speeding(&from, side)).flatten();
+            found.map(|(spans, speed)| (spans, (side * speed / ramps.inward(1.0, 1), end.1)))
+        } else {
+            let found = ends.braking(&from, side, turns.then_some(scan));
+            found.map(|(spans, part)| (spans, (end.0, part * end.1)))
+        };
+        let Some((spans, end)) = found else {
             return Ok(None);
         };
-        if !plan.climb_to_brake(&ramps, &spans, (end.0, part * end.1), limits) {
+        if !plan.climb_to_brake(&ramps, &spans, end, limits) {
             return Ok(None);
         }
         (plan.found.solves, plan.found.steps) = (ends.solves(), ends.steps());

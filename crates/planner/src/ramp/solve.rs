@@ -219,7 +219,7 @@ impl Ramps {
     }
 
     /// The jerk bound in the kernel's units.
-    pub(super) const fn jerk(&self) -> f64 {
+    pub(crate) const fn jerk(&self) -> f64 {
         self.jerk
     }
 

@@ -1,4 +1,5 @@
-//! Moves that turn at their target: in a scan, exactly there, with the acceleration that leads back.
+//! Moves with an acceleration at their target. They turn there, in a scan, exactly, with the acceleration that leads back; or they pass it
+//! slowing down or speeding up.
 
 use super::support::{self, Random, integrate};
 use standstill_planner::kernel::MAX_STEPS;
@@ -22,7 +23,7 @@ fn turn(acceleration: f64) -> Passage {
     }
 }
 
-/// Turns of moves from rest and from any state of a move towards the same target.
+/// Turns of moves from rest, from any state of a move towards the same target, and from a constant velocity.
 fn turns(seed: u64, count: usize) -> Seen {
     let mut random = Random(seed);
     let mut all = Seen {
@@ -33,7 +34,7 @@ fn turns(seed: u64, count: usize) -> Seen {
         longer: Vec::new(),
     };
     for case in 0..count {
-        let order = [Order::Three, Order::Four][case % 2];
+        let order = [Order::Three, Order::Four][case / 4 % 2];
         let limits = support::limits(&mut random, order);
         let cycle = limits.velocity / limits.acceleration * random.log(0.01, 0.2);
         let side = random.sign();
@@ -41,9 +42,13 @@ fn turns(seed: u64, count: usize) -> Seen {
         let rest = Setpoint::at_rest(way * random.between(-3.0, 3.0));
         let target = rest.position + way;
         let first = OnlinePlan::new(&rest, target, &limits, &limits, cycle).expect("a plan");
-        let start = match case % 3 {
-            0 => rest,
-            _ => first.at(random.below(u64::from(first.scans()))),
+        let start = match case % 4 {
+            0 | 1 => first.at(random.below(u64::from(first.scans()))),
+            2 => rest,
+            _ => Setpoint {
+                velocity: side * limits.velocity * random.between(0.1, 1.0),
+                ..rest
+            },
         };
         let acceleration = limits.lower_acceleration() * random.between(0.05, 1.0);
         let context = || format!("case {case}: {start:?} -> {target} {acceleration} {limits:?} {cycle}");
@@ -128,22 +133,54 @@ fn turns_are_in_a_scan_exactly_on_their_target_within_the_limits() {
     assert!(turned > 1_000 && softer > 50 && steps <= MAX_STEPS);
 }
 
-/// The target is passed slowing down with just this acceleration, at most as fast as wanted.
+/// From above the velocity of the move, and with little room: by way of a velocity that is held it would take 16 scans.
 #[test]
-fn what_brakes_through_its_target_keeps_the_limits_and_comes_to_rest() {
-    let mut random = Random(42);
+fn a_turn_close_behind_a_fast_start_is_come_to_in_one_go() {
+    let limits = Limits {
+        velocity: 59.699,
+        acceleration: 16_300.0,
+        deceleration: 20_347.0,
+        jerk: 2_364_200.0,
+        ..Limits::NONE
+    };
+    let start = Setpoint {
+        velocity: 97.165,
+        ..Setpoint::at_rest(2.485_98)
+    };
+    let before = Limits {
+        velocity: 97.165,
+        ..limits
+    };
+    let plan = OnlinePlan::braking(&start, 3.2491, &turn(9_780.0), &limits, &before, 1e-3);
+    let plan = plan.expect("a plan").expect("a turn");
+    assert_eq!(plan.turn(), Some(14));
+    let slower = |scan: &u64| plan.at(scan + 1).velocity < plan.at(*scan).velocity;
+    assert!((0..14).all(|scan| slower(&scan)), "{plan:?}");
+    let at_turn = plan.at(14);
+    assert_eq!((at_turn.position, at_turn.velocity), (3.2491, 0.0));
+    assert!((at_turn.acceleration + 9_780.0).abs() < 1e-6, "{at_turn:?}");
+}
+
+/// How many of random targets are passed with the acceleration that is asked for, a part of `bound` against the way, at most as fast
+/// as wanted.
+fn passed(seed: u64, bound: impl Fn(&Limits) -> f64) -> u32 {
+    let mut random = Random(seed);
     let mut passed = 0;
     for case in 0..3_000 {
         let order = [Order::Three, Order::Four][case % 2];
         let limits = support::limits(&mut random, order);
         let cycle = limits.velocity / limits.acceleration * random.log(0.01, 0.2);
         let side = random.sign();
-        let start = Setpoint::at_rest(limits.velocity * cycle * random.between(-30.0, 30.0));
+        let rest = Setpoint::at_rest(limits.velocity * cycle * random.between(-30.0, 30.0));
+        let start = Setpoint {
+            velocity: [0.0, side * limits.velocity * random.between(0.0, 0.8)][case / 2 % 2],
+            ..rest
+        };
         let way = side * limits.velocity * cycle * random.log(3.0, 300.0);
         let target = start.position + way;
         let passage = Passage {
             wanted: limits.velocity * random.between(0.1, 1.2),
-            brake: limits.deceleration * random.between(0.05, 0.9),
+            brake: bound(&limits) * random.between(0.05, 0.9),
             ..Passage::REST
         };
         let context = || format!("case {case}: {start:?} -> {target} {passage:?} {limits:?} {cycle}");
@@ -157,12 +194,14 @@ fn what_brakes_through_its_target_keeps_the_limits_and_comes_to_rest() {
         let state = plan.at(scan);
         let slowing = -side * state.acceleration;
         assert!(
-            (slowing - passage.brake).abs() <= 1e-9 * limits.deceleration,
+            (slowing - passage.brake).abs() <= 1e-9 * bound(&limits).abs(),
             "{state:?} {}",
             context()
         );
+        // Speeding up it may gain some in the rest of the scan.
+        let gained = (-passage.brake * cycle).max(0.0);
         assert!(
-            side * state.velocity <= passage.wanted * (1.0 + 1e-9),
+            side * state.velocity <= passage.wanted * (1.0 + 1e-9) + gained,
             "{}",
             context()
         );
@@ -174,7 +213,20 @@ fn what_brakes_through_its_target_keeps_the_limits_and_comes_to_rest() {
         assert_eq!(plan.at(last), Setpoint::at_rest(plan.target()), "{}", context());
         kept(&start, &plan, &limits, &context);
     }
+    passed
+}
+
+#[test]
+fn what_brakes_through_its_target_keeps_the_limits_and_comes_to_rest() {
+    let passed = passed(42, |limits| limits.deceleration);
     assert!(passed > 1_000, "only {passed}");
+}
+
+#[test]
+fn what_speeds_up_through_its_target_keeps_the_limits_and_comes_to_rest() {
+    let passed = passed(43, |limits| -limits.acceleration);
+    // Most ways have room for the wanted speed without acceleration.
+    assert!(passed > 200, "only {passed}");
 }
 
 #[test]
