@@ -167,6 +167,44 @@ fn overrides_leave_the_turns_where_they_are() {
     }
 }
 
+/// However late it is lowered: what it is too late for goes on as planned, and never beyond the last turn.
+///
+/// Covers: B13, B17
+#[test]
+fn an_override_in_a_chain_that_turns_leads_beyond_no_turn() {
+    for seed in 0..cases(3_000) {
+        let mut random = Random(seed);
+        let limits = drawn_limits(&mut random);
+        let moves = moves(&mut random, &limits, 1);
+        let (low, high) = range(&moves);
+        let mut rig = Rig::new(limits);
+        for next in &moves {
+            rig.move_with(next.end, next.mode, next.dynamics);
+        }
+        while rig.axis.state() != AxisState::Standstill {
+            assert!(rig.scan < LONGEST, "seed {seed}: does not end");
+            if rig.scan > 3_000 {
+                rig.set_override(1.0);
+            } else if random.below(20) == 0 {
+                rig.set_override([0.05, 0.3, 0.9, 1.0][random.below(4) as usize]);
+            }
+            steps::advance(
+                slice::from_mut(&mut rig.axis),
+                &mut Scope::new(rig.scan, &mut rig.log),
+            );
+            rig.scan += 1;
+            let position = rig.axis.setpoint().position;
+            rig.watch.see(position).unwrap();
+            let beyond = (low - position).max(position - high);
+            assert!(
+                beyond <= 1e-12 * rig.watch.largest,
+                "seed {seed}: {position} is beyond {low}, {high}"
+            );
+        }
+        assert_eq!(rig.axis.setpoint().position, moves[moves.len() - 1].end);
+    }
+}
+
 /// Where the software limits are a little or far behind the ends, at any time something stops the axis.
 #[test]
 fn a_stop_before_a_turn_stays_inside_the_software_limits() {

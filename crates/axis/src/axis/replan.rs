@@ -56,12 +56,17 @@ impl<P: Planner> Axis<P> {
             .in_frame_of(&owner, &here)
             .map_or(here.position, |framed| framed.position);
         self.look_through(&mut owner, start, 0);
+        let run = owner.run;
         let before = self.limits_of_owner().unwrap_or(owner.limits);
         let motion = match self.mover.layer().copied() {
             None => {
                 let motion = self.plan_from(&mut owner, &here, &before)?;
                 let motion = self.kept_inside(&mut owner, motion, &here, &before)?;
-                if self.is_too_late(&owner, &motion) {
+                let goes_on = self.is_one_motion_as_planned(&run);
+                if self.is_too_late(&owner, &motion, goes_on) {
+                    if goes_on {
+                        owner.run = run;
+                    }
                     self.own(owner);
                     return Ok(());
                 }

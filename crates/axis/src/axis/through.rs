@@ -137,8 +137,9 @@ impl<P: Planner> Axis<P> {
         behind: &Behind<'_>,
     ) -> Option<P::Plan> {
         let (own, next) = (&entry.limits, &behind.next.limits);
+        // What comes faster slows down with these rates, too.
         let limits = Limits {
-            velocity: own.velocity.max(wanted),
+            velocity: own.velocity.max(wanted).max(start.velocity.abs()),
             ..rates_of_both(own, next)
         };
         let velocity = if behind.forward { wanted } else { -wanted };

@@ -5,7 +5,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; B13. `docs/buffering.md`.
 
-use super::commands::{Entry, REST, ROUNDING, Work};
+use super::commands::{Entry, REST, ROUNDING, Run, Work};
 use super::through::keeps_rates;
 use super::{Axis, Motion};
 use crate::{BufferMode, Scope};
@@ -132,17 +132,20 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Whether `owner`, planned anew along `motion`, would come to its end only by way of going back, or pass it faster than as planned and
-    /// than what comes next can begin, and passes it or turns there as planned: it is too late for anything else, so it goes on as
-    /// planned.
-    pub(super) fn is_too_late(&self, owner: &Entry, motion: &Motion<P::Plan>) -> bool {
+    /// than what comes next can begin, and passes it or turns there as planned, or goes on as one motion: it is too late for anything else, so it goes on
+    /// as planned.
+    pub(super) fn is_too_late(&self, owner: &Entry, motion: &Motion<P::Plan>, goes_on: bool) -> bool {
         let (Motion::Run { plan, scans, .. }, Some(end)) = (motion, owner.end) else {
             return false;
         };
-        let speed = plan.at(*scans).velocity.abs();
-        let as_planned = self.mover.goal().map_or(0.0, |goal| goal.velocity.abs());
-        let is_too_fast = speed > owner.passage.most * (1.0 + ROUNDING) && speed > as_planned;
+        let at_end = plan.at(*scans);
+        let as_planned = self.mover.goal().unwrap_or(Setpoint::at_rest(end));
+        let speed = at_end.velocity.abs();
+        // What brakes at its end is slower soon after it.
+        let is_faster = speed > as_planned.velocity.abs() || slowing(&at_end) < slowing(&as_planned);
+        let is_too_fast = speed > owner.passage.most * (1.0 + ROUNDING) && is_faster;
         let is_same = |was: &Entry| was.id == owner.id && was.end == owner.end && !was.halted;
-        (self.is_to_turn() || self.is_to_pass(owner))
+        (self.is_to_turn() || self.is_to_pass(owner) || (goes_on && owner.run.count == 0))
             && !self.goal_reached()
             && !owner.halted
             && self.owner.as_ref().is_some_and(is_same)
@@ -159,6 +162,12 @@ impl<P: Planner> Axis<P> {
             && self.mover.goal().is_some_and(|goal| goal.velocity != 0.0)
     }
 
+    /// Whether what is to be one `run` with the owner is so already along the plan in progress.
+    pub(super) fn is_one_motion_as_planned(&self, run: &Run) -> bool {
+        let is_it = |was: &Entry| was.run.count == run.count && was.run.end == run.end;
+        run.count > 0 && self.owner.as_ref().is_some_and(is_it)
+    }
+
     /// Nothing takes over where it turns: it goes back to the end and comes to rest there.
     #[cold]
     pub(super) fn rest_at_end(&mut self, scope: &mut Scope<'_>) {
@@ -169,4 +178,9 @@ impl<P: Planner> Axis<P> {
             self.halt_behind_end(scope);
         }
     }
+}
+
+/// The acceleration against a motion (u/s^2).
+fn slowing(state: &Setpoint) -> f64 {
+    (-state.velocity.signum() * state.acceleration).max(0.0)
 }
