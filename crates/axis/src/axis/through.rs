@@ -1,8 +1,8 @@
 //! Ends that are passed on a ramp: between moves with other dynamics a short one need not come to a constant velocity at its end.
 //!
-//! Where a way is too short for the speed that is asked for at its end, the ramp to that speed leads through the end. Where the next way
-//! is too short to come down from that speed, the axis passes the end braking. What stands here: which of the two, and whether the
-//! next command is done sooner for it. The maths is the planner's.
+//! Where a way is too short for the speed that is asked for at its end, the ramp to that speed leads through the end, or the axis passes it
+//! speeding up with the higher rates of the first command. Where the next way is too short to come down from that speed, the axis passes the end
+//! braking. What stands here: which of them, and whether the next command is done sooner for it. The maths is the planner's.
 //!
 //! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; B14, B15. `docs/buffering.md`.
 
