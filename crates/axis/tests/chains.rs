@@ -137,13 +137,21 @@ impl Rig {
         id
     }
 
-    pub fn step(&mut self) {
-        let before = self.axis.setpoint().position;
+    /// One scan, within the limits of the axis; where it is then.
+    pub fn advance(&mut self) -> f64 {
         let scope = &mut Scope::new(self.scan, &mut self.log);
         steps::advance(slice::from_mut(&mut self.axis), scope);
         self.scan += 1;
+        let position = self.axis.setpoint().position;
+        self.watch.see(position).unwrap();
+        position
+    }
+
+    /// The same, in which each end is handed over in the scan that passes it.
+    pub fn step(&mut self) {
+        let before = self.axis.setpoint().position;
+        self.advance();
         let point = self.axis.setpoint();
-        self.watch.see(point.position).unwrap();
         let scan = self.scan;
         let mut from = 0.0;
         for (id, end, done) in &mut self.moves {
@@ -403,13 +411,7 @@ fn a_halt_on_the_way_is_no_reason_to_go_back() {
                 rig.set_override(if rig.scan == on { 1.0 } else { 0.0 });
             }
             let before = rig.axis.setpoint().position;
-            steps::advance(
-                slice::from_mut(&mut rig.axis),
-                &mut Scope::new(rig.scan, &mut rig.log),
-            );
-            rig.scan += 1;
-            let now = rig.axis.setpoint().position;
-            rig.watch.see(now).unwrap();
+            let now = rig.advance();
             let left = (ends[ends.len() - 1] - before).abs();
             ended_at_last |= rig.scan > halt && rig.scan <= on && left <= 0.02 * limits.velocity * CYCLE;
             let back = side * (before - now);

@@ -188,13 +188,7 @@ fn an_override_in_a_chain_that_turns_leads_beyond_no_turn() {
             } else if random.below(20) == 0 {
                 rig.set_override([0.05, 0.3, 0.9, 1.0][random.below(4) as usize]);
             }
-            steps::advance(
-                slice::from_mut(&mut rig.axis),
-                &mut Scope::new(rig.scan, &mut rig.log),
-            );
-            rig.scan += 1;
-            let position = rig.axis.setpoint().position;
-            rig.watch.see(position).unwrap();
+            let position = rig.advance();
             let beyond = (low - position).max(position - high);
             assert!(
                 beyond <= 1e-12 * rig.watch.largest,

@@ -11,6 +11,7 @@ use super::commands::{Ending, Entry, Place, ROUNDING, Work};
 use super::mover::scans_to_goal;
 use super::superimposed::Layer;
 use super::supervision::Arrival;
+use super::through::keeps_rates;
 use super::{Axis, Motion};
 use crate::{ErrorId, Event, Goal, Scope};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
@@ -200,11 +201,8 @@ impl<P: Planner> Axis<P> {
         let Ok(stop) = self.planner.ramp_to(state, 0.0, limits, limits) else {
             return false;
         };
-        let keeps_rates = stop
-            .excess()
-            .is_none_or(|excess| excess.acceleration == 0.0 && excess.jerk == 0.0);
         let most = self.planner.peaks((&stop, 0)).map(|most| most.velocity);
-        keeps_rates && most.is_some_and(|most| most <= limits.velocity * (1.0 + ROUNDING))
+        keeps_rates(&stop) && most.is_some_and(|most| most <= limits.velocity * (1.0 + ROUNDING))
     }
 
     /// Sets `entry`, which is the owner or becomes it, in motion.

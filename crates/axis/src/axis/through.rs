@@ -9,7 +9,7 @@
 use super::Axis;
 use super::commands::{Entry, ROUNDING, Work};
 use super::run::goal_past;
-use standstill_planner::{Limits, MoveProfile, Passage, Plan, Planner, Setpoint};
+use standstill_planner::{Excess, Limits, MoveProfile, Passage, Plan, Planner, Setpoint};
 
 /// The part of the deceleration it has at the end on the way down to the speed of the next one, with which an end is passed braking: some
 /// of it is left to build up the jerk.
@@ -337,14 +337,16 @@ fn rates_of_both(own: &Limits, next: &Limits) -> Limits {
     }
 }
 
-/// The same, of other limits.
-fn keeps_rates_of<P: Plan>(plan: &P, limits: &Limits) -> bool {
-    plan.excess_over(limits)
-        .is_none_or(|excess| excess.acceleration == 0.0 && excess.jerk == 0.0)
+/// Whether a plan exceeds no more than a velocity of its limits.
+pub(super) fn keeps_rates<P: Plan>(plan: &P) -> bool {
+    is_of_velocity(plan.excess())
 }
 
-/// Whether a plan exceeds no more than a velocity.
-pub(super) fn keeps_rates<P: Plan>(plan: &P) -> bool {
-    plan.excess()
-        .is_none_or(|excess| excess.acceleration == 0.0 && excess.jerk == 0.0)
+/// The same, of other limits.
+fn keeps_rates_of<P: Plan>(plan: &P, limits: &Limits) -> bool {
+    is_of_velocity(plan.excess_over(limits))
+}
+
+fn is_of_velocity(excess: Option<Excess>) -> bool {
+    excess.is_none_or(|excess| excess.acceleration == 0.0 && excess.jerk == 0.0)
 }

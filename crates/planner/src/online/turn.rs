@@ -18,10 +18,13 @@ impl OnlinePlan {
     /// With a wanted speed it passes the target at most that fast, somewhere between two scans, and keeps the acceleration for a scan.
     /// Without one it turns there, in the least number of whole scans known ([`OnlinePlan::turn`]). Then it comes to rest as soon as it
     /// can, for the case that nobody takes over. Speeding up it passes the target only from a constant velocity, with the speed to which one
-    /// ramp leads in that way; `None` if that is not below the wanted one. An acceleration above what `limits` allow there is lowered to that, and one with which the
-    /// way to a turn has no whole number of scans to what has.
+    /// ramp leads in that way; `None` if that is not below the wanted one.
     ///
-    /// Bounded work: a root of pairs of ramps, for a turn two and one of ramps; at order 4 from rest to a turn a plan alone.
+    /// An acceleration above what `limits` allow at the target is lowered to that, and one with which the way to a turn has no whole number
+    /// of scans to what has.
+    ///
+    /// Bounded work: a root of pairs of ramps, for a turn two and one of ramps, and at order 3 up to 16 without ramps; at order 4 from rest to
+    /// a turn a plan alone; speeding up one root of ramps.
     ///
     /// # Errors
     /// As [`OnlinePlan::new`].
