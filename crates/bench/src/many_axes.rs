@@ -73,7 +73,7 @@ impl ManyAxes {
     /// and [`ON_CAM`] it is a slave of the one before it.
     fn with_ways(count: u16, way_of: impl Fn(u16) -> usize) -> Result<Self, ConfigError> {
         let mut rig = Self {
-            axes: Vec::new(),
+            axes: Vec::with_capacity(usize::from(count)),
             log: Log::default(),
             blocks: Vec::new(),
             feedback: Vec::new(),

@@ -291,6 +291,10 @@ impl Limits {
     /// times the speed it may reach (docs/planner.md, eq. 40).
     pub(crate) fn acting_for(&self, start: &Setpoint, end: f64, distance: f64, cycle: f64) -> Self {
         let acting = self.acting(cycle);
+        let fastest = start.velocity.abs().max(end.abs());
+        if REACH * fastest >= self.velocity {
+            return acting;
+        }
         let Self {
             acceleration,
             deceleration,
@@ -303,7 +307,7 @@ impl Limits {
         let rising = start.jerk.abs() / snap;
         let steepest = start.acceleration.abs() + 0.5 * start.jerk.abs() * rising;
         let settled = rising + steepest / jerk + 2.0 * sqrt(steepest / snap);
-        let speed = start.velocity.abs().max(end.abs()) + steepest * settled;
+        let speed = fastest + steepest * settled;
         // Until it could be at rest, and from there to the position.
         let stopped = speed / lower + 2.0 * sqrt(speed / jerk) + 2.0 * sqrt(lower / snap);
         let way = distance.abs() + speed * (settled + stopped);

@@ -319,18 +319,15 @@ impl<const N: usize> Path<N> {
 
     /// Every piece, and the state at its start.
     pub(crate) fn stretches(&self) -> impl Iterator<Item = (Stretch, Setpoint)> {
-        self.pieces_alone().map(|stretch| {
+        let pieces = self.pieces.iter().take(self.len).enumerate();
+        pieces.map(move |(index, piece)| {
+            let stretch = Stretch {
+                duration: piece.duration,
+                is_last: index + 1 == self.len,
+                state: piece.state,
+            };
             let first = stretch.at(0.0);
             (stretch, first)
-        })
-    }
-
-    fn pieces_alone(&self) -> impl Iterator<Item = Stretch> {
-        let pieces = self.pieces.iter().take(self.len).enumerate();
-        pieces.map(move |(index, piece)| Stretch {
-            duration: piece.duration,
-            is_last: index + 1 == self.len,
-            state: piece.state,
         })
     }
 
@@ -389,41 +386,39 @@ impl<const N: usize> Path<N> {
     /// them, [`Path::extremes`] tells.
     pub(crate) fn is_surely_within(&self, velocity: f64, acceleration: f64, jerk: f64) -> bool {
         let within = |v: f64, a: f64| v.abs() <= velocity && a.abs() <= acceleration;
-        let Some(end) = self.last().map(|last| last.state) else {
+        let pieces = self.pieces.get(..self.len).unwrap_or_default();
+        let Some(last) = pieces.last() else {
             return false;
         };
-        // What no time adds to the state of a piece makes no difference here.
-        let mut stretches = self.pieces_alone().map(|stretch| {
-            let first = if stretch.is_last {
-                stretch.at(0.0)
-            } else {
-                stretch.state
+        // The last piece is stored by the state at its end. What no time adds to the state of another makes no difference here.
+        let (begin_of_last, end) = (moved(&last.state, -last.duration), &last.state);
+        let mut rest = pieces;
+        while let [piece, behind @ ..] = rest {
+            let (first, last, anchor) = match behind {
+                [] => (&begin_of_last, end, piece.duration),
+                [_] => (&piece.state, &begin_of_last, 0.0),
+                [next, ..] => (&piece.state, &next.state, 0.0),
             };
-            (stretch, first)
-        });
-        let mut next = stretches.next();
-        while let Some((stretch, first)) = next {
-            next = stretches.next();
-            let last = next.as_ref().map_or(&end, |(_, first)| first);
             let Setpoint {
                 velocity: v,
                 acceleration: a,
                 jerk: j,
                 snap: s,
                 ..
-            } = first;
+            } = *first;
             // The extreme acceleration inside, and the velocity where the acceleration passes zero.
             let turns = s != 0.0 && j * last.jerk < 0.0;
             let peak = if turns { a - j * j / (2.0 * s) } else { a };
             let passes = a * peak < 0.0 || peak * last.acceleration < 0.0;
             let top_is_within = |time: f64| {
-                let is_inside = time > 0.0 && time < stretch.duration;
-                !is_inside || within(stretch.at(time).velocity, peak)
+                let is_inside = time > 0.0 && time < piece.duration;
+                !is_inside || within(moved(&piece.state, time - anchor).velocity, peak)
             };
             let is_within = within(v, a) && within(v, peak) && j.abs() <= jerk;
             if !is_within || passes && !zeros(a, j, s).into_iter().all(top_is_within) {
                 return false;
             }
+            rest = behind;
         }
         within(end.velocity, end.acceleration) && end.jerk.abs() <= jerk
     }
