@@ -2,7 +2,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name; rules R52 to R59, V25.
 
-use standstill_axis::{Axis, AxisId, ErrorId, Planner};
+use standstill_axis::{Axis, AxisId, Planner};
 use standstill_fb::{Block, Context, EnableCore, Group, pins};
 
 pins! {
@@ -16,14 +16,7 @@ pins! {
     }
     vendor_inputs {}
     outputs {
-        /// The other outputs can be relied on.
-        Valid => valid: bool, "";
-        /// Enabled, and not ended by an error.
-        Busy => busy: bool, "";
-        /// The block cannot read.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..reading;
         /// Actual torque or force in the unit of the drive; positive towards larger positions.
         Torque => torque: f64, "torque";
     }
@@ -49,11 +42,8 @@ impl Block for McReadActualTorque {
             .core
             .scan(inputs.enable, inputs.axis, context, Axis::actual_torque);
         Outputs {
-            valid: reading.is_valid(),
-            busy: reading.is_busy(),
-            error: reading.is_error(),
-            error_id: reading.error_id(),
             torque: reading.value(),
+            ..(&reading).into()
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name; rules R52 to R59.
 
-use standstill_axis::{Axis, AxisId, ErrorId, Planner};
+use standstill_axis::{Axis, AxisId, Planner};
 use standstill_fb::{Block, Context, EnableCore, Group, pins};
 
 pins! {
@@ -16,14 +16,7 @@ pins! {
     }
     vendor_inputs {}
     outputs {
-        /// The other outputs can be relied on.
-        Valid => valid: bool, "";
-        /// Enabled, and not ended by an error.
-        Busy => busy: bool, "";
-        /// The block cannot read.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..reading;
         /// Actual velocity, signed; its resolution is that of the position over the cycle.
         Velocity => velocity: f64, "u/s";
     }
@@ -49,11 +42,8 @@ impl Block for McReadActualVelocity {
             .core
             .scan(inputs.enable, inputs.axis, context, Axis::actual_velocity);
         Outputs {
-            valid: reading.is_valid(),
-            busy: reading.is_busy(),
-            error: reading.is_error(),
-            error_id: reading.error_id(),
             velocity: reading.value(),
+            ..(&reading).into()
         }
     }
 }

@@ -16,14 +16,7 @@ pins! {
     }
     vendor_inputs {}
     outputs {
-        /// The other outputs can be relied on.
-        Valid => valid: bool, "";
-        /// Enabled, and not ended by an error.
-        Busy => busy: bool, "";
-        /// The block cannot read.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..reading;
         /// The axis error; 0 if there is none.
         AxisErrorID => axis_error_id: ErrorId, "";
     }
@@ -49,11 +42,8 @@ impl Block for McReadAxisError {
             .core
             .scan(inputs.enable, inputs.axis, context, |axis| Ok(axis.error_id()));
         Outputs {
-            valid: reading.is_valid(),
-            busy: reading.is_busy(),
-            error: reading.is_error(),
-            error_id: reading.error_id(),
             axis_error_id: reading.value(),
+            ..(&reading).into()
         }
     }
 }

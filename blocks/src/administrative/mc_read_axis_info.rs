@@ -2,7 +2,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name; rules R52 to R59.
 
-use standstill_axis::{AxisId, DriveSignals, ErrorId, Planner};
+use standstill_axis::{AxisId, DriveSignals, Planner};
 use standstill_fb::{Block, Context, EnableCore, Group, pins};
 
 pins! {
@@ -16,14 +16,7 @@ pins! {
     }
     vendor_inputs {}
     outputs {
-        /// The other outputs can be relied on.
-        Valid => valid: bool, "";
-        /// Enabled, and not ended by an error.
-        Busy => busy: bool, "";
-        /// The block cannot read.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..reading;
         /// The home switch is active; FALSE if the drive reports none, as the ideal drive.
         HomeAbsSwitch => home_abs_switch: bool, "";
         /// The positive hardware end switch is active; FALSE if the drive reports none, as the ideal drive.
@@ -83,10 +76,6 @@ impl Block for McReadAxisInfo {
         });
         let info = reading.value();
         Outputs {
-            valid: reading.is_valid(),
-            busy: reading.is_busy(),
-            error: reading.is_error(),
-            error_id: reading.error_id(),
             home_abs_switch: info.signals.home_switch,
             limit_switch_pos: info.signals.limit_switch_positive,
             limit_switch_neg: info.signals.limit_switch_negative,
@@ -96,6 +85,7 @@ impl Block for McReadAxisInfo {
             power_on: info.powered,
             is_homed: info.homed,
             axis_warning: info.signals.warning,
+            ..(&reading).into()
         }
     }
 }

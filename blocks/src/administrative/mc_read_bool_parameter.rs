@@ -2,7 +2,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name and the list of parameters; rules R52 to R59.
 
-use standstill_axis::{AxisId, ErrorId, Planner};
+use standstill_axis::{AxisId, Planner};
 use standstill_fb::{Block, Context, EnableCore, Group, Int, pins};
 
 pins! {
@@ -18,14 +18,7 @@ pins! {
     }
     vendor_inputs {}
     outputs {
-        /// The other outputs can be relied on.
-        Valid => valid: bool, "";
-        /// Enabled, and not ended by an error.
-        Busy => busy: bool, "";
-        /// The block cannot read.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..reading;
         /// Its value.
         Value => value: bool, "";
     }
@@ -51,11 +44,8 @@ impl Block for McReadBoolParameter {
             axis.bool_parameter(inputs.parameter_number)
         });
         Outputs {
-            valid: reading.is_valid(),
-            busy: reading.is_busy(),
-            error: reading.is_error(),
-            error_id: reading.error_id(),
             value: reading.value(),
+            ..(&reading).into()
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name; rules R52 to R59, V26.
 
-use standstill_axis::{ErrorId, Planner};
+use standstill_axis::Planner;
 use standstill_fb::{Block, Context, EnableCore, Group, Int, OutputRef, pins};
 
 pins! {
@@ -18,14 +18,7 @@ pins! {
     }
     vendor_inputs {}
     outputs {
-        /// The other outputs can be relied on.
-        Valid => valid: bool, "";
-        /// Enabled, and not ended by an error.
-        Busy => busy: bool, "";
-        /// The block cannot read.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..reading;
         /// What the drive shows there, as latched in this scan: what was written in the scan before.
         Value => value: bool, "";
     }
@@ -53,11 +46,8 @@ impl Block for McReadDigitalOutput {
                 axis.digital_output(inputs.output_number)
             });
         Outputs {
-            valid: reading.is_valid(),
-            busy: reading.is_busy(),
-            error: reading.is_error(),
-            error_id: reading.error_id(),
             value: reading.value(),
+            ..(&reading).into()
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name; rules R52 to R59, V12b.
 
-use standstill_axis::{AxisId, ErrorId, Pace, Planner, Raw, ValueSource, Way};
+use standstill_axis::{AxisId, Pace, Planner, Raw, ValueSource, Way};
 use standstill_fb::{Block, Context, EnableCore, Group, pins};
 
 pins! {
@@ -18,14 +18,7 @@ pins! {
     }
     vendor_inputs {}
     outputs {
-        /// The other outputs can be relied on.
-        Valid => valid: bool, "";
-        /// Enabled, and not ended by an error.
-        Busy => busy: bool, "";
-        /// The block cannot read.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..reading;
         /// The velocity is constant, 0 too; commanded values change in jumps only; a window applies to actual ones.
         ConstantVelocity => constant_velocity: bool, "";
         /// The magnitude of the velocity grows.
@@ -62,15 +55,12 @@ impl Block for McReadMotionState {
         let state = reading.value();
         let (pace, way) = (state.map(|state| state.pace), state.map(|state| state.way));
         Outputs {
-            valid: reading.is_valid(),
-            busy: reading.is_busy(),
-            error: reading.is_error(),
-            error_id: reading.error_id(),
             constant_velocity: pace == Some(Pace::Constant),
             accelerating: pace == Some(Pace::Accelerating),
             decelerating: pace == Some(Pace::Decelerating),
             direction_positive: way == Some(Way::Positive),
             direction_negative: way == Some(Way::Negative),
+            ..(&reading).into()
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name; rules R52 to R59.
 
-use standstill_axis::{AxisId, AxisState, ErrorId, Planner};
+use standstill_axis::{AxisId, AxisState, Planner};
 use standstill_fb::{Block, Context, EnableCore, Group, pins};
 
 pins! {
@@ -16,14 +16,7 @@ pins! {
     }
     vendor_inputs {}
     outputs {
-        /// The other outputs can be relied on.
-        Valid => valid: bool, "";
-        /// Enabled, and not ended by an error.
-        Busy => busy: bool, "";
-        /// The block cannot read.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..reading;
         /// The axis is in this state.
         ErrorStop => error_stop: bool, "";
         /// The axis is in this state.
@@ -64,10 +57,6 @@ impl Block for McReadStatus {
             .scan(inputs.enable, inputs.axis, context, |axis| Ok(Some(axis.state())));
         let state = reading.value();
         Outputs {
-            valid: reading.is_valid(),
-            busy: reading.is_busy(),
-            error: reading.is_error(),
-            error_id: reading.error_id(),
             error_stop: state == Some(AxisState::ErrorStop),
             disabled: state == Some(AxisState::Disabled),
             stopping: state == Some(AxisState::Stopping),
@@ -76,6 +65,7 @@ impl Block for McReadStatus {
             discrete_motion: state == Some(AxisState::DiscreteMotion),
             continuous_motion: state == Some(AxisState::ContinuousMotion),
             synchronized_motion: state == Some(AxisState::SynchronizedMotion),
+            ..(&reading).into()
         }
     }
 }

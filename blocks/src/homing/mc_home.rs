@@ -4,7 +4,7 @@
 //!
 //! The axis decides what to search and how: see `docs/homing.md`.
 
-use standstill_axis::{AxisId, BufferMode, Command, ErrorId, Planner, Raw, Request};
+use standstill_axis::{AxisId, BufferMode, Command, Planner, Raw, Request};
 use standstill_fb::{Block, Context, ExecuteCore, Group, pins};
 
 pins! {
@@ -24,16 +24,7 @@ pins! {
     outputs {
         /// The reference is known and named, and the axis stands.
         Done => done: bool, "";
-        /// Not finished.
-        Busy => busy: bool, "";
-        /// The block controls the axis.
-        Active => active: bool, "";
-        /// Interrupted by another command.
-        CommandAborted => command_aborted: bool, "";
-        /// Refused, or ended by an error.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..motion;
     }
     vendor_outputs {}
 }
@@ -67,11 +58,7 @@ impl Block for McHome {
         });
         Outputs {
             done: phase.is_done(),
-            busy: phase.is_busy(),
-            active: phase.is_active(),
-            command_aborted: phase.is_aborted(),
-            error: phase.is_error(),
-            error_id: phase.error_id(),
+            ..phase.into()
         }
     }
 }

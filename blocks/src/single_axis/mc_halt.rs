@@ -2,7 +2,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 
-use standstill_axis::{AxisId, BufferMode, Command, Dynamics, ErrorId, Planner, Raw, Request};
+use standstill_axis::{AxisId, BufferMode, Command, Dynamics, Planner, Raw, Request};
 use standstill_fb::{Block, Context, ExecuteCore, Group, pins};
 
 pins! {
@@ -21,22 +21,12 @@ pins! {
         BufferMode => buffer_mode: Raw<BufferMode> = Raw::new(0), "";
     }
     vendor_inputs {
-        /// Snap; 0 takes the axis default, and no limit if there is none.
-        Snap => snap: f64 = 0.0, "u/s^4";
+        ..snap;
     }
     outputs {
         /// The axis stands.
         Done => done: bool, "";
-        /// Not finished.
-        Busy => busy: bool, "";
-        /// The block controls the axis.
-        Active => active: bool, "";
-        /// Interrupted by another command.
-        CommandAborted => command_aborted: bool, "";
-        /// Refused, or ended by an error.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..motion;
     }
     vendor_outputs {}
 }
@@ -75,11 +65,7 @@ impl Block for McHalt {
         });
         Outputs {
             done: phase.is_done(),
-            busy: phase.is_busy(),
-            active: phase.is_active(),
-            command_aborted: phase.is_aborted(),
-            error: phase.is_error(),
-            error_id: phase.error_id(),
+            ..phase.into()
         }
     }
 }

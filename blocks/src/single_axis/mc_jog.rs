@@ -3,7 +3,7 @@
 //! Source: none, this block is not in the PLCopen standard; pins and outputs follow its rules R8, R19 to R38 as far as
 //! a level of two buttons has an edge. What the block does stands in docs/jogging.md.
 
-use standstill_axis::{Axis, AxisId, Command, CommandId, Dynamics, ErrorId, Planner, Request, Scope};
+use standstill_axis::{Axis, AxisId, Command, CommandId, Dynamics, ErrorId, Fate, Planner, Request, Scope};
 use standstill_fb::{Block, Context, Group, Phase, pins};
 
 pins! {
@@ -28,8 +28,7 @@ pins! {
         Deceleration => deceleration: f64 = 0.0, "u/s^2";
         /// Jerk; 0 takes the axis default, and no limit if there is none.
         Jerk => jerk: f64 = 0.0, "u/s^3";
-        /// Snap; 0 takes the axis default, and no limit if there is none.
-        Snap => snap: f64 = 0.0, "u/s^4";
+        ..snap;
     }
     outputs {}
     vendor_outputs {
@@ -150,17 +149,17 @@ impl McJog {
         if held != self.held {
             self.held = held;
             if let Err(error) = self.change(inputs, context) {
-                self.phase = Phase::Failed(error);
+                self.phase = Fate::Failed(error).into();
                 return self.phase;
             }
         }
         let phase = match &self.given {
             Some(given) => match context.axes.get(given.axis.index()) {
                 Some(axis) => axis.fate(given.id).into(),
-                None => Phase::Failed(ErrorId::AxisUnknown),
+                None => Fate::Failed(ErrorId::AxisUnknown).into(),
             },
             // A result shown in an earlier call disappears when no button is held.
-            None if held.is_none() => Phase::Idle,
+            None if held.is_none() => Phase::default(),
             None => self.phase,
         };
         if !phase.is_busy() {

@@ -2,7 +2,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 
-use standstill_axis::{AxisId, BufferMode, Command, Direction, Dynamics, ErrorId, Planner, Raw, Request};
+use standstill_axis::{AxisId, BufferMode, Command, Direction, Planner, Raw};
 use standstill_fb::{Block, Context, Group, Move, UpdateCore, pins};
 
 pins! {
@@ -19,34 +19,19 @@ pins! {
         Position => position: f64 = 0.0, "u";
         /// Largest velocity, above 0; not necessarily reached.
         Velocity => velocity: f64 = 0.0, "u/s";
-        /// Rate while the speed grows; 0 takes the axis default.
-        Acceleration => acceleration: f64 = 0.0, "u/s^2";
-        /// Rate while the speed falls; 0 takes the axis default.
-        Deceleration => deceleration: f64 = 0.0, "u/s^2";
-        /// Jerk; 0 takes the axis default, and no limit if there is none.
-        Jerk => jerk: f64 = 0.0, "u/s^3";
+        ..rates;
         /// Way round on a modulo axis; ignored on a linear one.
         Direction => direction: Raw<Direction> = Raw::new(0), "";
         /// How the command follows the one before it.
         BufferMode => buffer_mode: Raw<BufferMode> = Raw::new(0), "";
     }
     vendor_inputs {
-        /// Snap; 0 takes the axis default, and no limit if there is none.
-        Snap => snap: f64 = 0.0, "u/s^4";
+        ..snap;
     }
     outputs {
         /// The target is reached.
         Done => done: bool, "";
-        /// Not finished.
-        Busy => busy: bool, "";
-        /// The block controls the axis.
-        Active => active: bool, "";
-        /// Interrupted by another command.
-        CommandAborted => command_aborted: bool, "";
-        /// Refused, or ended by an error.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..motion;
     }
     vendor_outputs {}
 }
@@ -74,31 +59,12 @@ impl Block for McMoveAbsolute {
         let values = || Command::MoveAbsolute {
             position: inputs.position,
             direction: inputs.direction,
-            dynamics: Dynamics {
-                velocity: inputs.velocity,
-                acceleration: inputs.acceleration,
-                deceleration: inputs.deceleration,
-                jerk: inputs.jerk,
-                snap: inputs.snap,
-            },
+            dynamics: inputs.dynamics(inputs.velocity),
         };
-        let phase = self
-            .core
-            .scan(pins, context, values, |axis, command, replaces, scope| {
-                let request = Request {
-                    command,
-                    buffer_mode: inputs.buffer_mode,
-                    replaces,
-                };
-                axis.command(&request, scope)
-            });
+        let phase = self.core.command(pins, inputs.buffer_mode, context, values);
         Outputs {
             done: phase.is_done(),
-            busy: phase.is_busy(),
-            active: phase.is_active(),
-            command_aborted: phase.is_aborted(),
-            error: phase.is_error(),
-            error_id: phase.error_id(),
+            ..phase.into()
         }
     }
 }

@@ -19,8 +19,7 @@ pins! {
         Jerk => jerk: f64 = 0.0, "u/s^3";
     }
     vendor_inputs {
-        /// Snap; 0 takes the axis default, and no limit if there is none.
-        Snap => snap: f64 = 0.0, "u/s^4";
+        ..snap;
     }
     outputs {
         /// The velocity is zero.

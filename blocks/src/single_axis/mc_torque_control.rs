@@ -2,7 +2,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name; V25.
 
-use standstill_axis::{AxisId, BufferMode, Command, Direction, Dynamics, ErrorId, Planner, Raw, Request};
+use standstill_axis::{AxisId, BufferMode, Command, Direction, Dynamics, Planner, Raw};
 use standstill_fb::{Block, Context, Group, Move, UpdateCore, pins};
 
 pins! {
@@ -39,16 +39,7 @@ pins! {
     outputs {
         /// The torque ordered is the commanded one, and nothing limits it.
         InTorque => in_torque: bool, "";
-        /// Not finished.
-        Busy => busy: bool, "";
-        /// The block controls the axis.
-        Active => active: bool, "";
-        /// Interrupted by another command.
-        CommandAborted => command_aborted: bool, "";
-        /// Refused, or ended by an error.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..motion;
     }
     vendor_outputs {}
 }
@@ -85,23 +76,10 @@ impl Block for McTorqueControl {
                 snap: inputs.snap,
             },
         };
-        let phase = self
-            .core
-            .scan(pins, context, values, |axis, command, replaces, scope| {
-                let request = Request {
-                    command,
-                    buffer_mode: inputs.buffer_mode,
-                    replaces,
-                };
-                axis.command(&request, scope)
-            });
+        let phase = self.core.command(pins, inputs.buffer_mode, context, values);
         Outputs {
             in_torque: phase.is_reached(),
-            busy: phase.is_busy(),
-            active: phase.is_active(),
-            command_aborted: phase.is_aborted(),
-            error: phase.is_error(),
-            error_id: phase.error_id(),
+            ..phase.into()
         }
     }
 }

@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, section of that name. The curve is told in docs/profiles.md.
 
 use super::profile::{Pins, Point, Points, ProfileCore, Shape};
-use standstill_axis::{AxisId, BufferMode, ErrorId, Planner, ProfileKind, ProfileRow, Raw};
+use standstill_axis::{AxisId, BufferMode, Planner, ProfileKind, ProfileRow, Raw};
 use standstill_fb::{Block, Context, Group, Time, pins, record};
 
 record! {
@@ -56,16 +56,7 @@ pins! {
     outputs {
         /// The last point has been reached; the axis keeps its velocity.
         ProfileCompleted => profile_completed: bool, "";
-        /// Not finished.
-        Busy => busy: bool, "";
-        /// The block controls the axis.
-        Active => active: bool, "";
-        /// Interrupted by another command.
-        CommandAborted => command_aborted: bool, "";
-        /// Refused, or ended by an error.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..motion;
     }
     vendor_outputs {}
 }
@@ -100,11 +91,7 @@ impl Block for McVelocityProfile {
         let phase = self.core.scan(&pins, &shape, context);
         Outputs {
             profile_completed: phase.is_done(),
-            busy: phase.is_busy(),
-            active: phase.is_active(),
-            command_aborted: phase.is_aborted(),
-            error: phase.is_error(),
-            error_id: phase.error_id(),
+            ..phase.into()
         }
     }
 }

@@ -6,62 +6,52 @@
 use crate::Context;
 use standstill_axis::{AxisId, AxisState, CommandId, EdgeWhileBusy, ErrorId, Fate, Planner};
 
-/// What an Execute-type block shows. Outputs are derived from it, so two terminal outputs at once cannot be
-/// written (R21).
+/// What an Execute-type block shows: the fate of its command, or nothing. Outputs are derived from it, so two terminal
+/// outputs at once cannot be written (R21).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Phase {
-    /// Nothing commanded, or the result was seen.
-    #[default]
-    Idle,
-    /// Commanded, not finished.
-    Busy {
-        /// The command owns the axis.
-        active: bool,
-        /// An endless motion has reached its goal.
-        reached: bool,
-    },
-    /// Completed.
-    Done,
-    /// Interrupted by another command.
-    Aborted,
-    /// Refused, or ended by an error.
-    Failed(ErrorId),
-}
+pub struct Phase(Option<Fate>);
 
 impl Phase {
     /// `Done`.
+    #[inline]
     pub fn is_done(self) -> bool {
-        self == Self::Done
+        self.0 == Some(Fate::Done)
     }
 
     /// `Busy`.
+    #[inline]
     pub fn is_busy(self) -> bool {
-        matches!(self, Self::Busy { .. })
+        matches!(self.0, Some(Fate::Waiting | Fate::Active { .. }))
     }
 
     /// `Active`.
+    #[inline]
     pub fn is_active(self) -> bool {
-        matches!(self, Self::Busy { active: true, .. })
+        matches!(self.0, Some(Fate::Active { .. }))
     }
 
     /// `InVelocity` and its like.
+    #[inline]
     pub fn is_reached(self) -> bool {
-        matches!(self, Self::Busy { reached: true, .. })
+        self.0 == Some(Fate::Active { reached: true })
     }
 
     /// `CommandAborted`.
+    #[inline]
     pub fn is_aborted(self) -> bool {
-        self == Self::Aborted
+        self.0 == Some(Fate::Aborted)
     }
 
     /// `Error`.
+    #[inline]
     pub fn is_error(self) -> bool {
-        matches!(self, Self::Failed(_))
+        matches!(self.0, Some(Fate::Failed(_)))
     }
 
     /// `ErrorID`.
+    #[inline]
     pub fn error_id(self) -> ErrorId {
-        if let Self::Failed(id) = self {
+        if let Some(Fate::Failed(id)) = self.0 {
             id
         } else {
             ErrorId::None
@@ -70,20 +60,9 @@ impl Phase {
 }
 
 impl From<Fate> for Phase {
+    #[inline]
     fn from(fate: Fate) -> Self {
-        match fate {
-            Fate::Waiting => Self::Busy {
-                active: false,
-                reached: false,
-            },
-            Fate::Active { reached } => Self::Busy {
-                active: true,
-                reached,
-            },
-            Fate::Done => Self::Done,
-            Fate::Aborted => Self::Aborted,
-            Fate::Failed(id) => Self::Failed(id),
-        }
+        Self(Some(fate))
     }
 }
 
@@ -112,19 +91,38 @@ impl ExecuteCore {
         context: &mut Context<'_, P>,
         issue: impl FnOnce(&mut Context<'_, P>, Option<CommandId>) -> Result<(AxisId, CommandId), ErrorId>,
     ) -> Phase {
+        if self.rises(execute, context)
+            && let Err(error) = self.start(context, issue)
+        {
+            return self.fail(error);
+        }
+        self.status(execute, context)
+    }
+
+    /// Whether `execute` rises in this call and gives a command.
+    #[inline]
+    pub(crate) fn rises<P: Planner>(&mut self, execute: bool, context: &Context<'_, P>) -> bool {
         let rising = execute && !self.executed && !self.ignores_edges(context);
         self.executed = execute;
-        if rising && let Err(id) = self.start(context, issue) {
-            self.phase = Phase::Failed(id);
-            return self.phase;
-        }
+        rising
+    }
+
+    /// The command of the rising edge was refused.
+    pub(crate) fn fail(&mut self, error: ErrorId) -> Phase {
+        self.phase = Fate::Failed(error).into();
+        self.phase
+    }
+
+    /// What the block shows in a call, after the command of a rising edge was given.
+    #[inline]
+    pub(crate) fn status<P: Planner>(&mut self, execute: bool, context: &Context<'_, P>) -> Phase {
         let phase = match self.command {
             Some((axis, id)) => match context.axes.get(axis.index()) {
                 Some(axis) => axis.fate(id).into(),
-                None => Phase::Failed(ErrorId::AxisUnknown),
+                None => Fate::Failed(ErrorId::AxisUnknown).into(),
             },
             // A result shown in an earlier call disappears when Execute is FALSE (R28, R30).
-            None if !execute => Phase::Idle,
+            None if !execute => Phase::default(),
             None => self.phase,
         };
         if !phase.is_busy() {
@@ -158,7 +156,8 @@ impl ExecuteCore {
         })
     }
 
-    fn start<P: Planner>(
+    /// Gives the command of a rising edge, as [`ExecuteCore::scan`] says.
+    pub(crate) fn start<P: Planner>(
         &mut self,
         context: &mut Context<'_, P>,
         issue: impl FnOnce(&mut Context<'_, P>, Option<CommandId>) -> Result<(AxisId, CommandId), ErrorId>,

@@ -13,6 +13,7 @@ mod block;
 mod enable;
 mod execute;
 pub mod flat;
+mod pin_groups;
 mod pins;
 pub mod ring;
 mod table;
@@ -25,5 +26,7 @@ pub use pins::{
     Direction, EnumInfo, InputRef, Int, OutputRef, Pin, PinError, PinType, PinValue, Pins, Time, Value,
     axis_number, numbered_axis,
 };
+#[doc(hidden)]
+pub use standstill_axis::{Dynamics, ErrorId};
 pub use table::{Record, Table, TableInfo, TableOf, TableRef};
 pub use update::{Move, UpdateCore, Values};

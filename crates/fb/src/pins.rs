@@ -427,28 +427,54 @@ pub trait Pins: Copy + Default {
 /// Declares the `Inputs` and `Outputs` structs of a block and their tables.
 ///
 /// Sections are in the order of the trace. `vendor_inputs` and `vendor_outputs` are pins the standard
-/// does not have. They come after all standard pins of their kind.
+/// does not have. They come after all standard pins of their kind. `..name;` stands for the pins of a group
+/// (`pin_groups.rs`).
 ///
 /// ```text
 /// pins! {
 ///     in_outs { /// The axis to move.
 ///               Axis => axis: AxisId; }
 ///     inputs { /// A rising edge starts the move.
-///              Execute => execute: bool = false, ""; }
+///              Execute => execute: bool = false, "";
+///              ..rates; }
 ///     vendor_inputs { .. }
 ///     outputs { /// Target reached.
-///               Done => done: bool, ""; }
+///               Done => done: bool, "";
+///               ..motion; }
 ///     vendor_outputs { .. }
 /// }
 /// ```
 #[macro_export]
 macro_rules! pins {
-    (
-        in_outs { $($(#[doc = $io_doc:literal])+ $io_pin:ident => $io:ident: $io_ty:ty;)* }
-        inputs { $($(#[doc = $in_doc:literal])+ $in_pin:ident => $in:ident: $in_ty:ty = $in_default:expr, $in_unit:literal;)* }
-        vendor_inputs { $($(#[doc = $vi_doc:literal])+ $vi_pin:ident => $vi:ident: $vi_ty:ty = $vi_default:expr, $vi_unit:literal;)* }
-        outputs { $($(#[doc = $out_doc:literal])+ $out_pin:ident => $out:ident: $out_ty:ty, $out_unit:literal;)* }
-        vendor_outputs { $($(#[doc = $vo_doc:literal])+ $vo_pin:ident => $vo:ident: $vo_ty:ty, $vo_unit:literal;)* }
+    (in_outs $in_outs:tt inputs $inputs:tt vendor_inputs $vendor_inputs:tt outputs $outputs:tt vendor_outputs $vendor_outputs:tt) => {
+        $crate::pins!(@rows () () $in_outs $inputs $vendor_inputs $outputs $vendor_outputs);
+    };
+    // Row after row of section after section, until groups are rows too: the sections that are done, the rows of the present
+    // one, what is left of it, the sections behind it.
+    (@rows $done:tt $rows:tt { ..$group:ident; $($left:tt)* } $($later:tt)*) => {
+        $crate::pin_group!($group $done $rows { $($left)* } $($later)*);
+    };
+    (@rows $done:tt ($($rows:tt)*) { $(#[doc = $doc:literal])+ $pin:ident => $field:ident: $ty:ty; $($left:tt)* } $($later:tt)*) => {
+        $crate::pins!(@rows $done ($($rows)* $(#[doc = $doc])+ $pin => $field: $ty;) { $($left)* } $($later)*);
+    };
+    (@rows $done:tt ($($rows:tt)*) { $(#[doc = $doc:literal])+ $pin:ident => $field:ident: $ty:ty = $default:expr, $unit:literal; $($left:tt)* } $($later:tt)*) => {
+        $crate::pins!(@rows $done ($($rows)* $(#[doc = $doc])+ $pin => $field: $ty = $default, $unit;) { $($left)* } $($later)*);
+    };
+    (@rows $done:tt ($($rows:tt)*) { $(#[doc = $doc:literal])+ $pin:ident => $field:ident: $ty:ty, $unit:literal; $($left:tt)* } $($later:tt)*) => {
+        $crate::pins!(@rows $done ($($rows)* $(#[doc = $doc])+ $pin => $field: $ty, $unit;) { $($left)* } $($later)*);
+    };
+    (@rows ($($done:tt)*) $rows:tt {} $next:tt $($later:tt)*) => {
+        $crate::pins!(@rows ($($done)* $rows) () $next $($later)*);
+    };
+    (@rows ($($done:tt)*) $rows:tt {}) => {
+        $crate::pins!(@structs $($done)* $rows);
+    };
+    (@structs
+        ($($(#[doc = $io_doc:literal])+ $io_pin:ident => $io:ident: $io_ty:ty;)*)
+        ($($(#[doc = $in_doc:literal])+ $in_pin:ident => $in:ident: $in_ty:ty = $in_default:expr, $in_unit:literal;)*)
+        ($($(#[doc = $vi_doc:literal])+ $vi_pin:ident => $vi:ident: $vi_ty:ty = $vi_default:expr, $vi_unit:literal;)*)
+        ($($(#[doc = $out_doc:literal])+ $out_pin:ident => $out:ident: $out_ty:ty, $out_unit:literal;)*)
+        ($($(#[doc = $vo_doc:literal])+ $vo_pin:ident => $vo:ident: $vo_ty:ty, $vo_unit:literal;)*)
     ) => {
         /// What the caller sets: VAR_IN_OUT and VAR_INPUT.
         #[derive(Clone, Copy, Debug)]

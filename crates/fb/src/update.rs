@@ -4,7 +4,8 @@
 
 use crate::{Context, ExecuteCore, Phase};
 use standstill_axis::{
-    Axis, AxisId, Command, CommandId, ErrorId, Planner, Scope, Superimpose, update_coupled,
+    Axis, AxisId, BufferMode, Command, CommandId, ErrorId, Planner, Raw, Request, Scope, Superimpose,
+    update_coupled,
 };
 
 /// The values of a command, from the pins of its block.
@@ -68,6 +69,27 @@ impl<V> Default for UpdateCore<V> {
     }
 }
 
+impl UpdateCore<Command> {
+    /// As [`UpdateCore::scan`], for a command that the axis takes with this buffer mode.
+    #[inline]
+    pub fn command<P: Planner>(
+        &mut self,
+        pins: Move,
+        buffer_mode: Raw<BufferMode>,
+        context: &mut Context<'_, P>,
+        values: impl Fn() -> Command,
+    ) -> Phase {
+        self.scan(pins, context, values, |axis, command, replaces, scope| {
+            let request = Request {
+                command,
+                buffer_mode,
+                replaces,
+            };
+            axis.command(&request, scope)
+        })
+    }
+}
+
 impl<V: Values> UpdateCore<V> {
     /// The phase shown in the last call.
     pub fn phase(&self) -> Phase {
@@ -106,13 +128,19 @@ impl<V: Values> UpdateCore<V> {
         if self.seen.is_some() {
             self.update(pins, context, &values);
         }
-        let seen = &mut self.seen;
-        self.execute.scan(pins.execute, context, |context, replaces| {
-            let given = values(context);
-            let id = issue(context, given, replaces)?;
-            *seen = pins.continuous_update.then_some(given);
-            Ok((pins.axis, id))
-        })
+        if self.execute.rises(pins.execute, context) {
+            let seen = &mut self.seen;
+            let started = self.execute.start(context, |context, replaces| {
+                let given = values(context);
+                let id = issue(context, given, replaces)?;
+                *seen = pins.continuous_update.then_some(given);
+                Ok((pins.axis, id))
+            });
+            if let Err(error) = started {
+                return self.execute.fail(error);
+            }
+        }
+        self.execute.status(pins.execute, context)
     }
 
     /// Changes are passed before the status is read, so that their effect shows in the same call.
