@@ -259,18 +259,6 @@ pub trait Plan: Copy + core::fmt::Debug {
     /// velocity kept for ever.
     fn at(&self, scan: u64) -> Setpoint;
 
-    /// [`Plan::at`] for plans that compute it in a few operations, for inlining; `None` for all others.
-    #[inline(always)]
-    fn brief(&self, _scan: u64) -> Option<Setpoint> {
-        None
-    }
-
-    /// [`Plan::at`] in the most frequent phase of a motion, if it needs no call; `None` otherwise.
-    #[inline(always)]
-    fn usual(&self, _scan: u64) -> Option<Setpoint> {
-        None
-    }
-
     /// As [`Plan::at`], for the motion in progress, in rising scans. A plan may remember its present
     /// phase.
     #[inline]
@@ -630,33 +618,16 @@ impl Plan for StandardPlan {
         }
     }
 
-    #[inline(always)]
-    fn brief(&self, scan: u64) -> Option<Setpoint> {
-        match self {
-            Self::Grid(grid) => Some(grid.at(scan)),
-            Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) | Self::Profile(_) => None,
-        }
-    }
-
-    #[inline(always)]
-    fn usual(&self, scan: u64) -> Option<Setpoint> {
-        match self {
-            Self::Online(plan) if plan.is_in_piece(scan) => Some(plan.in_piece(scan)),
-            Self::Ramp(ramp) if ramp.is_at_goal(scan) => Some(ramp.at_goal(scan)),
-            Self::Grid(_)
-            | Self::Unequal(_)
-            | Self::Ramp(_)
-            | Self::Online(_)
-            | Self::Sampled(_)
-            | Self::Profile(_) => None,
-        }
-    }
-
+    // What most scans of a motion are in is inlined too.
     #[inline(always)]
     fn next(&mut self, scan: u64) -> Setpoint {
-        match self.usual(scan) {
-            Some(setpoint) => setpoint,
-            None => Setpoint::of(self.next_numbers(scan)),
+        match self {
+            Self::Grid(grid) => grid.at(scan),
+            Self::Online(plan) if plan.is_in_piece(scan) => plan.in_piece(scan),
+            Self::Ramp(ramp) if ramp.is_at_goal(scan) => ramp.at_goal(scan),
+            Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) | Self::Profile(_) => {
+                Setpoint::of(self.next_numbers(scan))
+            }
         }
     }
 

@@ -225,25 +225,8 @@ impl<P: Plan> Mover<P> {
         (self.in_force, self.before) = (limits, limits);
     }
 
-    /// The next set-point of the plan, where that is told in a few operations.
+    /// The next set-point of the plan; `None` without one.
     #[inline(always)]
-    pub fn next_brief(&self) -> Option<Setpoint> {
-        let Motion::Run { plan, elapsed, .. } = &self.motion else {
-            return None;
-        };
-        plan.brief(elapsed.wrapping_add(1))
-    }
-
-    /// The same where it takes some more.
-    #[inline(always)]
-    pub fn next_usual(&self) -> Option<Setpoint> {
-        let Motion::Run { plan, elapsed, .. } = &self.motion else {
-            return None;
-        };
-        plan.usual(elapsed.wrapping_add(1))
-    }
-
-    /// The same anywhere in the plan; `None` without one.
     pub fn next(&mut self) -> Option<Setpoint> {
         let Motion::Run { plan, elapsed, .. } = &mut self.motion else {
             return None;

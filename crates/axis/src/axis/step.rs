@@ -50,20 +50,6 @@ impl<P: Planner> Axis<P> {
     // Inlined for the same reason as `Mover::publish`.
     #[inline(always)]
     fn step_along_plan(&mut self, scope: &mut Scope<'_>) {
-        // Two questions and a copy of the rest of the step for each: where both kinds of plan met again, the compiler
-        // took the set-point apart and put it together, which cost a scan a fifth.
-        if let Some(next) = self.mover.next_brief() {
-            self.step_to(next, scope);
-        } else if let Some(next) = self.mover.next_usual() {
-            self.step_to(next, scope);
-        } else {
-            self.step_by_call(scope);
-        }
-    }
-
-    /// The same where it takes a call to tell, as where a piece of a plan begins.
-    #[inline(never)]
-    fn step_by_call(&mut self, scope: &mut Scope<'_>) {
         if let Some(next) = self.mover.next() {
             self.step_to(next, scope);
         }
