@@ -19,18 +19,21 @@ impl<P: Planner> Axis<P> {
     /// Cost: three comparisons for a set-point within the limits in force. Any other is checked against
     /// three more sets of limits: those the plan took over from, those of the axis, and the recorded
     /// unavoidable excess.
-    pub(super) fn is_step(&self, next: &Setpoint) -> bool {
-        self.is_usual_step(next) || self.is_wider_step(next)
+    #[inline(always)]
+    pub(super) fn is_step(&self, next: Setpoint) -> bool {
+        self.is_usual_step(&next) || self.is_wider_step(next)
     }
 
     /// The same within the limits in force, which is enough for nearly all set-points.
     #[inline(always)]
-    pub(super) fn is_usual_step(&self, next: &Setpoint) -> bool {
+    fn is_usual_step(&self, next: &Setpoint) -> bool {
         let scan = (1.0 + ROUNDING) * self.planner.cycle();
         steps_within(self.mover.setpoint(), next, self.mover.in_force(), scan, 0.0)
     }
 
-    fn is_wider_step(&self, next: &Setpoint) -> bool {
+    #[cold]
+    #[inline(never)]
+    fn is_wider_step(&self, next: Setpoint) -> bool {
         let layer = self
             .mover
             .layer()
@@ -57,7 +60,7 @@ impl<P: Planner> Axis<P> {
         let scan = (1.0 + slack) * self.planner.cycle();
         // A plan may count its positions from its end, however far that is.
         let coarsest = self.mover.coarsest().max(self.mover.end_of_plan().abs());
-        steps_within(self.mover.setpoint(), next, &widest, scan, coarsest)
+        steps_within(self.mover.setpoint(), &next, &widest, scan, coarsest)
     }
 }
 

@@ -68,24 +68,10 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// [`Axis::would_leave`] for the present set-point of the plan. It is computed again, because a
-    /// reference would keep the set-point to publish out of registers, in every scan of every axis.
-    #[inline(never)]
-    pub(super) fn plan_would_leave(&self) -> bool {
-        match self.mover.motion() {
-            Motion::Run { plan, elapsed, .. } => self.would_leave(&plan.at(*elapsed)),
-            Motion::Follow
-            | Motion::Hold
-            | Motion::Torque { .. }
-            | Motion::Geared
-            | Motion::Closing { .. } => false,
-        }
-    }
-
     /// Whether this is the last scan in which the stop dynamics can keep inside a motion that would leave
     /// the limits. `next` is the set-point about to be published. Cost: at most two ramps.
     #[inline(never)]
-    pub(super) fn would_leave(&self, next: &Setpoint) -> bool {
+    pub(super) fn would_leave(&self, next: Setpoint) -> bool {
         let Some((min, max)) = self.parameters.software_limits else {
             return false;
         };
@@ -125,13 +111,13 @@ impl<P: Planner> Axis<P> {
                     leaves(self.mover.end_of_plan())
                         || self
                             .owner
-                            .is_some_and(|owner| leaves(self.rest(next, &owner.limits)))
+                            .is_some_and(|owner| leaves(self.rest(&next, &owner.limits)))
                         || self.turns_outside()
                 }
                 Watch::Never => return false,
             },
         };
-        comes_out || (leaving && leaves(self.rest(next, &self.stop_limits())))
+        comes_out || (leaving && leaves(self.rest(&next, &self.stop_limits())))
     }
 
     /// Whether, under a torque, a stop that began a scan later would end outside and further out than the

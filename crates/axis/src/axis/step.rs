@@ -5,7 +5,7 @@
 use super::commands::{Ending, Entry, Work};
 use super::{Axis, Calm, Motion, power::Reaction};
 use crate::{AxisEvent, AxisState, ErrorId, Fate, InstanceId, QUEUE_MAX, Scope};
-use standstill_planner::{Plan, Planner, Setpoint};
+use standstill_planner::{Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
     /// Computes the set-point for the end of this scan, then decides completion and hand-over.
@@ -56,32 +56,15 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The plan goes on by a scan, to `next`.
+    // By value to all who ask, so that the usual set-point needs no place in memory.
     #[inline(always)]
     fn step_to(&mut self, next: Setpoint, scope: &mut Scope<'_>) {
         self.mover.count_scan();
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scope);
-        } else if !self.is_usual_step(&next) {
-            self.step_widely(scope);
-        } else if self.mover.is_watched() && self.plan_would_leave() {
-            self.fail(ErrorId::SoftwareLimitReached, scope);
-        } else {
-            self.mover.publish(next);
-        }
-    }
-
-    /// The same for a set-point beyond the limits in force. It is computed again, because handing over a reference would keep
-    /// the usual ones out of registers, in every scan of every axis.
-    #[cold]
-    #[inline(never)]
-    fn step_widely(&mut self, scope: &mut Scope<'_>) {
-        let Some((plan, elapsed)) = self.mover.plan() else {
-            return;
-        };
-        let next = plan.at(elapsed);
-        if !self.is_step(&next) {
+        } else if !self.is_step(next) {
             self.fail(ErrorId::SetpointStep, scope);
-        } else if self.mover.is_watched() && self.would_leave(&next) {
+        } else if self.mover.is_watched() && self.would_leave(next) {
             self.fail(ErrorId::SoftwareLimitReached, scope);
         } else {
             self.mover.publish(next);
@@ -131,7 +114,7 @@ impl<P: Planner> Axis<P> {
         }
         self.trip(error, 0, Reaction::Ramp, scope);
         let ramp = self.mover.begin_plan();
-        let next = ramp.filter(|next| next.is_finite() && self.is_step(next));
+        let next = ramp.filter(|next| next.is_finite() && self.is_step(*next));
         if next.is_none() && ramp.is_some() {
             self.mover.hold();
         }

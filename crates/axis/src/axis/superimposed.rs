@@ -516,10 +516,10 @@ impl<P: Planner> Axis<P> {
         };
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scope);
-        } else if !self.is_following() && !self.is_step(&next) {
+        } else if !self.is_following() && !self.is_step(next) {
             // A set-point that follows the feedback belongs to no plan.
             self.fail(ErrorId::SetpointStep, scope);
-        } else if self.parameters.software_limits.is_some() && self.would_leave(&next) {
+        } else if self.parameters.software_limits.is_some() && self.would_leave(next) {
             self.fail(ErrorId::SoftwareLimitReached, scope);
         } else {
             self.mover.publish(next);

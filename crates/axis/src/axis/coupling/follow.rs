@@ -678,7 +678,7 @@ impl<P: Planner> Axis<P> {
             self.pause(error, scope);
             return self.advance(scope);
         }
-        if self.parameters.software_limits.is_some() && self.would_leave(&next) {
+        if self.parameters.software_limits.is_some() && self.would_leave(next) {
             return self.fail(ErrorId::SoftwareLimitReached, scope);
         }
         if let Some(modulo) = &mut self.modulo {
