@@ -93,6 +93,9 @@ impl Module {
                 most: MODULE_MOST,
             });
         }
+        if cfg!(not(feature = "wat")) && !bytes.starts_with(b"\0asm") && str::from_utf8(bytes).is_ok() {
+            return Err(LoadError::Text);
+        }
         let mut config = Config::default();
         config
             // Lazy compilation would use the fuel of the first scan.

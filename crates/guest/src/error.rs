@@ -8,6 +8,12 @@ pub enum LoadError {
     /// There is no interpreter in this build.
     #[error("this build of standstill runs no guest programs: build it with the feature `guest`")]
     NotBuilt,
+    /// WebAssembly as text, which this build does not read.
+    #[error(
+        "it is WebAssembly as text, and this build of standstill reads modules in their binary form only: translate it with \
+         `wat2wasm`, or build standstill with the feature `wat`"
+    )]
+    Text,
     /// Too many bytes.
     #[error("it has {bytes} bytes, more than the {most} of a guest")]
     Large {

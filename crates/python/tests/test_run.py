@@ -18,11 +18,10 @@ import standstill
 
 ALIKE = [
     "abort/second_move_aborts_first.scan.json",
-    # What stands in other files: a machine, a table, a program in Structured Text, one in WebAssembly.
+    # What stands in other files: a machine, a table, a program in Structured Text.
     "fault_matrix/plant_drive_fault.scan.json",
     "gallery/filler.scan.json",
     "gallery/packer.scan.json",
-    "guests/a_guest_moves_an_axis.scan.json",
 ]
 
 
@@ -53,6 +52,29 @@ def test_a_file_a_dict_and_a_text_are_one_run(tmp_path):
     ]
     assert len({run.digest for run in runs}) == 1
     assert all(run.passed and len(run) == 1200 for run in runs)
+
+
+# `plc_scan`, which does nothing, and a page of memory.
+MODULE = (
+    b"\0asm\1\0\0\0"
+    b"\x01\x06\x01\x60\x02\x7f\x7e\x00"  # a type: (i32, i64)
+    b"\x03\x02\x01\x00"  # a function of it
+    b"\x05\x03\x01\x00\x01"  # a page
+    b"\x07\x15\x02\x08plc_scan\x00\x00\x06memory\x02\x00"
+    b"\x0a\x04\x01\x02\x00\x0b"  # its body: the end
+)
+
+
+def test_a_program_in_webassembly_runs_and_as_text_has_to_be_translated(tmp_path):
+    (tmp_path / "idle.wasm").write_bytes(MODULE)
+    (tmp_path / "idle.wat").write_text("(module)")
+    file = tmp_path / "guest.scan.json"
+    file.write_text(json.dumps(move(programs={"main": {"wasm": "idle.wasm"}})))
+    run = standstill.run(file)
+    assert installed("run", "--quiet", str(file)).stdout.splitlines()[-1].endswith(f"digest {run.digest}")
+    file.write_text(json.dumps(move(programs={"main": {"wasm": "idle.wat"}})))
+    with pytest.raises(standstill.ScriptError, match="wat2wasm"):
+        standstill.run(file)
 
 
 def test_columns_are_arrays_that_are_lent_not_copied():
