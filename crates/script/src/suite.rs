@@ -12,7 +12,7 @@ use standstill_trace::compare::Yardstick;
 use standstill_trace::file::read_regular;
 pub use standstill_trace::file::shown;
 use standstill_trace::golden::GoldenError;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::fs;
 use std::io::{self, Read as _};
@@ -370,6 +370,8 @@ pub struct Texts {
     parsed: Parsed,
     terms: Terms,
     guests: BTreeMap<String, Vec<u8>>,
+    /// Parameters that are used elsewhere than in axes.
+    beside_axes: BTreeSet<String>,
 }
 
 impl Texts {
@@ -393,6 +395,7 @@ impl Texts {
         };
         let script = parsed.script(&[], &mut guest, terms)?;
         let texts = Self {
+            beside_axes: parsed.parameters_beside_axes(),
             parsed,
             terms,
             guests,
@@ -400,11 +403,22 @@ impl Texts {
         Ok((texts, script))
     }
 
-    /// The script with these values replacing its own parameters.
+    /// Gives `script`, which is that of [`Texts::read`] or was varied before, these values of its parameters, of which each call
+    /// names the same.
     ///
     /// # Errors
-    /// [`ScriptError`] if it is not valid with them.
-    pub fn script(&self, parameters: &[(String, f64)]) -> Result<Script, ScriptError> {
+    /// [`ScriptError`] if it is not valid with them; `script` is then of no use until it gets others.
+    pub fn vary(&self, script: &mut Script, parameters: &[(String, f64)]) -> Result<(), ScriptError> {
+        let mut names = parameters.iter().map(|(name, _)| name);
+        let are_in_axes = names.all(|name| !self.beside_axes.contains(name));
+        if !are_in_axes || !self.parsed.vary_axes(script, parameters) {
+            *script = self.script(parameters)?;
+        }
+        Ok(())
+    }
+
+    /// The script with these values replacing its own parameters.
+    fn script(&self, parameters: &[(String, f64)]) -> Result<Script, ScriptError> {
         let mut guest = |inner: &str| {
             let bytes = self.guests.get(inner).cloned();
             bytes.ok_or_else(|| "it was not there before".to_owned())

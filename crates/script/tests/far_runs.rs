@@ -72,7 +72,7 @@ fn far_without_drives(
     let names = whole.trace.columns().iter().map(|column| column.name.clone());
     let names: Vec<String> = names.filter(|name| !name.ends_with("ActualPosition")).collect();
     let mut session =
-        Session::keeping(script, &Kept::read(script, &names)).unwrap_or_else(|error| panic!("{error}"));
+        Session::keeping(script, Kept::read(script, &names)).unwrap_or_else(|error| panic!("{error}"));
     let mut left_out = 0;
     loop {
         match session

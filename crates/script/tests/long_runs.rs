@@ -87,7 +87,7 @@ fn streamed_by<'s>(
 
 /// Scans and verdicts of a run that keeps the columns alone that claims and steps read, and forgets rows as [`streamed`] does.
 fn lean(script: &Script, every: u64) -> Option<(usize, Vec<Verdict>)> {
-    let mut session = Session::keeping(script, &Kept::read(script, &[])).ok()?;
+    let mut session = Session::keeping(script, Kept::read(script, &[])).ok()?;
     while session.advance().ok()? {
         if session.scans() % every == 0 {
             session.forget();

@@ -1,8 +1,10 @@
 //! Folders of scripts: the found scripts, and the effect of each mode on goldens.
 
+use serde_json::{Value, json};
 use standstill_script::golden::{Mode, Standing};
+use standstill_script::read;
 use standstill_script::suite::{
-    Allowed, Report, SuiteError, find, find_texts, judge_file, name, orphans, shown,
+    Allowed, Report, SuiteError, Texts, find, find_texts, judge_file, name, orphans, shown,
 };
 use standstill_trace::compare::{Tolerance, Yardstick};
 use std::fs;
@@ -327,4 +329,75 @@ fn goldens_of_version_1_are_met_and_say_how_they_are_renewed() {
         assert_ne!(golden(script), before);
         assert_eq!(judged(script, Mode::Check).golden, Standing::Same);
     }
+}
+
+/// Makes each number below a node the use of a parameter.
+fn name_numbers(node: &mut Value, parameters: &mut Vec<(String, f64)>) {
+    match node {
+        Value::Number(number) => {
+            let name = format!("p{}", parameters.len());
+            parameters.push((name.clone(), number.as_f64().expect("a number")));
+            *node = json!({ "param": name });
+        }
+        Value::Array(items) => items.iter_mut().for_each(|item| name_numbers(item, parameters)),
+        Value::Object(members) => members
+            .values_mut()
+            .for_each(|node| name_numbers(node, parameters)),
+        Value::Null | Value::Bool(_) | Value::String(_) => {}
+    }
+}
+
+/// With every number of the axes of every script as a parameter, and again with every number of its blocks.
+#[test]
+fn a_script_with_other_values_is_what_reading_it_with_them_gives() {
+    let folder = Folder::new("other_values");
+    let scripts =
+        find(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests")).expect("there are scripts");
+    let (mut good, mut refused) = (0, 0);
+    for (place, key) in scripts
+        .iter()
+        .flat_map(|script| [(script, "axes"), (script, "blocks")])
+    {
+        let mut script: Value =
+            serde_json::from_str(&fs::read_to_string(place).expect("readable")).expect("JSON");
+        if script.get("parameters").is_some() {
+            continue;
+        }
+        let mut own = Vec::new();
+        script
+            .get_mut(key)
+            .into_iter()
+            .for_each(|node| name_numbers(node, &mut own));
+        script["parameters"] = own
+            .iter()
+            .cloned()
+            .map(|(name, value)| (name, json!(value)))
+            .collect();
+        let text = script.to_string();
+        let path = folder.write("a.scan.json", &text);
+        // Scripts with files beside them are left out, and those with numbers that are no places of parameters.
+        let Ok((texts, mut varied)) = Texts::read(&path, &Allowed::default()) else {
+            continue;
+        };
+        // What is compiled tells where it lies in memory.
+        if !varied.formulas.is_empty() {
+            continue;
+        }
+        for factor in [0.5, -1.0, 1.0, 1.0 / 3.0] {
+            let values: Vec<_> = own
+                .iter()
+                .map(|(name, value)| (name.clone(), value * factor))
+                .collect();
+            let found = texts.vary(&mut varied, &values).map(|()| format!("{varied:?}"));
+            let wanted = read(&text, &shown(&path), &values).map(|script| format!("{script:?}"));
+            match &wanted {
+                Ok(_) => good += 1,
+                Err(_) => refused += 1,
+            }
+            let tell = |result: Result<String, _>| result.map_err(|error| format!("{error:?}"));
+            let is_same = tell(found) == tell(wanted);
+            assert!(is_same, "{key} of {} by {factor}", place.display());
+        }
+    }
+    assert!(good > 2000 && refused > 200, "{good} {refused}");
 }

@@ -5,7 +5,7 @@ use standstill_script::model::Script;
 use standstill_script::suite::{self, Allowed, SuiteError, Texts};
 use standstill_script::sweep::Sweep;
 use standstill_script::{Ahead, Failure, Kept, RunError, ScriptError, Session, Verdict, read_sweep, run};
-use standstill_trace::{Extreme, Extremes, digest, shortest};
+use standstill_trace::{Extremes, digest, shortest};
 use std::path::{Path, PathBuf};
 
 /// The columns of every axis: the magnitudes of [`extremes`] and their distance from the limits.
@@ -51,11 +51,20 @@ impl From<ScriptError> for SweepError {
 /// Cells of a case that are held before they are read and dropped: few enough for a processor's cache.
 const CELLS_HELD: usize = 8192;
 
+/// What the cases of a thread have in common.
+#[derive(Clone)]
+pub(crate) struct Bench {
+    /// With the parameters of the last case.
+    script: Script,
+    /// The room that the rows of the last case took.
+    kept: Option<Kept>,
+}
+
 /// The results of a case.
 struct Ran {
     scans: u64,
     verdicts: Vec<Verdict>,
-    extremes: Vec<Extreme>,
+    extremes: Extremes,
     /// The figures of the measures, as written in the table.
     figures: Vec<String>,
     digest: Option<u64>,
@@ -72,7 +81,9 @@ impl Ran {
 pub struct Job {
     sweep: Sweep,
     texts: Texts,
-    script: PathBuf,
+    path: PathBuf,
+    /// With its own parameters.
+    script: Script,
     axes: Vec<String>,
     columns: Vec<String>,
     /// What a case keeps of its rows: where no digest is in the table, only the columns that are read.
@@ -156,7 +167,8 @@ impl Job {
             kept,
             sweep,
             texts,
-            script: file,
+            path: file,
+            script,
             axes,
             key: key.finish(),
         })
@@ -177,12 +189,20 @@ impl Job {
         self.key
     }
 
-    /// Runs a case.
+    /// What a thread needs before its first case.
+    pub(crate) fn bench(&self) -> Bench {
+        Bench {
+            script: self.script.clone(),
+            kept: None,
+        }
+    }
+
+    /// Runs a case. `bench` may be that of another case before.
     ///
     /// # Errors
     /// A defect of this program. A script that cannot be run with these values is no error; it gets a
     /// row.
-    pub fn case(&self, case: u64) -> Result<Row, SweepError> {
+    pub(crate) fn case(&self, bench: &mut Bench, case: u64) -> Result<Row, SweepError> {
         let parameters = self.sweep.case(case);
         let refused = |why: String| Row {
             case,
@@ -190,14 +210,13 @@ impl Job {
             judged: Judged::Refused,
             axis_scans: 0,
         };
-        let script = match self.texts.script(&parameters) {
-            Ok(script) => script,
-            Err(error) => return Ok(refused(first_of(&error))),
-        };
-        let ran = match self.ran(&script) {
+        if let Err(error) = self.texts.vary(&mut bench.script, &parameters) {
+            return Ok(refused(first_of(&error)));
+        }
+        let ran = match self.ran(bench) {
             Ok(ran) => ran,
             Err(source @ RunError::Internal(_)) => {
-                let path = self.script.clone();
+                let path = self.path.clone();
                 return Err(SuiteError::Run { path, source }.into());
             }
             Err(error) => return Ok(refused(error.to_string())),
@@ -216,26 +235,28 @@ impl Job {
         })
     }
 
-    /// Runs a script and takes the values for a table.
-    fn ran(&self, script: &Script) -> Result<Ran, RunError> {
-        let session = || Session::keeping(script, &self.kept);
-        if let Some(ran) = self.take(session()?, Session::advance_far)? {
+    /// Runs the script and takes the values for a table.
+    fn ran(&self, bench: &mut Bench) -> Result<Ran, RunError> {
+        let far = |session: &mut Session<'_>, most| session.advance_far(most);
+        if let Some(ran) = self.take(bench, far)? {
             return Ok(ran);
         }
         let by_scan = |session: &mut Session<'_>, _| Ok(Ahead::Scans(session.advance()?.into()));
-        let ran = self.take(session()?, by_scan)?;
+        let ran = self.take(bench, by_scan)?;
         ran.ok_or_else(|| RunError::Internal("a run scan by scan did not go on".to_owned()))
     }
 
     /// Takes the values for a table; rows are dropped on the way. None if `advance`, which is asked for at most so many scans,
     /// cannot run this script.
-    fn take<'s>(
+    fn take(
         &self,
-        mut session: Session<'s>,
-        advance: impl Fn(&mut Session<'s>, u64) -> Result<Ahead, RunError>,
+        bench: &mut Bench,
+        advance: impl Fn(&mut Session<'_>, u64) -> Result<Ahead, RunError>,
     ) -> Result<Option<Ran>, RunError> {
+        let kept = bench.kept.take().unwrap_or_else(|| self.kept.clone());
+        let mut session = Session::keeping(&bench.script, kept)?;
         let mut digest = self.sweep.has_digest.then(digest::Whole::default);
-        let mut extremes = Extremes::new(session.trace());
+        let mut extremes = Extremes::of_derivatives(session.trace());
         let measures = self.sweep.measures().iter();
         let mut figures: Vec<Figure> = measures
             .map(|measure| Figure::new(measure, session.trace()))
@@ -258,13 +279,15 @@ impl Job {
                 session.forget();
             }
         }
-        Ok(Some(Ran {
+        let ran = Ran {
             scans: session.scans(),
-            verdicts: session.verdicts(),
-            extremes: extremes.all().collect(),
+            verdicts: session.verdicts_untold(),
+            extremes,
             figures: figures.iter().map(Figure::text).collect(),
             digest: digest.map(|digest| digest.finish()),
-        }))
+        };
+        bench.kept = Some(session.into_kept());
+        Ok(Some(ran))
     }
 
     /// Whether the row has a field for every column, and the parameters of this case.
@@ -289,24 +312,20 @@ impl Job {
         ran: Option<&Ran>,
         why: String,
     ) -> Vec<String> {
-        let mut fields = vec![case.to_string()];
+        let mut fields = Vec::with_capacity(self.columns.len());
+        fields.push(case.to_string());
         fields.extend(parameters.iter().map(|(_, value)| shortest(*value)));
         fields.push(judged.word().to_owned());
         if let Some(ran) = ran {
             let held = ran.verdicts.iter().filter(|verdict| verdict.passed()).count();
             fields.push(ran.scans.to_string());
             fields.extend([ran.verdicts.len(), held].map(|count| count.to_string()));
-            for (axis, quantity) in self
-                .axes
-                .iter()
-                .flat_map(|axis| QUANTITIES.map(|quantity| (axis, quantity)))
+            for (axis, quantity) in
+                (0..self.axes.len()).flat_map(|axis| QUANTITIES.map(|quantity| (axis, quantity)))
             {
-                let found = ran
-                    .extremes
-                    .iter()
-                    .find(|extreme| extreme.axis == *axis && extreme.quantity == quantity);
-                let peak = found.map(|extreme| shortest(extreme.value));
-                let margin = found.and_then(|extreme| Some(1.0 - extreme.value / extreme.limit?));
+                let found = ran.extremes.of(axis, quantity);
+                let peak = found.map(|(value, _)| shortest(value));
+                let margin = found.and_then(|(value, limit)| Some(1.0 - value / limit?));
                 fields.push(peak.unwrap_or_default());
                 fields.push(margin.map(shortest).unwrap_or_default());
             }

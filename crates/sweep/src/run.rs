@@ -1,6 +1,6 @@
 //! Cases on all cores.
 
-use crate::job::{Job, Row, SweepError};
+use crate::job::{Bench, Job, Row, SweepError};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
@@ -10,7 +10,7 @@ use std::thread;
 /// any order. A failure of `take` or a defect of this program ends it; running cases are finished first.
 ///
 /// # Errors
-/// The error of `take`, or of [`Job::case`].
+/// The error of `take`, or a defect of this program.
 pub fn run<E: From<SweepError> + Send>(
     job: &Job,
     cases: &[u64],
@@ -19,18 +19,21 @@ pub fn run<E: From<SweepError> + Send>(
 ) -> Result<(), E> {
     // Not every system has threads.
     if threads <= 1 {
-        return cases.iter().try_for_each(|case| take(job.case(*case)?));
+        let mut bench = job.bench();
+        return cases
+            .iter()
+            .try_for_each(|case| take(job.case(&mut bench, *case)?));
     }
     let (send, receive) = mpsc::sync_channel(threads * 4);
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
         let worker = || {
-            let each = |send: &mut mpsc::SyncSender<Result<Row, SweepError>>, case: &u64| {
+            let each = |(send, bench): &mut (mpsc::SyncSender<_>, Bench), case: &u64| {
                 // After an error nobody receives any more.
-                let goes_on = !stop.load(Ordering::Relaxed) && send.send(job.case(*case)).is_ok();
+                let goes_on = !stop.load(Ordering::Relaxed) && send.send(job.case(bench, *case)).is_ok();
                 goes_on.then_some(())
             };
-            let all = || cases.par_iter().try_for_each_with(send, each);
+            let all = || cases.par_iter().try_for_each_with((send, job.bench()), each);
             match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
                 Ok(pool) => pool.install(all),
                 // If the system has no more threads, the existing ones do the work.

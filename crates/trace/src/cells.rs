@@ -196,6 +196,12 @@ impl Cells {
         each!(&mut self.first, cells, _word => drop(cells.drain(..rows.min(cells.len()))));
     }
 
+    /// Drops all cells; their room stays.
+    pub(crate) fn clear(&mut self) {
+        each!(&mut self.first, cells, _word => cells.clear());
+        self.next = 0;
+    }
+
     /// Makes room, so that so many rows take no more memory.
     pub(crate) fn reserve(&mut self, rows: usize) {
         each!(&mut self.first, cells, _word => cells.reserve(rows.saturating_sub(cells.len())));

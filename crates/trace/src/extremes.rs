@@ -59,6 +59,14 @@ impl Extremes {
         }
     }
 
+    /// The same without the least and the greatest positions.
+    #[must_use]
+    pub fn of_derivatives(trace: &Trace) -> Self {
+        let mut extremes = Self::new(trace);
+        extremes.axes.iter_mut().for_each(|axis| axis.columns[0] = None);
+        extremes
+    }
+
     /// Reads the rows that the trace has got since the last call.
     pub fn look(&mut self, trace: &Trace) {
         for axis in &mut self.axes {
@@ -70,6 +78,15 @@ impl Extremes {
     /// What [`extremes`] gives of the rows so far.
     pub fn all(&self) -> impl Iterator<Item = Extreme> + '_ {
         self.axes.iter().flat_map(OfAxis::all)
+    }
+
+    /// Of an axis, told by its place in the header, the extreme of a quantity ([`Extreme::quantity`]) so far, and the limit of
+    /// that.
+    #[must_use]
+    pub fn of(&self, axis: usize, quantity: &str) -> Option<(f64, Option<f64>)> {
+        let mut found = self.axes.get(axis)?.found();
+        let (_, (value, _), limit) = found.find(|(name, ..)| *name == quantity)?;
+        Some((value, limit))
     }
 
     /// What [`extremes_text`] gives of the rows so far.
@@ -183,6 +200,17 @@ impl OfAxis {
     }
 
     fn all(&self) -> impl Iterator<Item = Extreme> + '_ {
+        self.found().map(|(quantity, (value, scan), limit)| Extreme {
+            axis: self.axis.name.clone(),
+            quantity,
+            value,
+            scan,
+            limit,
+        })
+    }
+
+    /// Quantities with their extremes, the scans of these, and the limits.
+    fn found(&self) -> impl Iterator<Item = (&'static str, (f64, usize), Option<f64>)> + '_ {
         let limits = &self.axis.limits;
         let least = Peak(self.least.0.map(|(value, scan)| (-value, scan)));
         let all = [
@@ -194,16 +222,8 @@ impl OfAxis {
             ("jerk", self.jerk, limits.jerk),
             ("snap", self.snap, limits.snap),
         ];
-        all.into_iter().filter_map(|(quantity, peak, limit)| {
-            let (value, scan) = peak.0?;
-            Some(Extreme {
-                axis: self.axis.name.clone(),
-                quantity,
-                value,
-                scan,
-                limit,
-            })
-        })
+        all.into_iter()
+            .filter_map(|(quantity, peak, limit)| Some((quantity, peak.0?, limit)))
     }
 }
 

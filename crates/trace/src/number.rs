@@ -1,6 +1,7 @@
 //! Numbers as text.
 
 use crate::column::Cell;
+use std::fmt::Write;
 
 /// The shortest text that reads back as the same number; NaN and infinities as words, -0.0 as `0.0`.
 pub fn shortest(value: f64) -> String {
@@ -9,8 +10,11 @@ pub fn shortest(value: f64) -> String {
     } else if value.is_infinite() {
         if value > 0.0 { "Infinity" } else { "-Infinity" }.to_owned()
     } else {
-        // Adding 0.0 removes the sign of zero and changes nothing else.
-        format!("{:?}", value + 0.0)
+        // Room for nearly all numbers, which come in parts.
+        let mut text = String::with_capacity(24);
+        // Adding 0.0 removes the sign of zero and changes nothing else. Writing to a String cannot fail.
+        let _ = write!(text, "{:?}", value + 0.0);
+        text
     }
 }
 

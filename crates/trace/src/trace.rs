@@ -198,6 +198,16 @@ impl Trace {
         self.notes_forgotten += old;
     }
 
+    /// Drops all that a run has added, for the next run with these columns. The room for rows stays.
+    pub fn clear(&mut self) {
+        self.header.claims.clear();
+        self.header.cams.clear();
+        self.cells.iter_mut().for_each(Cells::clear);
+        self.names = Names::default();
+        self.notes.clear();
+        (self.first, self.end, self.notes_forgotten) = (0, 0, 0);
+    }
+
     /// The number of forgotten notes, which are those of the first scans.
     pub(crate) const fn notes_forgotten(&self) -> usize {
         self.notes_forgotten

@@ -24,7 +24,7 @@ pub struct Verdict {
     pub path: String,
     /// Where it stands in the script.
     pub span: Span,
-    /// The claim in one line.
+    /// The claim in one line; empty after [`Session::verdicts_untold`](crate::Session::verdicts_untold).
     pub says: String,
     /// The first and the last scan of the run that it covers.
     pub scans: Option<[u64; 2]>,
@@ -156,8 +156,17 @@ impl<'a> Judges<'a> {
         }
     }
 
-    /// The verdicts, after the last row.
+    /// The verdicts, after the last row, with the claims in words.
     pub(crate) fn verdicts(&self, rows: &Rows<'_>) -> Vec<Verdict> {
+        let mut verdicts = self.untold(rows);
+        for (verdict, judged) in verdicts.iter_mut().zip(&self.claims) {
+            verdict.says = describe::claim(rows, &judged.claim.kind);
+        }
+        verdicts
+    }
+
+    /// The verdicts, after the last row, without the claims in words.
+    pub(crate) fn untold(&self, rows: &Rows<'_>) -> Vec<Verdict> {
         let mut verdicts: Vec<Verdict> = self.claims.iter().map(|judged| judged.verdict(rows)).collect();
         for faults in &self.faults {
             faults.tell(rows, &mut verdicts);
@@ -180,7 +189,7 @@ impl Judged<'_> {
         Verdict {
             path: claim.path.clone(),
             span: claim.span,
-            says: describe::claim(rows, &claim.kind),
+            says: String::new(),
             scans,
             held: scans
                 .filter(|_| failures.is_empty())

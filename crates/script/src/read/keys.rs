@@ -9,13 +9,11 @@ use standstill_axis::keys::{Bounds, Holds, Key, Object};
 
 /// The name of a key in messages: with its object.
 fn called<T>(key: &Key<T>) -> String {
-    // Of every key of every case of a sweep: `format!` would take several times as long.
-    let quoted = |parts: &[&str]| ["`", &parts.concat(), "`"].concat();
     match key.path.rsplit_once('.') {
         // The place of an object in a list.
-        Some((above, name)) if above.ends_with(|last: char| last.is_ascii_digit()) => quoted(&[name]),
-        Some((above, name)) => quoted(&[above.rsplit('.').next().unwrap_or(above), ".", name]),
-        None => quoted(&[key.path]),
+        Some((above, name)) if above.ends_with(|last: char| last.is_ascii_digit()) => format!("`{name}`"),
+        Some((above, name)) => format!("`{}.{name}`", above.rsplit('.').next().unwrap_or(above)),
+        None => format!("`{}`", key.path),
     }
 }
 
@@ -44,15 +42,15 @@ impl Reader {
             return None;
         }
         let mut good = true;
-        for key in object.keys {
-            good &= match fields.get(key.name()) {
+        for (key, name) in object.keys.iter().zip(names) {
+            good &= match fields.get(name) {
                 Some(node) if key.is_needed() && matches!(node.json, Json::Null) => {
-                    let message = format!("{} needs the key `{}`", object.what, key.name());
+                    let message = format!("{} needs the key `{name}`", object.what);
                     self.report(Diagnostic::new(Code::MissingKey, node.span, message));
                     false
                 }
                 Some(node) => self.key(node, key, to).is_some(),
-                None if key.is_needed() => self.require(&fields, key.name(), object.what).is_some(),
+                None if key.is_needed() => self.require(&fields, name, object.what).is_some(),
                 None => true,
             };
         }
@@ -64,25 +62,30 @@ impl Reader {
             (null.set)(to);
             return Some(());
         }
-        let what = called(key);
+        let what = || called(key);
         match &key.holds {
-            Holds::Bool { set, .. } => set(to, self.boolean(node, &what)?),
-            Holds::Word { words, set, .. } => set(to, self.word(node, key.path, &what, words)?),
-            Holds::Number { set, .. } => set(to, self.finite(node, &what)?),
+            Holds::Bool { set, .. } => set(to, self.boolean(node, &what())?),
+            Holds::Word { words, set, .. } => set(to, self.word(node, key.path, &what(), words)?),
+            Holds::Number { set, .. } => {
+                // In every case of a sweep, nearly all of them are in order and need no name.
+                let plain = self.plain_number(node).filter(|value| value.is_finite());
+                set(to, plain.or_else(|| self.finite(node, &what()))?);
+            }
             Holds::Whole { range, set, .. } => {
                 let end = |end: u64| i64::try_from(end).unwrap_or(i64::MAX);
-                let value = self.whole(node, &what, end(range.0)..=end(range.1))?;
+                let value = self.whole(node, &what(), end(range.0)..=end(range.1))?;
                 set(to, value.unsigned_abs());
             }
-            Holds::Scans { set, .. } => set(to, self.scans(node, &what)?),
+            Holds::Scans { set, .. } => set(to, self.scans(node, &what())?),
             Holds::Object(object) => {
                 self.keys(node, object, &[], to)?;
             }
             Holds::List(places) => {
-                let items = self.list(node, &what)?;
+                let items = self.list(node, &what())?;
                 if items.len() > places.len() {
                     let message = format!(
-                        "{what} has {} entries: at most {} are taken",
+                        "{} has {} entries: at most {} are taken",
+                        what(),
                         items.len(),
                         places.len()
                     );

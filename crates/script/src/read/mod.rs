@@ -29,6 +29,7 @@ mod text;
 pub(crate) mod time;
 pub(crate) mod value;
 mod variable;
+mod vary;
 mod wire;
 
 use crate::error::{Code, Diagnostic, File, ScriptError, quoted};

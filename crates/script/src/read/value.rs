@@ -164,10 +164,29 @@ impl Reader {
         hints::logic(text).or_else(|| known.then(|| format!("a wire is written {{\"from\": \"{text}\"}}")))
     }
 
+    /// A number in digits, or a parameter with nothing beside its name; none otherwise, or if there is no such parameter.
+    pub(super) fn plain_number(&self, node: &Node) -> Option<f64> {
+        match &node.json {
+            Json::Number(value) => Some(*value),
+            Json::Map(members) => {
+                let [(key, name)] = members.as_slice() else {
+                    return None;
+                };
+                match &name.json {
+                    Json::Text(name) if key.text == "param" => self.parameters.get(name).copied(),
+                    _ => None,
+                }
+            }
+            _ => None,
+        }
+    }
+
     /// A number: digits, one of the words, or a parameter.
     pub(super) fn number(&mut self, node: &Node, what: &str) -> Option<f64> {
+        if let Some(value) = self.plain_number(node) {
+            return Some(value);
+        }
         match &node.json {
-            Json::Number(value) => return Some(*value),
             Json::Text(text) => {
                 if let Some(value) = number_word(text) {
                     return Some(value);

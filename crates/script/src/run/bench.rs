@@ -149,6 +149,8 @@ pub(crate) struct Bench<'a> {
     /// The current scan.
     time: ScanTime,
     trace: Trace,
+    /// The columns of a whole trace.
+    columns: usize,
     /// The moves of coordinates, for differences of positions.
     shifts: Vec<Shift>,
     /// The places of the cams that axes are on.
@@ -176,7 +178,7 @@ impl<'a> Bench<'a> {
             layout,
             mut writer,
             trace,
-            ..
+            all: columns,
         } = kept;
         writer.mind(rest.as_ref().map_or(&[], Rest::readers));
         Ok(Self {
@@ -196,6 +198,7 @@ impl<'a> Bench<'a> {
             states: Vec::with_capacity(script.axes.len()),
             notes: Notes::new(script),
             trace,
+            columns,
             shifts: Vec::new(),
             cams: Cams::new(script),
             changes: Vec::new(),
@@ -300,6 +303,16 @@ impl<'a> Bench<'a> {
     /// The data for judging claims.
     pub(crate) fn into_rows(self) -> (Trace, Vec<Shift>, Truths) {
         (self.trace, self.shifts, self.truths)
+    }
+
+    /// What the run keeps of its rows.
+    pub(crate) fn into_kept(self) -> Kept {
+        Kept {
+            layout: self.layout,
+            writer: self.writer,
+            trace: self.trace,
+            all: self.columns,
+        }
     }
 
     /// Drops all rows except the last few, with their data.

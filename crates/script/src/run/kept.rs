@@ -52,14 +52,19 @@ impl Kept {
         }
     }
 
-    /// The same for a script that differs in the values of its parameters only.
-    pub(super) fn of(&self, script: &Script) -> Self {
-        let mut kept = self.clone();
-        kept.trace.describe_as(&Header {
+    /// Describes the axes as those of a script that differs in the values of its parameters only.
+    pub(super) fn describe(&mut self, script: &Script) {
+        self.trace.describe_as(&Header {
             title: script.title.clone(),
             axes: layout::axes(script),
             ..Header::default()
         });
-        kept
+    }
+
+    /// For the next run: without rows, but with the room that those of the last one took.
+    pub(super) fn cleared(mut self) -> Self {
+        self.writer.restart();
+        self.trace.clear();
+        self
     }
 }

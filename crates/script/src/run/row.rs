@@ -105,6 +105,11 @@ impl RowWriter {
         }
     }
 
+    /// The next row is the first one of another run.
+    pub(super) fn restart(&mut self) {
+        self.parts.iter_mut().for_each(|part| part.words.clear());
+    }
+
     /// These instances may change while programs rest, as axes do.
     pub(super) fn mind(&mut self, instances: &[usize]) {
         for part in &mut self.parts {
@@ -145,8 +150,8 @@ impl RowWriter {
         for axis in 0..machine.axes().len() {
             let is_its = |part: &&mut Part| matches!(part.of, Of::Axis(of) if of == axis);
             let part = self.parts.iter_mut().find(is_its);
-            let (columns, _) = part.map_or(([None; 5], None), Part::moved);
-            trace.write_last_reals(scans, &columns, |places| {
+            let (columns, _) = part.map_or(&([None; 5], None), Part::moved);
+            trace.write_last_reals(scans, columns, |places| {
                 machine.along(axis, first, scans, |scan, setpoint| {
                     for (of_column, number) in places.iter_mut().zip(setpoint.numbers()) {
                         if let Some(place) = of_column.get_mut(scan) {
@@ -181,17 +186,10 @@ impl Part {
                 continue;
             }
             *before = word;
-            match column.told {
-                Told::State => trace.set_next(at, Cell::Name(state(word)))?,
-                Told::Pin(PinType::Lreal) => trace.set_next_real(at, f64::from_bits(word)),
-                Told::Pin(ty) => {
-                    let value = ty.value(word);
-                    cells.prepare(ty, value);
-                    trace.set_next(at, cells.cell(ty, value))?;
-                }
-                Told::Symbol(program) => {
-                    source.symbol(program, column.place, |cell| trace.set_next(at, cell))?;
-                }
+            if let Told::Pin(PinType::Lreal) = column.told {
+                trace.set_next_real(at, f64::from_bits(word));
+            } else {
+                column.write(word, source, cells, (at, &mut *trace))?;
             }
         }
         Ok(())
@@ -203,20 +201,20 @@ impl Part {
             return;
         };
         let (of_setpoint, actual) = self.moved();
-        for (at, number) in of_setpoint.into_iter().zip(axis.setpoint().numbers()) {
+        for (at, number) in of_setpoint.iter().zip(axis.setpoint().numbers()) {
             if let Some(at) = at {
-                trace.set_next_real(at, number);
+                trace.set_next_real(*at, number);
             }
         }
         if let Some(at) = actual {
-            trace.set_next_real(at, axis.actual_position());
+            trace.set_next_real(*at, axis.actual_position());
         }
     }
 
     /// See [`Part::motion`]. The next whole row has all of the part's cells written anew.
-    fn moved(&mut self) -> ([Option<usize>; 5], Option<usize>) {
+    fn moved(&mut self) -> &([Option<usize>; 5], Option<usize>) {
         self.words.clear();
-        self.motion
+        &self.motion
     }
 
     /// The place in the trace of a word of the part.
@@ -224,6 +222,29 @@ impl Part {
         let mut columns = self.columns.iter();
         let place = columns.position(|column| column.place == word)?;
         Some(self.first + place)
+    }
+}
+
+impl Column {
+    /// Writes the cell of a word that is no number of 64 bits at a place of the trace.
+    // Apart from the numbers, which change in nearly every scan, so that these need few registers.
+    #[inline(never)]
+    fn write(
+        &self,
+        word: u64,
+        source: &Source<'_>,
+        cells: &mut Cells,
+        (at, trace): (usize, &mut Trace),
+    ) -> Result<(), RowError> {
+        match self.told {
+            Told::State => trace.set_next(at, Cell::Name(state(word))),
+            Told::Pin(ty) => {
+                let value = ty.value(word);
+                cells.prepare(ty, value);
+                trace.set_next(at, cells.cell(ty, value))
+            }
+            Told::Symbol(program) => source.symbol(program, self.place, |cell| trace.set_next(at, cell)),
+        }
     }
 }
 

@@ -78,14 +78,22 @@ impl<'a> Session<'a> {
     }
 
     /// As [`Session::new`], for one of many runs of a script with other values of its parameters: `kept` of any of them says which
-    /// columns the trace has.
+    /// columns the trace has. [`Session::into_kept`] returns it for the next one.
     ///
     /// # Errors
     /// Those of [`Session::new`].
-    pub fn keeping(script: &'a Script, kept: &Kept) -> Result<Self, RunError> {
-        let session = Self::with(script, kept.of(script))?;
-        fits(script, kept.all)?;
+    pub fn keeping(script: &'a Script, mut kept: Kept) -> Result<Self, RunError> {
+        let columns = kept.all;
+        kept.describe(script);
+        let session = Self::with(script, kept)?;
+        fits(script, columns)?;
         Ok(session)
+    }
+
+    /// What [`Session::keeping`] got, for another run. The rows of this one are dropped, and their room is kept.
+    #[must_use]
+    pub fn into_kept(self) -> Kept {
+        self.bench.into_kept().cleared()
     }
 
     /// As [`Session::new`], for a run of any length, whose rows are read on the way and then dropped by
@@ -612,6 +620,14 @@ impl<'a> Session<'a> {
         let rows = self.bench.rows();
         self.judges.look(&rows);
         self.judges.verdicts(&rows)
+    }
+
+    /// As [`Session::verdicts`], without the texts of the claims ([`Verdict::says`]).
+    #[must_use]
+    pub fn verdicts_untold(&mut self) -> Vec<Verdict> {
+        let rows = self.bench.rows();
+        self.judges.look(&rows);
+        self.judges.untold(&rows)
     }
 
     /// Judges the claims on the rows so far. The reasons of failed claims are searched only if all rows
