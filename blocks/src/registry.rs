@@ -115,6 +115,12 @@ macro_rules! registry {
 
 for_every_block!(registry);
 
+/// The code of all blocks, for axes with the planner that all use, is made here. In builds that are optimised little, crates that
+/// call blocks take it instead of each making a copy.
+#[cfg(all(debug_assertions, not(test)))]
+#[used]
+static CALL: fn(&mut BlockInstance, &mut Context<'_>) = BlockInstance::call::<standstill_axis::Standard>;
+
 // A host has many instances in a row, so large data is kept elsewhere (tables, the memory of outputs).
 const _: () = assert!(size_of::<BlockInstance>() <= 256);
 

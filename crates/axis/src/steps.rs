@@ -108,3 +108,9 @@ pub fn first_not_off<P: Planner>(axes: &[Axis<P>]) -> Option<(AxisId, AxisState)
     })?;
     Some((on.id(), on.state()))
 }
+
+/// The code of a motion step, for axes with the planner that all use, is made here. In builds that are optimised little, crates
+/// that move axes take it instead of each making a copy.
+#[cfg(all(debug_assertions, not(test)))]
+#[used]
+static ADVANCE: fn(&mut [Axis<standstill_planner::Standard>], &mut Scope<'_>) = advance;

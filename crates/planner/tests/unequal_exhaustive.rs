@@ -6,6 +6,7 @@
 use crate::grid_support::{Move, Random, limits, power};
 use standstill_planner::UnequalPlan;
 use standstill_planner::grid::Family;
+use standstill_testkit::cases;
 
 const ABSENT: f64 = f64::INFINITY;
 const FAMILIES: [Family; 2] = [Family::Separate, Family::Overlapped];
@@ -158,40 +159,49 @@ fn mixed(random: &mut Random, scans: f64) -> Move {
 fn order_4_is_shortest_by_trying_all_lengths() {
     let mut random = Random(401);
     let mut checked = 0;
-    for _ in 0..3000 {
+    for _ in 0..cases(3000) {
         let mut request = mixed(&mut random, 40.0);
         if request.limits.snap == ABSENT {
             request.limits.snap = random.log(1e-6, 1e3);
         }
-        checked += u32::from(check(&request, 0, 64));
+        checked += u64::from(check(&request, 0, 64));
     }
-    assert!(checked > 1500, "only {checked} moves were short enough to check");
+    assert!(
+        checked > cases(1500),
+        "only {checked} moves were short enough to check"
+    );
 }
 
 #[test]
 fn order_3_is_shortest_by_trying_all_lengths() {
     let mut random = Random(301);
     let mut checked = 0;
-    for _ in 0..3000 {
+    for _ in 0..cases(3000) {
         let mut request = mixed(&mut random, 90.0);
         request.limits.snap = ABSENT;
         if request.limits.jerk == ABSENT {
             request.limits.jerk = random.log(1e-5, 1e3);
         }
-        checked += u32::from(check(&request, 1, 120));
+        checked += u64::from(check(&request, 1, 120));
     }
-    assert!(checked > 1500, "only {checked} moves were short enough to check");
+    assert!(
+        checked > cases(1500),
+        "only {checked} moves were short enough to check"
+    );
 }
 
 #[test]
 fn order_2_is_shortest_by_trying_all_lengths() {
     let mut random = Random(201);
     let mut checked = 0;
-    for _ in 0..1000 {
+    for _ in 0..cases(1000) {
         let mut request = mixed(&mut random, 150.0);
         request.limits.snap = ABSENT;
         request.limits.jerk = ABSENT;
-        checked += u32::from(check(&request, 2, 200));
+        checked += u64::from(check(&request, 2, 200));
     }
-    assert!(checked > 500, "only {checked} moves were short enough to check");
+    assert!(
+        checked > cases(500),
+        "only {checked} moves were short enough to check"
+    );
 }

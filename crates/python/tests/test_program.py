@@ -11,7 +11,7 @@ import pytest
 from conftest import INSTALLED, ROOT, SCRIPTS, installed, move
 
 COMMANDS = [
-    (["run", "scan-tests/abort/second_move_aborts_first.scan.json"], None),
+    (["run", "scan-tests/mc_move_absolute/second_move_aborts_first.scan.json"], None),
     (["test", "scan-tests/claims", "scan-tests/gallery"], None),
     (["plan"], '{"Ts": 0.001, "target": 1, "limits": {"velocity": 1, "acceleration": 20}}\n{"id": 2}\n'),
     (["blocks", "--json"], None),

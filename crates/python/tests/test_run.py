@@ -17,7 +17,7 @@ from conftest import SCRIPTS, installed, move
 import standstill
 
 ALIKE = [
-    "abort/second_move_aborts_first.scan.json",
+    "mc_move_absolute/second_move_aborts_first.scan.json",
     # What stands in other files: a machine, a table, a program in Structured Text.
     "fault_matrix/plant_drive_fault.scan.json",
     "gallery/filler.scan.json",

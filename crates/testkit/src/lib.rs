@@ -5,24 +5,27 @@
 #[cfg(not(target_os = "none"))]
 extern crate std;
 
-/// How many of `whole` cases a long search at random tries: all of them with `STANDSTILL_SEARCH` in the environment, as
-/// `.ci/run` has it; else a tenth, so that `cargo test` is soon done.
+/// Whether `STANDSTILL_SEARCH` is in the environment, as `.ci/run` has it: then what takes long is done whole.
+#[cfg(not(target_os = "none"))]
+#[must_use]
+pub fn searches() -> bool {
+    std::env::var_os("STANDSTILL_SEARCH").is_some()
+}
+
+/// How many of `whole` cases a long search at random tries: all of them if it [searches]; else a twentieth, so that `cargo test` is
+/// soon done.
 #[cfg(not(target_os = "none"))]
 #[must_use]
 pub fn cases(whole: u64) -> u64 {
-    if std::env::var_os("STANDSTILL_SEARCH").is_some() {
-        whole
-    } else {
-        whole.div_ceil(10)
-    }
+    if searches() { whole } else { whole.div_ceil(20) }
 }
 
-/// How far apart the entries of a long list are that a search through it tries: every one with `STANDSTILL_SEARCH` in the
-/// environment; else every eleventh, which is a prime, so that no column of a table is left out.
+/// How far apart the entries of a long list are that a search through it tries: every one if it [searches]; else every eleventh,
+/// which is a prime, so that no column of a table is left out.
 #[cfg(not(target_os = "none"))]
 #[must_use]
 pub fn stride() -> usize {
-    if cases(10) == 10 { 1 } else { 11 }
+    if searches() { 1 } else { 11 }
 }
 
 /// splitmix64 (Steele, Lea, Flood 2014): a counter and a mixing function. The seed is the first value of

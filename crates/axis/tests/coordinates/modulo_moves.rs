@@ -113,7 +113,7 @@ fn random_moves_follow_the_table() {
         Direction::Current,
     ];
     let mut repetitions = 0;
-    for seed in 0..standstill_testkit::cases(1500) {
+    for seed in 0..standstill_testkit::cases(3000) {
         let mut random = Random(seed);
         let config = random_config(&mut random);
         let length = config.modulo.unwrap();
@@ -200,7 +200,7 @@ fn random_moves_follow_the_table() {
         }
     }
     assert!(
-        repetitions > standstill_testkit::cases(100) as usize,
+        repetitions > standstill_testkit::cases(200) as usize,
         "{repetitions}"
     );
 }

@@ -555,7 +555,7 @@ fn random_axes_that_come_round_keep_limits_and_curve() {
     let mut tally = Tally::default();
     let number = |name: &str| std::env::var(name).ok().and_then(|number| number.parse().ok());
     let first = number("CAM_FIRST").unwrap_or(0);
-    for seed in first..first + number("CAM_EPISODES").unwrap_or_else(|| cases(120)) {
+    for seed in first..first + number("CAM_EPISODES").unwrap_or_else(|| cases(240)) {
         let kind = Kind {
             more: seed % 2 == 0,
             drives_tell: true,

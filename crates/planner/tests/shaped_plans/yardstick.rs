@@ -81,12 +81,13 @@ impl Move {
 
 /// The largest swing of loads around this frequency.
 fn swing(plan: &Shaped, frequency: f64, damping: f64) -> f64 {
+    let places: Vec<_> = (0..=u64::from(plan.scans())).map(|scan| plan.at(scan)).collect();
     let swing = |off| {
         let load = Load {
             frequency: frequency * off,
             damping,
         };
-        load.swing(plan.scans(), CYCLE, |scan| plan.at(scan))
+        load.swing(plan.scans(), CYCLE, |scan| places[scan as usize])
     };
     OFF.map(swing).into_iter().fold(0.0, f64::max)
 }

@@ -131,13 +131,14 @@ fn same(seed: u64, count: usize) -> bool {
 fn programs_are_worth_what_clang_says() {
     let count = number("STANDSTILL_ST_PROGRAMS", standstill_testkit::cases(1000) as usize);
     let seed = number("STANDSTILL_ST_SEED", 1) as u64;
+    let each = PROGRAMS.min(count);
     let files = count.div_ceil(PROGRAMS) as u64;
     let threads = std::thread::available_parallelism().map_or(1, usize::from).min(2) as u64;
     std::thread::scope(|scope| {
         for thread in 0..threads {
             scope.spawn(move || {
                 for file in (thread..files).step_by(threads as usize) {
-                    if !same(seed * 1_000_000 + file, PROGRAMS) {
+                    if !same(seed * 1_000_000 + file, each) {
                         return;
                     }
                 }
