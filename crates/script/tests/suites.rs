@@ -6,6 +6,7 @@ use standstill_script::read;
 use standstill_script::suite::{
     Allowed, Report, SuiteError, Texts, find, find_texts, judge_file, name, orphans, shown,
 };
+use standstill_testkit::stride;
 use standstill_trace::compare::{Tolerance, Yardstick};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -357,6 +358,7 @@ fn a_script_with_other_values_is_what_reading_it_with_them_gives() {
     for (place, key) in scripts
         .iter()
         .flat_map(|script| [(script, "axes"), (script, "blocks")])
+        .step_by(stride())
     {
         let mut script: Value =
             serde_json::from_str(&fs::read_to_string(place).expect("readable")).expect("JSON");
@@ -399,5 +401,6 @@ fn a_script_with_other_values_is_what_reading_it_with_them_gives() {
             assert!(is_same, "{key} of {} by {factor}", place.display());
         }
     }
-    assert!(good > 2000 && refused > 200, "{good} {refused}");
+    let stride = stride();
+    assert!(good > 2000 / stride && refused > 200 / stride, "{good} {refused}");
 }
