@@ -95,6 +95,10 @@ impl Peripherals {
 }
 
 /// The position at a part of the way from one to the other. Modulo positions take the shorter way.
+// In line, its products would be computed ahead in every scan, of a turn that is not there: garbage is mostly denormal, which takes
+// a processor a hundred times as long.
+#[cold]
+#[inline(never)]
 fn between(from: DrivePosition, to: DrivePosition, part: f64, turn: Option<f64>) -> DrivePosition {
     match (from, to) {
         (DrivePosition::Units(from), DrivePosition::Units(to)) => {
