@@ -179,14 +179,14 @@ impl<P: Planner, D: Drive> Machine<P, D> {
     /// So many motion steps of an axis, without its drive; `take` gets the number of each, from 0, and its set-point.
     /// Only as long as it goes on ([`Axis::goes_on_for`]); time is passed by [`Executor::stand`](crate::Executor::stand), and
     /// actual positions are for the host to mend.
-    // An iterator would hand each set-point over in memory, and wait for it to get there.
+    // An iterator would hand each set-point over in memory, and wait for it to get there; so would a copy of it.
     #[inline]
     pub fn along(
         &mut self,
         axis: usize,
         time: ScanTime,
         steps: usize,
-        mut take: impl FnMut(usize, Setpoint),
+        mut take: impl FnMut(usize, &Setpoint),
     ) {
         let mut scope = runtime_scope(time.scan, &mut self.log);
         scope.history = &mut self.history;
@@ -195,7 +195,10 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         };
         for step in 0..steps {
             axis.step_alone(&mut scope);
-            take(step, axis.setpoint());
+            match axis.setpoint_in_place() {
+                Some(setpoint) => take(step, setpoint),
+                None => take(step, &axis.setpoint()),
+            }
         }
     }
 

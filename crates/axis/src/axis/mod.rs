@@ -349,6 +349,12 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    /// The same where it lies, if it need not be computed.
+    #[inline]
+    pub fn setpoint_in_place(&self) -> Option<&Setpoint> {
+        (self.modulo.is_none() && !self.mover.is_shaped()).then(|| self.mover.setpoint())
+    }
+
     /// Actual position (u), as last latched. While the communication is lost, or the drive reports an
     /// invalid number, it is the last good one.
     pub fn actual_position(&self) -> f64 {
