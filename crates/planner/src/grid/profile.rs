@@ -277,6 +277,12 @@ impl GridPlan {
     /// The state at `scan` <= N, with the values of one side where a derivative jumps.
     #[inline]
     fn state(&self, scan: i64, side: Side) -> Setpoint {
+        Setpoint::of(self.numbers(scan, side))
+    }
+
+    /// The same as [`Setpoint::numbers`].
+    #[inline(never)]
+    fn numbers(&self, scan: i64, side: Side) -> [f64; 5] {
         // Each half is computed from its own end: half the terms, and exact at both ends.
         let twice_left = 2 * scan - i64::from(self.scans);
         let mirrored = match side {
@@ -290,18 +296,13 @@ impl GridPlan {
         };
         // Time runs backwards from the far end, so the sides swap there.
         let through = near + i64::from((side == Side::After) != mirrored);
-        let sums = self.derivatives(near, through);
-        if mirrored {
+        let sums = sums(self.order, self.wide, &self.early_instants(), near, through);
+        let state = if mirrored {
             backwards(self.target, &sums, &self.scale)
         } else {
             forwards(self.start, &sums, &self.scale)
-        }
-    }
-
-    /// The derivatives 0 to 4 at `near` scans from an end, before scaling.
-    #[inline(never)]
-    fn derivatives(&self, near: i64, through: i64) -> [f64; 5] {
-        sums(self.order, self.wide, &self.early_instants(), near, through)
+        };
+        state.numbers()
     }
 }
 
