@@ -2,6 +2,7 @@
 
 use crate::common::{MS, Rig, task};
 use crate::stopping::forward;
+use standstill_axis::Setpoint;
 use standstill_scan::{ProgramConfig, ScanTime, TaskId};
 
 /// A task in every tick, and one axis.
@@ -65,7 +66,7 @@ fn an_axis_goes_along_without_its_drive() {
     };
     assert_eq!(other.executor.stand(3), 3);
     let mut along = Vec::new();
-    let mut take = |step, setpoint| along.push((step, setpoint));
+    let mut take = |step, setpoint: &Setpoint| along.push((step, *setpoint));
     other.machine.along(0, first, 3, &mut take);
     other.machine.along(1, first, 3, &mut take);
     let by_scan = (2..5).map(|scan| {
