@@ -102,9 +102,14 @@ impl ExecuteCore {
     /// Whether `execute` rises in this call and gives a command.
     #[inline]
     pub(crate) fn rises<P: Planner>(&mut self, execute: bool, context: &Context<'_, P>) -> bool {
-        let rising = execute && !self.executed && !self.ignores_edges(context);
+        let rises = self.is_rising(execute, context);
         self.executed = execute;
-        rising
+        rises
+    }
+
+    #[inline]
+    fn is_rising<P: Planner>(&self, execute: bool, context: &Context<'_, P>) -> bool {
+        execute && !self.executed && !self.ignores_edges(context)
     }
 
     /// The command of the rising edge was refused.
@@ -139,8 +144,7 @@ impl ExecuteCore {
         execute: bool,
         context: &Context<'_, P>,
     ) -> Option<(AxisId, CommandId)> {
-        let rising = execute && !self.executed && !self.ignores_edges(context);
-        self.command.filter(|_| !rising)
+        self.command.filter(|_| !self.is_rising(execute, context))
     }
 
     /// Whether the command runs on an axis that ignores edges while an instance is Busy. MC_Stop never

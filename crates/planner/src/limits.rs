@@ -292,6 +292,7 @@ impl Limits {
     pub(crate) fn acting_for(&self, start: &Setpoint, end: f64, distance: f64, cycle: f64) -> Self {
         let acting = self.acting(cycle);
         let fastest = start.velocity.abs().max(end.abs());
+        // Then it certainly reaches a speed that the bound is not far above.
         if REACH * fastest >= self.velocity {
             return acting;
         }
