@@ -40,6 +40,9 @@ struct Args {
     /// Judge by scripts only
     #[arg(long)]
     scripts: bool,
+    /// Judge nothing, name all that can be drawn
+    #[arg(long)]
+    list: bool,
 }
 
 /// Runs the command line.
@@ -53,10 +56,18 @@ pub fn run() -> Result<(), Box<dyn Error>> {
         .canonicalize()?;
     let mut points = all_points(&root)?;
     let equivalents = Equivalents::read(&root.join(EQUIVALENTS))?;
-    equivalents.check(&points)?;
     let all = points.len();
     if !args.of.is_empty() {
         points.retain(|point| args.of.iter().any(|text| point.key.contains(text)));
+    }
+    if args.list {
+        for point in &points {
+            println!("line {}, {}", point.line, point.key);
+        }
+    }
+    equivalents.check(&points)?;
+    if args.list {
+        return Ok(());
     }
 
     // A change elsewhere in the sources moves no point into or out of the sample.

@@ -202,6 +202,15 @@ const NAME_WITH_SLIPS: usize = 100;
 
 /// The remedy for a name that is nearly one of `candidates`.
 pub(crate) fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
+    nearest_of(name, &candidates.collect::<Vec<_>>())
+}
+
+/// The remedy for a name that is not among `candidates`: the nearest one, otherwise all if they are few.
+pub(crate) fn suggestion<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
+    suggestion_of(name, &candidates.collect::<Vec<_>>())
+}
+
+fn nearest_of(name: &str, candidates: &[&str]) -> Option<String> {
     let wanted = name.to_ascii_lowercase();
     let length = wanted.chars().count();
     // The work grows with the product of the lengths, and a long name with one wrong letter is unlikely.
@@ -212,6 +221,7 @@ pub(crate) fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>)
     // single letter that differs allows none.
     let slips = if length < 2 { 0 } else { (length / 3).max(1) };
     candidates
+        .iter()
         .filter(|candidate| candidate.len() <= 8 * NAME_WITH_SLIPS)
         .map(|candidate| {
             (
@@ -224,20 +234,16 @@ pub(crate) fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>)
         .map(|(_, candidate)| format!("did you mean `{candidate}`?"))
 }
 
-/// The remedy for a name that is not among `candidates`: the nearest one, otherwise all if they are few.
-pub(crate) fn suggestion<'a>(
-    name: &str,
-    candidates: impl Iterator<Item = &'a str> + Clone,
-) -> Option<String> {
+fn suggestion_of(name: &str, candidates: &[&str]) -> Option<String> {
     const LISTED: usize = 12;
-    nearest(name, candidates.clone()).or_else(|| {
-        let all: Vec<String> = candidates.map(|candidate| format!("`{candidate}`")).collect();
-        match &all[..] {
-            [] => None,
-            [only] => Some(format!("there is only {only}")),
-            all if all.len() <= LISTED => Some(format!("one of {}", all.join(", "))),
-            _ => None,
+    nearest_of(name, candidates).or_else(|| match candidates {
+        [] => None,
+        [only] => Some(format!("there is only `{only}`")),
+        all if all.len() <= LISTED => {
+            let all: Vec<String> = all.iter().map(|candidate| format!("`{candidate}`")).collect();
+            Some(format!("one of {}", all.join(", ")))
         }
+        _ => None,
     })
 }
 
