@@ -293,17 +293,12 @@ impl Limits {
         let acting = self.acting(cycle);
         let fastest = start.velocity.abs().max(end.abs());
         // Then it certainly reaches a speed that the bound is not far above.
-        if REACH * fastest >= self.velocity {
+        let lower = acting.acceleration.min(acting.deceleration);
+        let (part, way) = (self.velocity / (0.5 * REACH), distance.abs());
+        if 2.0 * fastest >= part || (way > part * SOONEST * cycle && 4.0 * lower * way > part * part) {
             return acting;
         }
-        let Self {
-            acceleration,
-            deceleration,
-            jerk,
-            snap,
-            ..
-        } = acting;
-        let lower = acceleration.min(deceleration);
+        let Self { jerk, snap, .. } = acting;
         // Until acceleration and jerk are zero.
         let rising = start.jerk.abs() / snap;
         let steepest = start.acceleration.abs() + 0.5 * start.jerk.abs() * rising;
