@@ -10,7 +10,7 @@ use standstill_axis::{
 };
 use standstill_blocks::REGISTRY;
 use standstill_drives::cia402::Reaction;
-use standstill_drives::mechanism::{Load, Plant, Stops};
+use standstill_drives::mechanism::{Load, Mechanism, Plant, Stops};
 use standstill_drives::simulated::{Cia402Setup, DriveSetup, IdealDriveSetup, MotorSetup, PlantSetup};
 use standstill_drives::switches::{Marker, Switches};
 use standstill_fb::{BlockInfo, PinType, Value};
@@ -246,7 +246,8 @@ fn choices(random: &mut Random, config: &mut AxisConfig) {
     let limits = config.limits;
     if random.one_in(5) {
         let mut part = |limit: f64| {
-            (limit.is_finite() && random.one_in(2)).then(|| limit * random.log_between(0.2, 5.0))
+            (limit.is_finite() && random.one_in(2))
+                .then(|| (limit * random.log_between(0.2, 5.0)).min(f64::MAX))
         };
         let stop = StopLimits {
             deceleration: part(limits.deceleration),
@@ -327,15 +328,15 @@ fn drive(random: &mut Random, config: &AxisConfig, cycle: f64) -> DriveSetup {
 /// A motor that is usually strong enough for the limits of the axis.
 fn motor(random: &mut Random, limits: &Limits) -> MotorSetup {
     let inertia = random.log_between(0.01, 10.0);
-    let rated_torque = inertia * limits.acceleration * random.log_between(0.3, 3.0);
+    let rated_torque = (inertia * limits.acceleration * random.log_between(0.3, 3.0)).min(f64::MAX);
     MotorSetup {
         rated_torque,
-        max_torque: rated_torque * random.between(1.0, 4.0),
+        max_torque: (rated_torque * random.between(1.0, 4.0)).min(f64::MAX),
         inertia,
         viscous: if random.one_in(2) {
             0.0
         } else {
-            0.1 * rated_torque / limits.velocity
+            (0.1 * rated_torque / limits.velocity).min(f64::MAX)
         },
         coulomb: if random.one_in(2) { 0.0 } else { 0.1 * rated_torque },
     }
@@ -372,6 +373,10 @@ fn plant(
         switches,
         ..PlantSetup::NONE
     };
+    // Friction that is too stiff to be followed is refused.
+    if Mechanism::new(setup.plant, config.position, cycle).is_err() {
+        setup.plant.viscous = 0.0;
+    }
     if random.one_in(4) {
         setup.gains.torque = motor.max_torque;
     }

@@ -60,6 +60,20 @@ pub struct Failure {
     pub state: Option<AxisState>,
 }
 
+impl Failure {
+    /// A program that does not begin has broken no other rule.
+    const REFUSED: Self = Self {
+        scan: 0,
+        who: Who::Axis(0),
+        broken: Broken {
+            id: "refused",
+            what: "an axis, a drive or a block is refused",
+        },
+        shown: None,
+        state: None,
+    };
+}
+
 /// Who breaks a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Who {
@@ -172,11 +186,11 @@ impl Instance {
 
 /// Runs `scenario` with `hands` as the actor instead of its steps.
 ///
-/// Ends at the first broken rule.
+/// Ends at the first broken rule. A scenario that is refused breaks one, too.
 pub fn run(scenario: &Scenario, hands: &mut impl Hands) -> (Seen, Option<Failure>) {
     let made = scenario.machine().zip(scenario.instances());
     let (Some((mut machine, blocks)), Some(mut executor)) = (made, executor(scenario)) else {
-        return (Seen::default(), None);
+        return (Seen::default(), Some(Failure::REFUSED));
     };
     let instances = blocks
         .into_iter()

@@ -1,5 +1,7 @@
 //! The record of a random program repeats its run to the bit, and its scan script runs.
 
+mod wired;
+
 use standstill_axis::{AxisConfig, Limits, Scaling, StartState};
 use standstill_blocks::REGISTRY;
 use standstill_blocks::registry::find;
