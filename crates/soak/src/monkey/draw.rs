@@ -306,7 +306,7 @@ fn drive(random: &mut Random, config: &AxisConfig, cycle: f64) -> DriveSetup {
             start_up: random.below(4) as u32,
             deceleration: random
                 .one_in(2)
-                .then(|| limits.deceleration * random.between(0.5, 2.0)),
+                .then(|| (limits.deceleration * random.between(0.5, 2.0)).min(f64::MAX)),
             quick_stop: one_of(random, &reactions),
             on_disable: one_of(random, &reactions[..2]),
             on_fault: one_of(random, &reactions[..2]),

@@ -12,7 +12,7 @@ use super::super::Axis;
 use super::super::commands::{Entry, Work, refusal};
 use super::view::{Course, Kind, Seen, View};
 use crate::{AxisId, BufferMode, Cams, CommandId, ErrorId, Event, Fate, InstanceId, PhaseShift, Scope};
-use standstill_planner::{Limits, Plan, Planner, Setpoint};
+use standstill_planner::{Limits, Plan, PlanError, Planner, Setpoint};
 
 /// A change of the shift.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +37,10 @@ struct Moving<Plan> {
     limits: Limits,
     /// The same, or those of the earlier shifts that it took over from in motion.
     most: Limits,
+    /// What was known of the masters when it was planned.
+    kind: Kind,
+    /// They have got another motion since: there may be more room.
+    is_dated: bool,
 }
 
 /// The shift of one master's place, as its slave sees it.
@@ -295,6 +299,7 @@ impl<P: Planner> Axis<P> {
         if self.follower.phasing.is_none() {
             return *view;
         }
+        self.hasten_shift(view, scope);
         for leg in 0..self.follower.phasing.legs.len() {
             self.begin_shift(leg, view, scope);
         }
@@ -359,8 +364,77 @@ impl<P: Planner> Axis<P> {
         let Some(room) = self.room_for_shift((leg, &shift.limits), view, &scope.cams) else {
             return;
         };
-        let from = if shift.is_relative { now.position } else { 0.0 };
-        let target = from + shift.shift;
+        let asked = shift.shift;
+        if shift.is_relative {
+            // To a place from now on, however often it is planned anew.
+            shift.shift += now.position;
+            shift.is_relative = false;
+        }
+        let scope = &mut scope.with(shift.instance);
+        let planned = self.planned_shift(&shift, &now, &room, view);
+        let is_planned = planned.is_ok();
+        match planned {
+            Ok(moving) => {
+                shift.runs = true;
+                self.run_shift(leg, shift.shift, moving, scope);
+            }
+            Err(error) => {
+                let error = self.refuse("PhaseShift", asked, f64::NAN, refusal(error), scope);
+                self.decide(shift.id, Fate::Failed(error));
+            }
+        }
+        if let Some(leg) = self.follower.phasing.legs.get_mut(leg) {
+            leg.command = if is_planned { Some(shift) } else { leg.next.take() };
+        }
+    }
+
+    /// Plans the shift in progress anew if its masters have left room since with which it is there sooner.
+    ///
+    /// Cost: as [`Axis::shifted_view`], once for each motion of the masters.
+    fn hasten_shift(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        let kind = view.future.kind();
+        let Some((leg, moving)) = &mut self.follower.phasing.motion else {
+            return;
+        };
+        moving.is_dated |= view.future.is_new || moving.kind != kind;
+        let (leg, left) = (*leg, moving.scans - moving.elapsed);
+        if !moving.is_dated {
+            return;
+        }
+        let Some(Shifts { now, command, .. }) = self.follower.phasing.legs.get(leg).copied() else {
+            return;
+        };
+        let Some(shift) = command.filter(|shift| shift.runs) else {
+            return;
+        };
+        let Some(room) = self.room_for_shift((leg, &shift.limits), view, &scope.cams) else {
+            return;
+        };
+        if let Some((_, moving)) = &mut self.follower.phasing.motion {
+            (moving.is_dated, moving.kind) = (false, kind);
+        }
+        match self.planned_shift(&shift, &now, &room, view) {
+            Ok(moving) if moving.scans < left => {
+                self.run_shift(leg, shift.shift, moving, &mut scope.with(shift.instance));
+            }
+            _ => {}
+        }
+    }
+
+    fn run_shift(&mut self, leg: usize, to: f64, moving: Moving<P::Plan>, scope: &mut Scope<'_>) {
+        let scans = moving.plan.scans();
+        self.follower.phasing.motion = Some((leg, moving));
+        self.record(Event::Phasing { to, scans }, scope);
+    }
+
+    /// The way of a shift from its state `now`, with what it asks for of the `room`.
+    fn planned_shift(
+        &self,
+        shift: &Shift,
+        now: &Setpoint,
+        room: &Limits,
+        view: &View<'_, P::Plan>,
+    ) -> Result<Moving<P::Plan>, PlanError> {
         let asked = &shift.limits;
         let rate = asked.lower_acceleration().min(room.lower_acceleration());
         let mut limits = Limits {
@@ -370,27 +444,15 @@ impl<P: Planner> Axis<P> {
             jerk: asked.jerk.min(room.jerk),
             snap: asked.snap.min(room.snap),
         };
-        let before = self
-            .follower
-            .phasing
-            .motion
-            .as_ref()
-            .map_or(limits, |(_, moving)| moving.limits);
-        let scope = &mut scope.with(shift.instance);
-        let plan = |limits: &Limits| {
+        let moving = self.follower.phasing.motion.as_ref().map(|(_, moving)| moving);
+        let before = moving.map_or(limits, |moving| moving.limits);
+        let most = moving.map(|moving| moving.most);
+        let planned = |limits: &Limits| {
             self.planner
-                .move_to(self.config.profile, &now, target, limits, &before)
+                .move_to(self.config.profile, now, shift.shift, limits, &before)
         };
-        let mut planned = plan(&limits);
-        let most = self
-            .follower
-            .phasing
-            .motion
-            .as_ref()
-            .map(|(_, moving)| moving.most);
-        if let (Ok(slow), Some(most), true) = (&planned, &most, self.slows_master())
-            && slow.excess().is_some()
-        {
+        let mut plan = planned(&limits)?;
+        if let (Some(most), true) = (&most, self.slows_master() && plan.excess().is_some()) {
             // At such low rates it would overrun the room that the master leaves.
             limits = Limits {
                 velocity: limits.velocity,
@@ -399,31 +461,17 @@ impl<P: Planner> Axis<P> {
                 jerk: limits.jerk.max(most.jerk),
                 snap: limits.snap.max(most.snap),
             };
-            planned = plan(&limits);
+            plan = planned(&limits)?;
         }
-        let is_planned = planned.is_ok();
-        match planned {
-            Ok(plan) => {
-                let scans = plan.scans();
-                shift.runs = true;
-                let moving = Moving {
-                    plan,
-                    elapsed: 0,
-                    scans: scans.into(),
-                    limits,
-                    most: most.map_or(limits, |before| limits.or_larger(&before)),
-                };
-                self.follower.phasing.motion = Some((leg, moving));
-                self.record(Event::Phasing { to: target, scans }, scope);
-            }
-            Err(error) => {
-                let error = self.refuse("PhaseShift", shift.shift, f64::NAN, refusal(error), scope);
-                self.decide(shift.id, Fate::Failed(error));
-            }
-        }
-        if let Some(leg) = self.follower.phasing.legs.get_mut(leg) {
-            leg.command = if is_planned { Some(shift) } else { leg.next.take() };
-        }
+        Ok(Moving {
+            scans: plan.scans().into(),
+            plan,
+            elapsed: 0,
+            limits,
+            most: most.map_or(limits, |before| limits.or_larger(&before)),
+            kind: view.future.kind(),
+            is_dated: false,
+        })
     }
 
     /// The part of the slave's limits that the law leaves, in units of the master. None if it leaves

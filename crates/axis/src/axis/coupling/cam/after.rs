@@ -28,8 +28,13 @@ struct Ended {
 }
 
 impl<P: Planner> Axis<P> {
-    /// The slave has moved: whether it has come to an end of its cam, and what follows then.
-    pub(super) fn end_of_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+    /// The slave has moved, its shadow from where it `was`: whether it has come to an end of its cam, and what follows then.
+    pub(super) fn end_of_cam(
+        &mut self,
+        was: Option<Shadow>,
+        view: &View<'_, P::Plan>,
+        scope: &mut Scope<'_>,
+    ) {
         let is_paused = self.is_paused();
         let switch = self.switch_of_next();
         let cycle = self.planner.cycle();
@@ -52,8 +57,9 @@ impl<P: Planner> Axis<P> {
                 let before = if on_cam.rung.is_locked() {
                     curve.unwound(on_cam.was.place)
                 } else {
-                    // Where it was it is not known to the last bit.
                     let step = shadow.at.velocity * cycle / curve.law.master_scaling;
+                    let step = was.map_or(step, |was| curve.step(curve.unwound(was.place), here, step));
+                    // It is not known to the last bit: whole periods may have been dropped.
                     here - step * (1.0 + ROUNDING)
                 };
                 curve
@@ -332,6 +338,18 @@ impl Curve<'_> {
         let is_behind = shadow >= head.end && master < head.end;
         let is_before = shadow <= head.begin && master > head.begin;
         !head.periodic && (is_behind || is_before)
+    }
+
+    /// The way from `before` to `here`, of about the length `about`: one of them may have lost whole periods.
+    fn step(&self, before: f64, here: f64, about: f64) -> f64 {
+        let head = self.cam.head;
+        let (step, length) = (here - before, head.end - head.begin);
+        if !head.periodic {
+            return step;
+        }
+        let over = (step - about) / length;
+        let whole = if over < 0.0 { over - 0.5 } else { over + 0.5 };
+        step - whole as i64 as f64 * length
     }
 
     /// Where `place` of the cam (u of the master's side) is passed on the way from `before` to `here`, neither taken back into one

@@ -48,12 +48,13 @@ impl<P: Planner> Axis<P> {
         if is_new && self.slows_master() {
             self.bound_master_on_cam(&scope.cams);
         }
+        let shadow = self.follower.on_cam.as_ref().and_then(|on_cam| on_cam.shadow);
         if self.is_on_cam() {
             self.step_on_cam(view, scope);
         }
         self.note_own_part();
         self.measure_on_cam(view, scope);
-        self.end_of_cam(view, scope);
+        self.end_of_cam(shadow, view, scope);
         self.finish_reset();
         self.note_steady();
     }
@@ -398,8 +399,10 @@ impl<P: Planner> Axis<P> {
             at: Setpoint::at_rest(to.position),
         };
         let at = self.on_curve(to, &shadow.at, scope);
-        let is_there = to == view.now.place && view.now.at.is_at_rest() && view.future.kind() == Kind::Still;
+        let mut is_there = view.now.at.is_at_rest() && view.future.kind() == Kind::Still;
         if let (Some(on_cam), Some(at)) = (&mut self.follower.on_cam, at) {
+            let turn = on_cam.camming.law.master_turn.unwrap_or(0.0);
+            is_there &= apart(to, view.now.place, turn) == 0.0;
             on_cam.at = at;
             on_cam.shadow = Some(shadow);
             on_cam.rung = Rung::Due;

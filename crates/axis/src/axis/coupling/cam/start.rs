@@ -82,9 +82,7 @@ impl<P: Planner> Axis<P> {
         let distance = on_cam.camming.start_distance;
         let too_short = |least| ("MasterStartDistance", distance, least, ErrorId::SyncNotReachable);
         let way = match choice {
-            // What leads to the sync position by a move was timed.
             Choice::Lock => return Ok(()),
-            Choice::Take(way) if matches!(way.rung, Rung::Moving { to: Some(_), .. }) => return Ok(()),
             Choice::Take(way) => way,
             Choice::Fail(ErrorId::SyncNotReachable) | Choice::Stay | Choice::Wait(_) => {
                 return Err(too_short(f64::NAN));
@@ -95,8 +93,12 @@ impl<P: Planner> Axis<P> {
             return Err(too_short(f64::NAN));
         }
         let heading = 1.0_f64.copysign(distance);
-        let further = heading * self.way_of_cam_master(view, way.lock) / curve.law.master_scaling;
-        let late = further - heading * curve.left_to_sync(on_cam);
+        let further = match way.rung {
+            // It is there in time, and in sync from that place of the master on.
+            Rung::Moving { to: Some(to), .. } => curve.unwound(to) - curve.unwound(on_cam.was.place),
+            _ => self.way_of_cam_master(view, way.lock) / curve.law.master_scaling,
+        };
+        let late = heading * (further - curve.left_to_sync(on_cam));
         if late > ROUNDING * (distance.abs() + curve.cam.head.end.abs()) {
             return Err(too_short(distance + heading * late));
         }
