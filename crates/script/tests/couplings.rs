@@ -5,7 +5,7 @@
 //! and catches up when M is at rest again. L follows S; A follows nothing and is at no `Slave` pin.
 
 use standstill_script::{Outcome, read, run};
-use standstill_trace::{Cell, cell_text};
+use standstill_trace::{Cell, Trace, cell_text};
 
 fn script(keys: &str) -> String {
     format!(
@@ -181,20 +181,57 @@ fn the_header_tells_how_cams_lay() {
     assert_eq!((cam.begin, cam.length), (-30.0, 130.0));
     assert_eq!(cam.scans[1], 2999, "MC_Halt takes the slave off it");
     assert_eq!((cam.points.len(), cam.points[128]), (129, 20.0));
-    // In sync the slave is on the curve, in every period.
-    let column = |name: &str| trace.reals(trace.column(name).expect(name));
-    let places = column("M.Position").zip(column("S.Position"));
-    let (mut turns, mut before) = (0.0, 0.0);
-    for (scan, (master, slave)) in places.enumerate().take(3000).skip(cam.scans[0]) {
-        if master < before - 50.0 {
+    in_sync_on_the_curve(&trace, 100.0, 3000);
+}
+
+/// A cam that is counted from where its master is at the edge, and that begins two turns later: it lies two turns back.
+#[test]
+fn the_header_tells_how_a_cam_lies_that_was_laid_turns_before() {
+    let text = r#"{"standstill": 1, "cycle": "T#1ms", "scans": 4000,
+        "axes": {"M": {"modulo": 50, "position": 40, "limits": {"velocity": 200, "acceleration": 10000}, "state": "Standstill"},
+                 "S": {"limits": {"velocity": 500, "acceleration": 10000}, "state": "Standstill"}},
+        "blocks": [{"name": "go", "type": "MC_MoveVelocity", "pins": {"Axis": "M", "Execute": {"from": "table.Done"}, "Velocity": 50}},
+                   {"name": "table", "type": "MC_CamTableSelect", "pins": {"Master": "M", "Slave": "S", "Execute": true, "Periodic": true,
+                     "CamTable": [{"Master": 0, "Slave": 0, "Law": "mcCamRest7"}, {"Master": 130, "Slave": 40}]}},
+                   {"name": "cam", "type": "MC_CamIn", "pins": {"Master": "M", "Slave": "S", "Execute": {"from": "table.Done"},
+                     "MasterSyncPosition": 120, "MasterStartDistance": 20, "CamTableID": {"from": "table.CamTableID"}}}],
+        "steps": [], "expect": [{"never": {"cam.Error": true}}]}"#;
+    let script = read(text, "test.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
+    let outcome = run(&script).unwrap_or_else(|error| panic!("{error}"));
+    assert!(outcome.passed());
+    let [cam] = &outcome.trace.header().cams[..] else {
+        panic!("one cam: {:?}", outcome.trace.header().cams);
+    };
+    assert_eq!(cam.begin, 40.0 - 2.0 * 50.0);
+    in_sync_on_the_curve(&outcome.trace, 50.0, 4000);
+}
+
+/// In sync the slave is on the curve of the one cam of the header, in every period up to the scan `end`; its master has turns of this length.
+fn in_sync_on_the_curve(trace: &Trace, turn: f64, end: usize) {
+    let cam = &trace.header().cams[0];
+    let rise = cam.points[128] - cam.points[0];
+    let column = |name: &str| trace.column(name).expect(name);
+    let in_sync = trace
+        .cells(column("cam.InSync"))
+        .map(|cell| cell == Cell::Bool(true));
+    let places = trace
+        .reals(column("M.Position"))
+        .zip(trace.reals(column("S.Position")));
+    let (mut turns, mut before) = (0.0, f64::NAN);
+    let rows = places.zip(in_sync).enumerate();
+    for (scan, ((master, slave), is_in_sync)) in rows.take(end).skip(cam.scans[0]) {
+        if master < before - 0.5 * turn {
             turns += 1.0;
         }
         before = master;
-        let way: f64 = (master + 100.0 * turns - cam.begin) / cam.length;
+        if !is_in_sync {
+            continue;
+        }
+        let way: f64 = (master + turn * turns - cam.begin) / cam.length;
         let place = (way - way.floor()) * 128.0;
         let (low, high) = (place.floor() as usize, (place.floor() as usize + 1).min(128));
         let (one, other) = (cam.points[low], cam.points[high]);
-        let on_curve = cam.from + 20.0 * way.floor() + one + (other - one) * place.fract();
+        let on_curve = cam.from + rise * way.floor() + one + (other - one) * place.fract();
         assert!(
             (on_curve - slave).abs() < 0.01,
             "scan {scan}: {slave}, curve {on_curve}"

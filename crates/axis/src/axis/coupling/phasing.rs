@@ -397,7 +397,7 @@ impl<P: Planner> Axis<P> {
             return;
         };
         moving.is_dated |= view.future.is_new || moving.kind != kind;
-        let (leg, left) = (*leg, moving.scans - moving.elapsed);
+        let (leg, left) = (*leg, moving.scans.saturating_sub(moving.elapsed));
         if !moving.is_dated {
             return;
         }

@@ -252,9 +252,7 @@ impl<P: Planner> Axis<P> {
     ) -> Option<Curve<'a>> {
         let camming = &mut next.camming;
         let master = if camming.master_absolute {
-            let (master, origin) = camming.laid(next.was.place, cam.head);
-            camming.law.origin = origin;
-            master
+            camming.laid(next.was.place, cam.head).0
         } else {
             let forwards = ended.upwards == (camming.law.master_scaling > 0.0);
             let first = if forwards { cam.head.begin } else { cam.head.end };
