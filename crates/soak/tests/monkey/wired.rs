@@ -115,11 +115,12 @@ fn rewired(random: &mut Random, text: &str) -> Value {
             (own, value)
         }));
     }
+    let flags = variables_of_bool(&inputs);
     let task = |random: &mut Random| {
         let mut task = json!({"interval": 1 + random.below(5), "priority": random.below(3)});
-        if random.below(3) == 0 {
-            let own = one_of(random, &inputs_of_bool(&inputs)).clone();
-            task["single"] = bool_wire(random, &own, &outputs);
+        if !flags.is_empty() && random.below(3) == 0 {
+            let own = one_of(random, &flags);
+            task["single"] = bool_wire(random, own, &outputs);
         }
         task
     };
@@ -132,8 +133,8 @@ fn rewired(random: &mut Random, text: &str) -> Value {
     script
 }
 
-/// Names of the input variables that are BOOL; there is one in all programs but the shortest.
-fn inputs_of_bool(inputs: &Map<String, Value>) -> Vec<String> {
+/// Names of the input variables that are BOOL.
+fn variables_of_bool(inputs: &Map<String, Value>) -> Vec<String> {
     let flags = inputs.iter().filter(|(_, value)| value.is_boolean());
     flags.map(|(name, _)| name.clone()).collect()
 }
