@@ -84,7 +84,7 @@ pub enum DriveRequest {
     Off,
     /// Operation enabled.
     Enable,
-    /// The drive stops by itself, then switches off.
+    /// The drive stops by itself, then switches off. It is requested until the axis is at rest.
     QuickStop,
     /// Clear a pending fault.
     FaultReset,

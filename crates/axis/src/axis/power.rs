@@ -197,6 +197,7 @@ impl<P: Planner> Axis<P> {
                 self.hold_at_actual();
                 self.enter(AxisEvent::PowerOn);
             }
+            AxisState::Disabled if self.feedback.step() == 0.0 => self.power.end_braking(),
             AxisState::ErrorStop if !feedback.enabled => self.mover.follow(),
             AxisState::ErrorStop if matches!(self.mover.motion(), Motion::Follow) && !self.moves_itself() => {
                 self.hold_at_actual();
@@ -204,6 +205,9 @@ impl<P: Planner> Axis<P> {
             AxisState::Disabled | AxisState::ErrorStop => {}
             _ if self.power.is_going_off() && !feedback.enabled => {
                 self.power.end_going_off();
+                if self.config.on_power_off == PowerOff::Drive {
+                    self.power.leave_to_drive();
+                }
                 self.mover.follow();
                 self.enter(AxisEvent::PowerOff);
             }
@@ -450,7 +454,9 @@ impl<P: Planner> Axis<P> {
             DriveRequest::FaultReset
         } else if ramping && self.power.is_on() {
             DriveRequest::Enable
-        } else if self.power.is_going_off() && self.config.on_power_off == PowerOff::Drive {
+        } else if self.power.is_braking()
+            || self.power.is_going_off() && self.config.on_power_off == PowerOff::Drive
+        {
             DriveRequest::QuickStop
         } else if self.power.is_going_off() || self.power.is_tripped() || !self.power.is_wanted() {
             DriveRequest::Off

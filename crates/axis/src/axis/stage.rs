@@ -43,6 +43,8 @@ enum Stage {
     Ready,
     /// Switched off on request; the axis ramps down or waits for the stage.
     GoingOff,
+    /// It is off; the drive, which was asked to stop by itself, has not come to rest.
+    Braking,
     /// Power was lost or the drive failed: power does not return before a reset or a new rising Enable.
     Tripped,
     /// The same after power was not confirmed in time.
@@ -76,6 +78,11 @@ impl Power {
 
     pub fn is_going_off(&self) -> bool {
         self.stage == Stage::GoingOff
+    }
+
+    /// It is off, and the drive stops by itself.
+    pub fn is_braking(&self) -> bool {
+        self.stage == Stage::Braking
     }
 
     /// It does not return by itself.
@@ -174,6 +181,18 @@ impl Power {
         }
     }
 
+    /// It is off, and the drive goes on with the stop that it was asked for.
+    pub fn leave_to_drive(&mut self) {
+        self.stage = Stage::Braking;
+    }
+
+    /// The drive has come to rest, or something else takes over.
+    pub fn end_braking(&mut self) {
+        if self.is_braking() {
+            self.stage = Stage::Ready;
+        }
+    }
+
     /// Takes the request of an MC_Power instance. Returns whether it has effect at once. The decider of
     /// the last scan has; others take effect at the end of the scan if no other was called after them
     /// (V9b).
@@ -204,6 +223,9 @@ impl Power {
     #[inline]
     pub fn want(&mut self, wanted: bool) {
         self.wanted = wanted;
+        if wanted {
+            self.end_braking();
+        }
     }
 
     pub fn permit(&mut self, permitted: Permission) {
