@@ -149,7 +149,7 @@ impl<P: Planner> Axis<P> {
         // What begins with more acceleration than it may pass the end with is down to that there.
         let within = |value: f64, limit: f64| value.abs() <= limit * (1.0 + ROUNDING);
         let is_kept = within(at_end.acceleration, limits.acceleration) && within(at_end.jerk, limits.jerk);
-        let keeps = is_kept && keeps_rates_of(&ramp, own);
+        let keeps = is_kept && keeps_rates_from(&ramp, start, own);
         (is_past && keeps && self.stops_inside(&at_end)).then_some(ramp)
     }
 
@@ -345,6 +345,20 @@ pub(super) fn keeps_rates<P: Plan>(plan: &P) -> bool {
 /// The same, of other limits.
 fn keeps_rates_of<P: Plan>(plan: &P, limits: &Limits) -> bool {
     is_of_velocity(plan.excess_over(limits))
+}
+
+/// The same, but for what its `start` has beyond them.
+fn keeps_rates_from<P: Plan>(plan: &P, start: &Setpoint, limits: &Limits) -> bool {
+    let most = if is_braking(start) {
+        limits.deceleration
+    } else {
+        limits.acceleration
+    };
+    let above = |value: f64, limit: f64| (value.abs() - limit).max(0.0) * (1.0 + ROUNDING);
+    plan.excess_over(limits).is_none_or(|excess| {
+        excess.acceleration <= above(start.acceleration, most)
+            && excess.jerk <= above(start.jerk, limits.jerk)
+    })
 }
 
 fn is_of_velocity(excess: Option<Excess>) -> bool {
