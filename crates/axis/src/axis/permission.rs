@@ -147,13 +147,23 @@ impl<P: Planner> Axis<P> {
     /// Everything brakes: from now on there is one motion, with the velocity of the sum. A superimposed
     /// motion on a standing axis brakes by itself, so that its way counts.
     pub(super) fn pause(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
+        if !matches!(self.mover.motion(), Motion::Hold | Motion::Follow)
+            && let Some(mut owner) = self.owner
+        {
+            self.note_passing(&mut owner);
+            self.own(owner);
+        }
+        self.pause_noted(error, scope);
+    }
+
+    /// The same, where it is noted already whether the owner has passed the place it leads through.
+    pub(super) fn pause_noted(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
         let scope = &mut self.owner_scope(scope);
         self.record(Event::Paused { error }, scope);
         if matches!(self.mover.motion(), Motion::Hold | Motion::Follow) {
             return self.brake_superimposed();
         }
         if let Some(mut owner) = self.owner.filter(|owner| owner.work.manner().barred) {
-            self.note_passing(&mut owner);
             owner.paused = true;
             owner.turns = 0;
             self.own(owner);

@@ -34,7 +34,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The same for an owner whose end has been found in the frame it is to move in.
-    pub(super) fn replan_aimed(&mut self, owner: Entry, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
+    pub(super) fn replan_aimed(&mut self, mut owner: Entry, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         if owner.paused {
             // It goes on with these values when it may.
             self.own(owner);
@@ -42,8 +42,13 @@ impl<P: Planner> Axis<P> {
         }
         match self.plan_anew(owner, scope) {
             Err(error @ (ErrorId::PositiveBarred | ErrorId::NegativeBarred)) => {
+                // The motion in progress is still that of the owner as it was: a halt comes to rest anywhere.
+                if let Some(mut was) = self.owner {
+                    self.note_passing(&mut was);
+                    owner.passed |= was.passed;
+                }
                 self.own(owner);
-                self.pause(error, scope);
+                self.pause_noted(error, scope);
                 Ok(())
             }
             planned => planned,

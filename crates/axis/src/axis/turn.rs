@@ -143,7 +143,9 @@ impl<P: Planner> Axis<P> {
         let speed = at_end.velocity.abs();
         // What brakes at its end is slower soon after it.
         let is_faster = speed > as_planned.velocity.abs() || slowing(&at_end) < slowing(&as_planned);
-        let is_too_fast = speed > owner.passage.most * (1.0 + ROUNDING) && is_faster;
+        // What passes it on a ramp was found with what comes next, which begins braking or lets go.
+        let is_on_a_ramp = motion.goes_on();
+        let is_too_fast = speed > owner.passage.most * (1.0 + ROUNDING) && is_faster && !is_on_a_ramp;
         let is_same = |was: &Entry| was.id == owner.id && was.end == owner.end && !was.halted;
         (self.is_to_turn() || self.is_to_pass(owner) || (goes_on && owner.run.count == 0))
             && !self.goal_reached()

@@ -275,8 +275,10 @@ impl<P: Planner> Axis<P> {
         };
         let is_there = difference.position == 0.0 && difference.is_at_rest();
         // Where the curve is level the slave rests, however its master moves.
+        let numbers = shadow.place.position.abs() + was.place.position.abs() + turn;
+        let is_near = difference.position.abs() <= RESOLVED * 4.0 * numbers;
         let is_there = is_there
-            || (difference.position == 0.0 && {
+            || (is_near && {
                 let at = curve.at(was.place, &was.at, on_cam.at.piece);
                 goes_on(self.mover.setpoint(), &at.state, &on_cam.limits)
             });
