@@ -281,7 +281,7 @@ impl CamBounds {
     /// are the rest of the limits while the velocity is at most that at `present` (u/s).
     ///
     /// `None` if nothing is left: at rest with nothing wanted, or already at the highest velocity. Cost:
-    /// at most 40 halvings.
+    /// at most 120 halvings.
     pub fn shadow(&self, limits: &Limits, wanted: f64, present: f64) -> Option<Limits> {
         let most = self.highest_velocity(limits);
         let velocity = (0.98 * most).min(wanted);
@@ -314,22 +314,27 @@ impl CamBounds {
         }
         let mut snap = f64::INFINITY;
         if limits.snap.is_finite() {
-            let mut is_found = false;
-            for halving in 0..HALVINGS {
-                let a = acceleration;
-                let used = self.fourth * v * v * v * v
+            let used = |a: f64, jerk: f64| {
+                self.fourth * v * v * v * v
                     + 6.0 * self.third * v * v * a
-                    + self.second * (3.0 * a * a + 4.0 * v * jerk);
-                snap = room(limits.snap, used);
+                    + self.second * (3.0 * a * a + 4.0 * v * jerk)
+            };
+            // What the acceleration takes alone does not shrink with the jerk: half of what the velocity leaves is for that and the snap.
+            let half = 0.5 * (limits.snap + used(0.0, 0.0));
+            for _ in 0..HALVINGS {
+                if used(acceleration, 0.0) <= half {
+                    break;
+                }
+                acceleration *= 0.5;
+            }
+            let mut is_found = false;
+            for _ in 0..HALVINGS {
+                snap = room(limits.snap, used(acceleration, jerk));
                 is_found = snap > 0.0;
                 if is_found {
                     break;
                 }
                 jerk *= 0.5;
-                // The part that the acceleration takes does not shrink with the jerk.
-                if halving & 1 == 1 {
-                    acceleration *= 0.5;
-                }
             }
             if !is_found {
                 return None;
