@@ -192,12 +192,14 @@ impl<P: Planner> Axis<P> {
                 self.trip(ErrorId::PowerLost, 0, Reaction::Follow, scope);
             }
         }
+        if self.power.is_wanted() || self.feedback.step() == 0.0 {
+            self.power.end_braking();
+        }
         match self.state {
             AxisState::Disabled if feedback.enabled && self.power.is_wanted() && !self.power.is_tripped() => {
                 self.hold_at_actual();
                 self.enter(AxisEvent::PowerOn);
             }
-            AxisState::Disabled if self.feedback.step() == 0.0 => self.power.end_braking(),
             AxisState::ErrorStop if !feedback.enabled => self.mover.follow(),
             AxisState::ErrorStop if matches!(self.mover.motion(), Motion::Follow) && !self.moves_itself() => {
                 self.hold_at_actual();

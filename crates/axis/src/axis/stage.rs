@@ -80,9 +80,9 @@ impl Power {
         self.stage == Stage::GoingOff
     }
 
-    /// It is off, and the drive stops by itself.
+    /// It is off, not requested, and the drive stops by itself.
     pub fn is_braking(&self) -> bool {
-        self.stage == Stage::Braking
+        self.stage == Stage::Braking && !self.wanted
     }
 
     /// It does not return by itself.
@@ -188,7 +188,7 @@ impl Power {
 
     /// The drive has come to rest, or something else takes over.
     pub fn end_braking(&mut self) {
-        if self.is_braking() {
+        if self.stage == Stage::Braking {
             self.stage = Stage::Ready;
         }
     }
@@ -223,9 +223,6 @@ impl Power {
     #[inline]
     pub fn want(&mut self, wanted: bool) {
         self.wanted = wanted;
-        if wanted {
-            self.end_braking();
-        }
     }
 
     pub fn permit(&mut self, permitted: Permission) {

@@ -763,3 +763,9 @@ pub(super) fn off(one: Place, other: Place, length: f64) -> f64 {
 pub(super) fn apart(one: Place, other: Place, length: f64) -> f64 {
     off(one, other, length) + (one.phase - other.phase)
 }
+
+/// Whether two masters are at the same place but for rounding.
+pub(super) fn meet(one: Place, other: Place, length: f64) -> bool {
+    let numbers = one.position.abs() + other.position.abs() + length;
+    apart(one, other, length).abs() <= RESOLVED * 4.0 * numbers
+}

@@ -6,6 +6,7 @@
 
 use super::super::super::Axis;
 use super::super::super::commands::{Camming, ROUNDING, Work};
+use super::super::super::feedback::nearest;
 use super::super::follow::off;
 use super::super::needs::RESOLVED;
 use super::super::view::View;
@@ -58,9 +59,14 @@ impl<P: Planner> Axis<P> {
                     curve.unwound(on_cam.was.place)
                 } else {
                     let step = shadow.at.velocity * cycle / curve.law.master_scaling;
-                    let step = was.map_or(step, |was| curve.step(curve.unwound(was.place), here, step));
-                    // It is not known to the last bit: whole periods may have been dropped.
-                    here - step * (1.0 + ROUNDING)
+                    let before = was.map_or(here - step, |was| curve.unwound(was.place));
+                    // Whole periods may have been dropped since, so it is not known to the last bit.
+                    let period = if cam.head.periodic {
+                        cam.head.end - cam.head.begin
+                    } else {
+                        f64::INFINITY
+                    };
+                    nearest(before, here - step, period) - step * ROUNDING
                 };
                 curve
                     .passes(place, before, here)
@@ -336,18 +342,6 @@ impl Curve<'_> {
         let is_behind = shadow >= head.end && master < head.end;
         let is_before = shadow <= head.begin && master > head.begin;
         !head.periodic && (is_behind || is_before)
-    }
-
-    /// The way from `before` to `here`, of about the length `about`: one of them may have lost whole periods.
-    fn step(&self, before: f64, here: f64, about: f64) -> f64 {
-        let head = self.cam.head;
-        let (step, length) = (here - before, head.end - head.begin);
-        if !head.periodic {
-            return step;
-        }
-        let over = (step - about) / length;
-        let whole = if over < 0.0 { over - 0.5 } else { over + 0.5 };
-        step - whole as i64 as f64 * length
     }
 
     /// Where `place` of the cam (u of the master's side) is passed on the way from `before` to `here`, neither taken back into one

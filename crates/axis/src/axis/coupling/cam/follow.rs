@@ -4,8 +4,7 @@ use super::super::super::commands::ROUNDING;
 use super::super::super::power::Reaction;
 use super::super::super::{Axis, Motion};
 use super::super::FURTHEST;
-use super::super::follow::{Beyond, apart, off};
-use super::super::needs::RESOLVED;
+use super::super::follow::{Beyond, meet, off};
 use super::super::view::{Kind, View};
 use super::{Curve, OnCam, Rung, Shadow};
 use crate::{ErrorId, Event, OnLimit, Scope};
@@ -342,8 +341,7 @@ impl<P: Planner> Axis<P> {
             return false;
         };
         let turn = on_cam.camming.law.master_turn.unwrap_or(0.0);
-        let numbers = shadow.place.position.abs() + view.now.place.position.abs() + turn;
-        let is_there = apart(shadow.place, view.now.place, turn).abs() <= RESOLVED * 4.0 * numbers;
+        let is_there = meet(shadow.place, view.now.place, turn);
         let speed = on_cam.shadow_limits.velocity.min(f64::MAX);
         let is_even = (shadow.at.velocity - view.now.at.velocity).abs() <= ROUNDING * speed;
         let cam = scope.cams.cam(on_cam.camming.cam);
@@ -402,7 +400,7 @@ impl<P: Planner> Axis<P> {
         let mut is_there = view.now.at.is_at_rest() && view.future.kind() == Kind::Still;
         if let (Some(on_cam), Some(at)) = (&mut self.follower.on_cam, at) {
             let turn = on_cam.camming.law.master_turn.unwrap_or(0.0);
-            is_there &= apart(to, view.now.place, turn) == 0.0;
+            is_there &= meet(to, view.now.place, turn);
             on_cam.at = at;
             on_cam.shadow = Some(shadow);
             on_cam.rung = Rung::Due;

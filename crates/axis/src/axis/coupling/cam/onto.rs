@@ -10,7 +10,7 @@
 
 use super::super::super::commands::{Entry, ROUNDING, refusal};
 use super::super::super::{Axis, Motion};
-use super::super::follow::{apart, off};
+use super::super::follow::{apart, meet, off};
 use super::super::needs::RESOLVED;
 use super::super::view::{Kind, UNKNOWN, View};
 use super::{Curve, OnCam, Rung, Shadow};
@@ -275,10 +275,8 @@ impl<P: Planner> Axis<P> {
         };
         let is_there = difference.position == 0.0 && difference.is_at_rest();
         // Where the curve is level the slave rests, however its master moves.
-        let numbers = shadow.place.position.abs() + was.place.position.abs() + turn;
-        let is_near = difference.position.abs() <= RESOLVED * 4.0 * numbers;
         let is_there = is_there
-            || (is_near && {
+            || (meet(shadow.place, was.place, turn) && {
                 let at = curve.at(was.place, &was.at, on_cam.at.piece);
                 goes_on(self.mover.setpoint(), &at.state, &on_cam.limits)
             });
