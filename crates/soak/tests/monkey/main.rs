@@ -66,6 +66,18 @@ fn programs_that_rest_may_be_left_out() {
     }
 }
 
+/// A program that cannot begin has shown nothing.
+#[test]
+fn a_refused_program_is_a_failure() {
+    let mut scenario = record(3, 0, 10).2;
+    scenario.axes[0].config.limits.velocity = f64::NAN;
+    let (seen, failure) = replay(&scenario);
+    assert_eq!(
+        (seen.scans, failure.map(|failure| failure.broken.id)),
+        (0, Some("refused"))
+    );
+}
+
 /// A block of the standard or of ours that moves something is played, and the rules know what it is: a new one that nobody told
 /// them of fails here.
 #[test]
