@@ -1,5 +1,6 @@
 //! The record of a random program repeats its run to the bit, and its scan script runs.
 
+mod programs;
 mod wired;
 
 use standstill_axis::{AxisConfig, Limits, Scaling, StartState};
