@@ -5,6 +5,7 @@
 
 use super::commands::{Entry, REST, ROUNDING, Run, Work};
 use super::power::Reaction;
+use super::superimposed::Layer;
 use super::through::{is_braking, keeps_rates};
 use super::{Axis, Motion};
 use crate::{BufferMode, ErrorId, Fate, QUEUE_MAX, Scope};
@@ -12,6 +13,9 @@ use standstill_planner::{Limits, Passage, Plan, Planner, Setpoint};
 
 /// Scans of a way that leave room for its ramps in a plan.
 const SCANS: f64 = 1_073_741_824.0;
+
+/// The part of the highest speed that an end is passed with, however much is added: one that cannot stop there may pass.
+const AT_LEAST: f64 = 0.1;
 
 /// A command of a chain: the owner to be, or one that waits.
 #[derive(Clone, Copy)]
@@ -306,16 +310,18 @@ impl<P: Planner> Axis<P> {
 
     /// The same, with ways of at least `shortest` (u) in one motion.
     pub(super) fn chain(&self, first: &Entry, start: f64, skip: usize, shortest: f64) -> (Passage, Run) {
-        if self.mover.layer().is_some() {
-            return (REST, Run::NONE);
-        }
         const NONE: Option<Leg<'_>> = None;
         let mut legs = [NONE; QUEUE_MAX];
-        let mut from = first.end;
         let way = first
             .end
             .map(|end| if first.is_behind { start - end } else { end - start });
         let mut forward = way.is_none_or(|way| way > 0.0);
+        let layer = self.mover.layer();
+        // What is added may all be there when the next begins, or not yet: the shorter way is looked at.
+        let mut from = first.end.map(|end| match layer {
+            Some(layer) => layer.farthest_above(end, forward, skip == 0),
+            None => end,
+        });
         for (leg, entry) in legs.iter_mut().zip(self.queue.iter().skip(skip)) {
             let end = from.and_then(|from| self.end_of_leg(entry, from, forward));
             *leg = Some(Leg {
@@ -333,7 +339,11 @@ impl<P: Planner> Axis<P> {
             end: first.end,
             way,
         };
-        let (count, end) = self.joined(&alone, &legs, shortest);
+        let (count, end) = if layer.is_some() {
+            (0, 0.0)
+        } else {
+            self.joined(&alone, &legs, shortest)
+        };
         let mut run = Run {
             count,
             end,
@@ -429,9 +439,17 @@ impl<P: Planner> Axis<P> {
         let wanted = mode.speed_between(first, velocity);
         let passage = match exit {
             Some(exit) => {
-                let most = self.planner.entry_speed(wanted, 0.0, towards.abs(), exit, limits);
+                let entry_speed = |wanted| self.planner.entry_speed(wanted, 0.0, towards.abs(), exit, limits);
+                let most = entry_speed(wanted);
+                // The next command may have to take over the velocity of what is added, too.
+                let added = self.mover.layer().map_or(0.0, Layer::fastest);
+                let wanted = if added > 0.0 {
+                    most.min((entry_speed(wanted + added) - added).max(AT_LEAST * most))
+                } else {
+                    most
+                };
                 Passage {
-                    wanted: most,
+                    wanted,
                     most,
                     brake: 0.0,
                 }

@@ -177,6 +177,15 @@ impl<P: Plan> Layer<P> {
         }
     }
 
+    /// The speed that it may add (u/s): that of its command, or of its motion without one.
+    pub fn fastest(&self) -> f64 {
+        match &self.command {
+            Some(command) => command.limits.velocity,
+            None if self.moves() => self.in_force.velocity,
+            None => 0.0,
+        }
+    }
+
     /// The distance that is still to be added (u).
     fn left(&self) -> f64 {
         let end = match (&self.command, &self.motion) {
@@ -240,6 +249,18 @@ impl<P: Plan> Layer<P> {
     /// The place of the axis once everything is added to the owner at `position` (u).
     pub fn end_above(&self, position: f64) -> f64 {
         position + (self.added.position - self.taken) + self.left()
+    }
+
+    /// The same for whatever part of the rest is added by then: the place that is farthest `forward`, or back. `is_owner` says whether
+    /// it is the owner's place, or that of the command that takes over from it now.
+    pub fn farthest_above(&self, position: f64, forward: bool, is_owner: bool) -> f64 {
+        let added = if is_owner {
+            self.added.position - self.taken
+        } else {
+            0.0
+        };
+        let left = self.left();
+        position + added + if forward { left.max(0.0) } else { left.min(0.0) }
     }
 
     fn sum(&self) -> Setpoint {

@@ -110,7 +110,8 @@ impl<P: Planner> Axis<P> {
         let is_move = matches!(next.work, Work::Position(_) | Work::Distance(_));
         let target = self.end_of_leg(next, end, forward)?;
         let is_onward = is_move && target != end && (target > end) == forward;
-        if self.modulo.is_some() || next.limits == entry.limits || !is_onward {
+        if self.modulo.is_some() || next.limits == entry.limits || !is_onward || self.mover.layer().is_some()
+        {
             return None;
         }
         let aimed = Entry {

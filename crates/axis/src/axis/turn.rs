@@ -20,7 +20,11 @@ impl<P: Planner> Axis<P> {
     /// Cost: with software limits one ramp.
     pub(super) fn at_turn(&self, entry: &Entry, next: &Entry, end: Option<f64>, direction: f64) -> Passage {
         let is_move = matches!(next.work, Work::Position(_) | Work::Distance(_));
-        if self.modulo.is_some() || !is_move || next.mode == BufferMode::Buffered {
+        if self.modulo.is_some()
+            || !is_move
+            || next.mode == BufferMode::Buffered
+            || self.mover.layer().is_some()
+        {
             return REST;
         }
         let most = |entry: &Entry| entry.limits.lower_acceleration();
