@@ -5,7 +5,6 @@
 
 use super::commands::{Entry, REST, ROUNDING, Run, Work};
 use super::power::Reaction;
-use super::superimposed::Layer;
 use super::through::{is_braking, keeps_rates};
 use super::{Axis, Motion};
 use crate::{BufferMode, ErrorId, Fate, QUEUE_MAX, Scope};
@@ -51,8 +50,12 @@ impl<P: Planner> Axis<P> {
             return;
         }
         if self.mover.layer().is_some() {
-            // It goes on as planned below what is superimposed.
-            return self.end_run();
+            // It goes on as planned below what moves; what has been added only moves its end.
+            let passes = !self.is_superimposing() && owner.passage.wanted > 0.0;
+            if !passes || self.plan_anew(owner, scope).is_err() {
+                self.end_run();
+            }
+            return;
         }
         let (start, before) = (self.mover.setpoint(), self.mover.before());
         let planned = match self.ahead(&mut owner, start, before) {
@@ -318,10 +321,11 @@ impl<P: Planner> Axis<P> {
         let mut forward = way.is_none_or(|way| way > 0.0);
         let layer = self.mover.layer();
         // What is added may all be there when the next begins, or not yet: the shorter way is looked at.
-        let mut from = first.end.map(|end| match layer {
+        let farthest = first.end.map(|end| match layer {
             Some(layer) => layer.farthest_above(end, forward, skip == 0),
             None => end,
         });
+        let mut from = farthest;
         for (leg, entry) in legs.iter_mut().zip(self.queue.iter().skip(skip)) {
             let end = from.and_then(|from| self.end_of_leg(entry, from, forward));
             *leg = Some(Leg {
@@ -336,7 +340,7 @@ impl<P: Planner> Axis<P> {
         }
         let alone = Leg {
             entry: first,
-            end: first.end,
+            end: farthest,
             way,
         };
         let (count, end) = if layer.is_some() {
@@ -442,7 +446,7 @@ impl<P: Planner> Axis<P> {
                 let entry_speed = |wanted| self.planner.entry_speed(wanted, 0.0, towards.abs(), exit, limits);
                 let most = entry_speed(wanted);
                 // The next command may have to take over the velocity of what is added, too.
-                let added = self.mover.layer().map_or(0.0, Layer::fastest);
+                let added = self.superimposed_speed();
                 let wanted = if added > 0.0 {
                     most.min((entry_speed(wanted + added) - added).max(AT_LEAST * most))
                 } else {
@@ -473,15 +477,38 @@ impl<P: Planner> Axis<P> {
         if !room.is_finite() || passage.wanted <= 0.0 {
             return passage;
         }
-        let limits = self.stop_limits();
-        let most = self
-            .planner
-            .entry_speed(passage.wanted, 0.0, room.max(0.0), 0.0, &limits);
+        // Both together have to stop.
+        let added = self.superimposed_speed();
+        let most = self.stoppable_speed(passage.wanted + added, room) - added;
         Passage {
-            wanted: most,
-            most: passage.most.min(most),
+            wanted: most.max(0.0),
+            most: passage.most.min(most).max(0.0),
             ..passage
         }
+    }
+
+    /// The largest speed (u/s), at most `wanted`, from which the stop dynamics come to rest within `room` (u).
+    fn stoppable_speed(&self, wanted: f64, room: f64) -> f64 {
+        let limits = self.stop_limits();
+        self.planner.entry_speed(wanted, 0.0, room.max(0.0), 0.0, &limits)
+    }
+
+    /// Whether the stop dynamics keep an axis inside the software limits from the end of the plan `rest` on, if that is passed at speed,
+    /// `shift` (u) beside it, and a distance `left` (u) is still being superimposed with a speed of `added` (u/s).
+    pub(super) fn stops_beside(&self, (rest, _): (&P::Plan, u64), shift: f64, left: f64, added: f64) -> bool {
+        let mut end = rest.at(u64::from(rest.scans()));
+        end.position += shift;
+        let Some((min, max)) = self.parameters.software_limits.filter(|_| end.velocity != 0.0) else {
+            return true;
+        };
+        let forward = end.velocity > 0.0;
+        let room = if forward {
+            max - end.position - left.max(0.0)
+        } else {
+            end.position + left.min(0.0) - min
+        };
+        let speed = end.velocity.abs() + if (left > 0.0) == forward { added } else { 0.0 };
+        self.stoppable_speed(speed, room) >= speed * (1.0 - ROUNDING)
     }
 }
 

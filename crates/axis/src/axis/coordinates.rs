@@ -155,8 +155,7 @@ impl<P: Planner> Axis<P> {
             // Out of operation the drive stands at its actual position, to which it may have been pushed.
             self.frame.rename(self.setpoint().position);
         }
-        self.mover
-            .watch(self.owner.is_some_and(|owner| self.needs_watching(&owner)));
+        self.watch_anew();
         self.tell_moved(by, scope);
         self.arm_anew(scope);
         Ok(())

@@ -108,14 +108,7 @@ impl<P: Plan> Mover<P> {
 
     /// The plan in progress and the scans since its start.
     pub fn plan(&self) -> Option<(&P, u64)> {
-        match &self.motion {
-            Motion::Run { plan, elapsed, .. } => Some((plan, *elapsed)),
-            Motion::Follow
-            | Motion::Hold
-            | Motion::Torque { .. }
-            | Motion::Geared
-            | Motion::Closing { .. } => None,
-        }
+        self.motion.plan()
     }
 
     /// The set-point at the goal of the plan in progress.

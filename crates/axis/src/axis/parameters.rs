@@ -445,8 +445,12 @@ impl<P: Planner> Axis<P> {
         self.stir();
         if limits_moved {
             // The motion and the commands that wait were checked against the old limits.
-            self.mover
-                .watch(self.owner.is_some() && self.parameters.software_limits.is_some());
+            if self.mover.layer().is_some() {
+                self.watch_anew();
+            } else {
+                self.mover
+                    .watch(self.owner.is_some() && self.parameters.software_limits.is_some());
+            }
             self.arm_anew(scope);
         }
     }

@@ -191,8 +191,7 @@ impl<P: Planner> Axis<P> {
         };
         self.mover.start(motion, limits);
         self.end_orphan();
-        self.mover
-            .watch(self.owner.is_some_and(|owner| self.needs_watching(&owner)));
+        self.watch_anew();
     }
 
     /// The owner continues from its present state, if all directions it needs are permitted. If it can't

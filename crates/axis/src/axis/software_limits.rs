@@ -6,8 +6,9 @@
 //! scan in which the stop dynamics can keep it inside. A stop that rounding alone takes beyond a limit ends
 //! on it. An axis outside the limits, after a push or a move of coordinates, may move to any place inside.
 
-use super::commands::{Entry, Manner, Watch};
+use super::commands::{Entry, Watch};
 use super::run::RESOLUTION;
+use super::superimposed::Layer;
 use super::{Axis, Motion};
 use crate::ErrorId;
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
@@ -42,10 +43,45 @@ impl<P: Planner> Axis<P> {
 
     /// Whether the motion of `entry` in progress may leave the software limits. Cost: at most one ramp.
     pub(super) fn needs_watching(&self, entry: &Entry) -> bool {
-        match self.parameters.software_limits {
-            Some(limits) => self.may_leave(entry, limits),
-            None => false,
+        match (self.parameters.software_limits, self.mover.layer()) {
+            (Some(limits), None) => self.may_leave(entry, limits),
+            (Some(limits), Some(layer)) => match entry.work.manner().watch {
+                Watch::Always => true,
+                Watch::Never => false,
+                Watch::Curve | Watch::Ramp | Watch::Way | Watch::Torque => self.sum_leaves(layer, limits),
+            },
+            (None, _) => false,
         }
+    }
+
+    /// What is superimposed, or a software limit, has changed: the motion may leave the limits now, or no longer.
+    pub(super) fn watch_anew(&mut self) {
+        let is_watched = match (self.owner, self.mover.layer(), self.parameters.software_limits) {
+            (Some(owner), ..) => self.needs_watching(&owner),
+            (None, Some(layer), Some(limits)) => self.sum_leaves(layer, limits),
+            (None, ..) => false,
+        };
+        self.mover.watch(is_watched);
+    }
+
+    /// Whether the motion of the owner and what is superimposed on it, as far as it moves, together turn or end outside. Cost: a check of
+    /// each of their pieces.
+    #[inline(never)]
+    fn sum_leaves(&self, layer: &Layer<P::Plan>, (min, max): (f64, f64)) -> bool {
+        let still = |position| {
+            let (still, limits) = (Setpoint::at_rest(position), &self.config.limits);
+            self.planner.ramp_to(&still, 0.0, limits, limits).ok()
+        };
+        let (Some(base), Some(added)) = (still(layer.base().position), still(layer.added().position)) else {
+            return true;
+        };
+        let base = self.mover.plan().unwrap_or((&base, 0));
+        let added = layer.motion().plan().unwrap_or((&added, 0));
+        let end = |(plan, _): (&P::Plan, u64)| plan.at(u64::from(plan.scans())).position;
+        let (taken, rest) = (layer.taken(), end(base) + end(added) - layer.taken());
+        let within = RESOLUTION * (end(base).abs() + end(added).abs());
+        let range = Some((min + taken, max + taken));
+        rest < min - within || rest > max + within || !self.planner.fits(base, added, &Limits::NONE, range)
     }
 
     #[inline(never)]
@@ -84,38 +120,31 @@ impl<P: Planner> Axis<P> {
         // Between two scans it may leave the limits and turn; a stop from there leads inside again.
         let outside = |position: f64| position < min || position > max;
         let comes_out = outside(next.position) && !outside(self.mover.setpoint().position);
-        let work = match (self.mover.motion(), &self.owner) {
+        let manner = match (self.mover.motion(), &self.owner) {
             (Motion::Run { .. } | Motion::Geared | Motion::Closing { .. }, Some(owner)) => {
                 Some(owner.work.manner())
             }
-            // Over a standing owner, or none, a superimposed motion moves alone. It was checked when it
-            // was planned, but its end may have another name now, or had no name then.
-            (Motion::Hold, _) => None,
+            // Over a standing owner, or none, a superimposed motion moves alone.
+            (Motion::Hold, _) if self.mover.layer().is_some() => None,
             (Motion::Run { .. } | Motion::Geared | Motion::Closing { .. }, None)
-            | (Motion::Follow | Motion::Torque { .. }, _) => return false,
+            | (Motion::Hold | Motion::Follow | Motion::Torque { .. }, _) => return false,
         };
-        let leaving = match work {
-            None => leaves(next.position + self.superimposed_left()),
-            Some(Manner { watch, endless, .. }) => match watch {
-                Watch::Always => true,
-                Watch::Ramp | Watch::Torque => leaves(self.mover.end_of_plan() + self.superimposed_left()),
-                // The end of an endless motion with something superimposed was not checked.
-                Watch::Way if endless && self.mover.layer().is_some() => {
-                    leaves(self.mover.end_of_plan() + self.superimposed_left())
-                }
-                // With something superimposed, ends and turns were checked when it was planned.
-                Watch::Curve | Watch::Way if !self.mover.is_watched() => return false,
-                Watch::Curve => leaves(self.mover.end_of_plan()) || self.turns_outside(),
-                // It turns back where it stops, or its end has another name since it began.
-                Watch::Way => {
-                    leaves(self.mover.end_of_plan())
-                        || self
-                            .owner
-                            .is_some_and(|owner| leaves(self.rest(&next, &owner.limits)))
-                        || self.turns_outside()
-                }
-                Watch::Never => return false,
-            },
+        let leaving = match manner.map(|manner| manner.watch) {
+            Some(Watch::Never) => return false,
+            Some(Watch::Always) => true,
+            // With something superimposed, both motions were looked at when the last one of them began.
+            _ if self.mover.layer().is_some() => self.mover.is_watched(),
+            Some(Watch::Ramp | Watch::Torque) => leaves(self.mover.end_of_plan()),
+            Some(Watch::Curve | Watch::Way) | None if !self.mover.is_watched() => return false,
+            Some(Watch::Curve) => leaves(self.mover.end_of_plan()) || self.turns_outside(),
+            // It turns back where it stops, or its end has another name since it began.
+            Some(Watch::Way) | None => {
+                leaves(self.mover.end_of_plan())
+                    || self
+                        .owner
+                        .is_some_and(|owner| leaves(self.rest(&next, &owner.limits)))
+                    || self.turns_outside()
+            }
         };
         comes_out || (leaving && leaves(self.rest(&next, &self.stop_limits())))
     }

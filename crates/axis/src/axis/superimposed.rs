@@ -155,6 +155,11 @@ impl<P: Plan> Layer<P> {
         self.base.position += by;
     }
 
+    /// The part of the added distance that the owner's frame has in it (u).
+    pub fn taken(&self) -> f64 {
+        self.taken
+    }
+
     pub fn moves(&self) -> bool {
         matches!(self.motion, Motion::Run { .. })
     }
@@ -174,15 +179,6 @@ impl<P: Plan> Layer<P> {
         match &self.motion {
             Motion::Run { elapsed, scans, .. } if command.runs() => scans.saturating_sub(*elapsed),
             _ => u64::MAX,
-        }
-    }
-
-    /// The speed that it may add (u/s): that of its command, or of its motion without one.
-    pub fn fastest(&self) -> f64 {
-        match &self.command {
-            Some(command) => command.limits.velocity,
-            None if self.moves() => self.in_force.velocity,
-            None => 0.0,
         }
     }
 
@@ -416,6 +412,28 @@ impl<P: Planner> Axis<P> {
         self.mover.layer().is_some_and(Layer::is_busy)
     }
 
+    /// The highest speed (u/s) that is still to come from what is superimposed: no higher than its way lets it stop from.
+    ///
+    /// Cost: one ramp or root of ramps.
+    pub(super) fn superimposed_speed(&self) -> f64 {
+        let Some(layer) = self.mover.layer() else {
+            return 0.0;
+        };
+        let limits = match &layer.command {
+            Some(command) => &command.limits,
+            None if layer.moves() => &layer.in_force,
+            None => return 0.0,
+        };
+        self.speed_over(layer.left(), limits)
+            .max(layer.added.velocity.abs())
+    }
+
+    /// The highest speed (u/s) of a motion over `distance` (u).
+    fn speed_over(&self, distance: f64, limits: &Limits) -> f64 {
+        self.planner
+            .entry_speed(limits.velocity, 0.0, distance.abs(), 0.0, limits)
+    }
+
     /// The distance that is still to be superimposed (u).
     pub(super) fn superimposed_left(&self) -> f64 {
         self.mover.layer().map_or(0.0, Layer::left)
@@ -575,6 +593,7 @@ impl<P: Planner> Axis<P> {
         let Some(layer) = self.mover.layer_mut() else {
             return;
         };
+        let was_busy = layer.command.is_some();
         let reached = match &layer.motion {
             Motion::Run { elapsed, scans, .. } => *elapsed >= scans.saturating_add(delay),
             _ => true,
@@ -593,6 +612,9 @@ impl<P: Planner> Axis<P> {
             }
         }
         self.try_again(scope);
+        if was_busy && matches!(self.mover.motion(), Motion::Run { .. }) {
+            self.end_of_superimposed(scope);
+        }
         let still = !matches!(self.mover.motion(), Motion::Run { .. });
         if still && self.mover.layer().is_some_and(|layer| layer.command.is_none()) {
             self.mover.drop_layer();
@@ -603,6 +625,22 @@ impl<P: Planner> Axis<P> {
             }
             self.resume(scope);
         }
+    }
+
+    /// Where nothing is superimposed any more, what waits behind the owner is blended again. Where nothing has been added, there is one motion.
+    fn end_of_superimposed(&mut self, scope: &mut Scope<'_>) {
+        let Some(layer) = self
+            .mover
+            .layer()
+            .filter(|layer| layer.command.is_none() && !layer.moves())
+        else {
+            return;
+        };
+        if layer.added.position == layer.taken {
+            self.mover.drop_layer();
+            self.stir();
+        }
+        self.arm_owner(scope);
     }
 
     /// A command given while only a superimposed motion moves starts beside that at once.
@@ -630,6 +668,7 @@ impl<P: Planner> Axis<P> {
             layer.in_force = limits;
             command.wait();
         }
+        self.watch_anew();
     }
 
     /// For [`crate::Outlook`]: the command, the scans left as for the owner, whether it waits for room,

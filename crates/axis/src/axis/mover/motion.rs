@@ -22,6 +22,14 @@ pub(in crate::axis) enum Motion<Plan> {
 }
 
 impl<P: Plan> Motion<P> {
+    /// Its plan, and the scans since its start.
+    pub fn plan(&self) -> Option<(&P, u64)> {
+        match self {
+            Self::Run { plan, elapsed, .. } => Some((plan, *elapsed)),
+            Self::Follow | Self::Hold | Self::Torque { .. } | Self::Geared | Self::Closing { .. } => None,
+        }
+    }
+
     /// Along `plan`, from its start to its goal.
     pub fn along(plan: P) -> Self {
         Self::Run {

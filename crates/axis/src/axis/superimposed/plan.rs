@@ -118,6 +118,9 @@ impl<P: Planner> Axis<P> {
         let is_distance = matches!(command.adds, Adds::Distance { .. }) && !command.halting;
         if let (Some(rest), true) = (base, is_distance) {
             self.admit_way(layer, command)?;
+            if !self.may_run_past_the_end(layer, command, rest) {
+                return Ok(None);
+            }
             return self.soonest(layer, command, &room(), &Below { rest, axis, range }, search);
         }
         // A motion over nothing may not turn outside the software limits either.
@@ -127,6 +130,23 @@ impl<P: Planner> Axis<P> {
         self.propose_within(layer, command, room, |plan| {
             base.is_none_or(|rest| self.planner.fits(rest, (plan, 0), axis, range))
         })
+    }
+
+    /// Whether the owner's end, if that is passed for a blended command, may be passed with `command` in motion: both together have to stop
+    /// inside the software limits from there.
+    fn may_run_past_the_end(&self, layer: &Layer<P::Plan>, command: &Added, rest: (&P::Plan, u64)) -> bool {
+        let blends = self
+            .owner
+            .is_some_and(|owner| owner.passage.wanted > 0.0 && !owner.halted);
+        let Adds::Distance { target, .. } = command.adds else {
+            return true;
+        };
+        let (shift, left) = (layer.added.position - layer.taken, target - layer.added.position);
+        let added = || {
+            self.speed_over(left, &command.limits)
+                .max(layer.added.velocity.abs())
+        };
+        !blends || self.stops_beside(rest, shift, left, added())
     }
 
     /// The same over anything that always leaves this `room`, if the motion `fits`.
@@ -237,6 +257,7 @@ impl<P: Planner> Axis<P> {
                 layer.before = before;
                 layer.in_force = limits;
                 layer.motion = Motion::along(plan);
+                self.watch_anew();
                 self.record_lowered(&command, &limits, scope);
                 let scans = plan.scans();
                 let distance = match command.adds {
