@@ -53,9 +53,10 @@ impl GridPlan {
     ///
     /// # Errors
     /// - [`PlanError::InvalidInput`]: `cycle` or a bound is not positive, `start` or `target` is not finite,
-    ///   or their distance or a resulting derivative is beyond the range of `f64`.
+    ///   or their distance is beyond the range of `f64`.
     /// - [`PlanError::Unbounded`]: no bound at all.
-    /// - [`PlanError::TooLong`]: more than 2^31 - 1 scans; names the bound that makes it so.
+    /// - [`PlanError::TooLong`]: more than 2^31 - 1 scans; names the bound that makes it so, or the target where the distance in scans
+    ///   is beyond the range of `f64`.
     pub fn new(
         method: Method,
         start: f64,
@@ -283,7 +284,10 @@ pub(super) fn checked_distance(
     // The first three derivatives can't exceed the larger of this and the distance.
     let squared = cycle * cycle;
     if !(distance / (squared * squared)).is_finite() {
-        return invalid(Field::Cycle, cycle);
+        return Err(PlanError::TooLong {
+            field: Field::Target,
+            value: target,
+        });
     }
     Ok(distance)
 }

@@ -14,6 +14,9 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// The largest rounding error at the end of a profile, relative to the sum along the way.
 const LANDING: f64 = 1e-9;
 
+/// A duration (s) beside which the ramps at both ends of a move have no digits left: such a move has more scans than a plan counts.
+const LONG: f64 = 1e9;
+
 /// A stretch of constant jerk (order 3) or acceleration (order 2).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Piece {
@@ -98,6 +101,11 @@ impl Profile {
         }
         if profile.ends_near(&state) {
             Ok(profile)
+        } else if begin > LONG {
+            Err(PlanError::TooLong {
+                field: Field::Target,
+                value: target,
+            })
         } else {
             Err(invalid(Field::Target, target))
         }
