@@ -70,7 +70,17 @@ use std::process::ExitCode;
 
 /// The program: takes the arguments of the process, and returns its exit status.
 pub fn main() -> ExitCode {
+    outlive_a_limit_on_files();
     status_of(std::env::args_os()).into()
+}
+
+/// A file that would get larger than the system allows is an error of the write, and so is told, and not the end of the program.
+fn outlive_a_limit_on_files() {
+    #[cfg(all(unix, feature = "signals"))]
+    {
+        // Where it cannot be, such a file ends the program as it does any other.
+        let _ = signal_hook::flag::register(signal_hook::consts::signal::SIGXFSZ, std::sync::Arc::default());
+    }
 }
 
 /// Runs the program with these arguments, the first of which is its name, and returns its exit status. It

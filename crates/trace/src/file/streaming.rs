@@ -40,6 +40,13 @@ impl Streaming {
             });
         }
         let special = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
+        // Beside the trace, where there is room for it; a device has none beside it.
+        let folder = match path.parent() {
+            _ if special => std::env::temp_dir(),
+            Some(folder) if folder != Path::new("") => folder.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        let notes = Notes::begin(&folder).map_err(at(&folder))?;
         let (out, partial) = match special {
             true => (File::options().write(true).open(path).map_err(at(path))?, None),
             false => {
@@ -57,7 +64,7 @@ impl Streaming {
             dialect,
             out,
             partial,
-            notes: Notes::begin().map_err(at(&std::env::temp_dir()))?,
+            notes,
             rows: 0,
         };
         let mut first = Vec::new();
@@ -246,9 +253,9 @@ struct Notes {
 }
 
 impl Notes {
-    fn begin() -> io::Result<Self> {
+    fn begin(folder: &Path) -> io::Result<Self> {
         Ok(Self {
-            lines: BufWriter::new(tempfile::tempfile()?),
+            lines: BufWriter::new(tempfile::tempfile_in(folder)?),
             count: 0,
         })
     }
