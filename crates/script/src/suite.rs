@@ -555,10 +555,14 @@ pub fn find(path: &Path) -> Result<Vec<PathBuf>, SuiteError> {
 /// A folder that cannot be read.
 pub fn orphans(folder: &Path) -> Result<Vec<PathBuf>, SuiteError> {
     let files = walk(folder)?;
+    // A script of another name has a golden, too, where it is tested by its own.
     let has_script = |stem: &str| {
-        files
-            .binary_search(&PathBuf::from(format!("{stem}{EXTENSION}")))
-            .is_ok()
+        let is_there = |ending| {
+            files
+                .binary_search(&PathBuf::from(format!("{stem}{ending}")))
+                .is_ok()
+        };
+        [EXTENSION, ".json"].into_iter().any(is_there)
     };
     let lonely = |file: &Path| {
         COMPANIONS

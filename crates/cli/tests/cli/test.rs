@@ -128,6 +128,11 @@ fn orphans_fail_and_broken_scripts_do_not_hide_the_others() {
     assert_eq!(orphan.status, 1);
     assert!(orphan.out.contains("ORPHAN    ./gone.snap\n"), "{}", orphan.out);
     assert!(orphan.out.ends_with("1 script: 1 passed, 1 orphaned\n"));
+    // A script of another name has its golden, too.
+    fs::copy(folder.join("move.scan.json"), folder.join("gone.json")).unwrap();
+    let kept = standstill(&folder, &["test", "."]);
+    assert!(kept.out.ends_with("1 script: 1 passed\n"), "{}", kept.out);
+    fs::remove_file(folder.join("gone.json")).unwrap();
     write(&folder, "broken.scan.json", "{");
     let broken = standstill(&folder, &["test", "."]);
     assert_eq!(broken.status, 3);
