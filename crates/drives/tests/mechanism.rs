@@ -4,7 +4,9 @@ use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Drive, DrivePosition, Dynamics, Fate, InstanceId, Limits,
     Log, Permission, Request, Scaling, Scope, Standard, steps,
 };
-use standstill_drives::mechanism::{Gains, Load, Mechanism, Plant, PlantDrive, SUBSTEPS, Servo, SetPoint};
+use standstill_drives::mechanism::{
+    Gains, Load, Mechanism, Plant, PlantDrive, SUBSTEPS, Servo, SetPoint, Stops,
+};
 use std::slice;
 
 const CYCLE: f64 = 0.001;
@@ -88,6 +90,46 @@ fn a_load_on_a_spring_swings_with_its_frequency_and_loses_nothing() {
         most.max(twist(&mechanism).abs())
     });
     near(late / most, 1.0, 1e-3);
+}
+
+#[test]
+fn a_stop_gives_back_what_it_took_and_no_more() {
+    let hardest = RIGID.inertia / (STEP * STEP);
+    let most_damping = RIGID.inertia / STEP;
+    for (stiffness, damping) in [
+        (hardest, 0.0),
+        (0.3 * hardest, 0.0),
+        (0.01 * hardest, 0.0),
+        (hardest, most_damping),
+        (0.01 * hardest, 0.1 * most_damping),
+    ] {
+        let stops = Stops {
+            ends: (-0.02, 0.01),
+            stiffness,
+            damping,
+        };
+        let mechanism = Mechanism::new(RIGID, 0.0, CYCLE).unwrap();
+        let mut mechanism = mechanism.between(stops, CYCLE).unwrap();
+        let energy = |mechanism: &Mechanism| {
+            let depth = mechanism.position() - mechanism.position().clamp(-0.02, 0.01);
+            0.5 * (RIGID.inertia * mechanism.velocity().powi(2) + stiffness * depth.powi(2))
+        };
+        mechanism.step(500.0);
+        let first = energy(&mechanism);
+        let mut before = first;
+        for _ in 0..20_000 {
+            mechanism.step(0.0);
+            let now = energy(&mechanism);
+            assert!(
+                now <= before + 1e-9 * first,
+                "{stiffness} {damping}: {now} {before}"
+            );
+            before = now;
+        }
+        if damping == 0.0 {
+            near(before, first, 1e-6 * first);
+        }
+    }
 }
 
 #[test]
