@@ -133,6 +133,42 @@ fn a_stop_gives_back_what_it_took_and_no_more() {
 }
 
 #[test]
+fn friction_takes_energy_from_a_load_on_any_spring_and_gives_none() {
+    // The twist (rad) of the spring's swing in a step, beside the friction.
+    for (angle, coulomb) in [
+        (0.3, 1.0),
+        (1.4, 7.0),
+        (3.7, 0.2),
+        (4.5, 1.1),
+        (5.2, 7.6),
+        (9.5, 4.1),
+    ] {
+        let load = Load {
+            inertia: 1.7 * RIGID.inertia,
+            stiffness: 0.63 * RIGID.inertia * (angle / STEP) * (angle / STEP),
+            damping: 0.0,
+        };
+        let coulomb = 0.001 * coulomb;
+        let plant = Plant {
+            coulomb,
+            load: Some(load),
+            ..RIGID
+        };
+        let mut mechanism = Mechanism::new(plant, 0.0, CYCLE).unwrap();
+        mechanism.step(1.0);
+        // All that went in.
+        let first = mechanism.position();
+        for _ in 0..20_000 {
+            mechanism.step(0.0);
+            let twist = mechanism.position() - mechanism.load_position();
+            let velocity = mechanism.velocity();
+            let part = 0.5 * (RIGID.inertia * velocity * velocity + load.stiffness * twist * twist);
+            assert!(part <= first * (1.0 + 1e-6), "{angle} {coulomb}: {part} {first}");
+        }
+    }
+}
+
+#[test]
 fn coulomb_friction_stops_a_motion_and_holds_it_to_the_bit() {
     let plant = Plant {
         coulomb: 0.3,

@@ -140,6 +140,8 @@ pub struct Mechanism {
     /// What 1 of the twist, the motor velocity, the load velocity and the torque gives to [motor velocity, way, twist, load velocity]
     /// one step later. Side by side in this order they are computed two at once.
     step: [[f64; 4]; 4],
+    /// What the twist and the load velocity give to [twist, load velocity] one step later if friction holds the motor.
+    held: [[f64; 2]; 2],
     /// Torque that changes the motor's velocity by 1 u/s in a step.
     stopping: f64,
     /// Of a step (s).
@@ -162,18 +164,24 @@ impl Mechanism {
     pub fn new(plant: Plant, position: f64, cycle: f64) -> Result<Self, MechanismError> {
         plant.check()?;
         let time = cycle / f64::from(SUBSTEPS);
-        let full = exponential(&derivative(&plant).map(|row| row.map(|value| value * time))).ok_or(
-            MechanismError {
+        let after_a_step = |derivative: Matrix| {
+            exponential(&derivative.map(|row| row.map(|value| value * time))).ok_or(MechanismError {
                 key: "stiffness of the whole",
                 value: plant.load.map_or(plant.viscous, |load| load.stiffness),
-            },
-        )?;
+            })
+        };
+        let full = after_a_step(derivative(&plant))?;
+        let [of_twist, _, of_load, ..] = derivative(&plant);
+        let nothing = [0.0; SIZE];
+        let held = after_a_step([of_twist, nothing, of_load, nothing, nothing])?;
         let [twist, motor, load, way, _] = full;
         let of_each = |column: usize| [motor, way, twist, load].map(|row| row[column]);
+        let [held_twist, _, held_load, ..] = held;
         Ok(Self {
             plant,
             stops: None,
             step: [0, 1, 2, SIZE - 1].map(of_each),
+            held: [0, 2].map(|column: usize| [held_twist, held_load].map(|row| row[column])),
             stopping: 1.0 / motor[4],
             time,
             position,
@@ -242,18 +250,35 @@ impl Mechanism {
         });
         // The torque that would stop the motor in this step; friction gives at most its limit.
         let stopped = free[0].abs() <= self.plant.coulomb * by_torque[0];
-        let friction = if stopped {
+        if stopped && motor == 0.0 {
+            // Held by friction for the whole step: it must not move by a rounding error.
+            let [by_twist, by_load] = &self.held;
+            let [twist, load_velocity] = core::array::from_fn(|of| by_twist[of] * twist + by_load[of] * load);
+            return Moved {
+                way: 0.0,
+                twist,
+                velocity: 0.0,
+                load_velocity,
+            };
+        }
+        let wanted = if stopped {
             free[0] * self.stopping
         } else {
             self.plant.coulomb.copysign(free[0])
         };
-        // Held by friction for the whole step: it must not move by a rounding error.
-        let held = stopped && motor == 0.0;
+        let friction = match self.plant.load {
+            Some(_) => {
+                // A hard spring turns the motor within the step. Friction along its way would give energy.
+                let whole_way = free[1] / by_torque[1];
+                wanted.max(whole_way.min(0.0)).min(whole_way.max(0.0))
+            }
+            None => wanted,
+        };
         let [motor, way, twist, load] = core::array::from_fn(|of| free[of] - friction * by_torque[of]);
         Moved {
-            way: if held { 0.0 } else { way },
+            way,
             twist,
-            velocity: if stopped { 0.0 } else { motor },
+            velocity: if stopped && friction == wanted { 0.0 } else { motor },
             load_velocity: load,
         }
     }
