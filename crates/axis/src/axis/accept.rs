@@ -468,8 +468,7 @@ impl<P: Planner> Axis<P> {
                 ramp.map(|ramp| self.onto_limit(ramp))
             }
             Work::Torque { .. } => {
-                let velocity = self.torque_goal(entry) * entry.limits.velocity;
-                self.not_outward(start.position, velocity)?;
+                let velocity = self.torque_goal(entry, start)?;
                 self.planner.ramp_to(start, velocity, &entry.limits, before)
             }
             // Its times have passed.

@@ -10,7 +10,7 @@
 use super::commands::{Entry, Work};
 use super::{Axis, Motion};
 use crate::{Direction, Dynamics, ErrorId, Raw, Scope, TorqueOrder, TorqueReport};
-use standstill_planner::{Limits, Plan, Planner};
+use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
     /// The actual torque, in the unit of the drive; positive towards larger positions.
@@ -68,16 +68,21 @@ impl<P: Planner> Axis<P> {
         Ok((Work::Torque { torque, ramp, along }, limits))
     }
 
-    /// The direction of the torque of `entry`: 1, -1, or 0.
-    pub(super) fn torque_goal(&self, entry: &Entry) -> f64 {
-        let torque = torque_of(entry);
-        if torque > 0.0 {
-            1.0
-        } else if torque < 0.0 {
-            -1.0
+    /// The velocity (u/s) to which the limit under the torque of `entry` goes: in the direction of the torque; one that has none
+    /// lets an axis coast, which may be faster.
+    ///
+    /// # Errors
+    /// [`ErrorId::OutwardFromSoftwareLimit`] if the torque leads out.
+    pub(super) fn torque_goal(&self, entry: &Entry, start: &Setpoint) -> Result<f64, ErrorId> {
+        let (torque, most) = (torque_of(entry), entry.limits.velocity);
+        self.not_outward(start.position, torque)?;
+        Ok(if torque != 0.0 {
+            most.copysign(torque)
+        } else if start.velocity.abs() > most {
+            most.copysign(start.velocity)
         } else {
             0.0
-        }
+        })
     }
 
     /// The motion under a torque, starting from the present torque as far as the drive can hold it.
@@ -138,13 +143,10 @@ impl<P: Planner> Axis<P> {
         // The largest torque of the drive may have become smaller.
         let torque = within(next, most_torque);
         let most = owner.limits.velocity;
-        let velocity = if goal > 0.0 {
-            (limit.min(-most), limit)
-        } else if goal < 0.0 {
-            (limit, limit.max(most))
-        } else {
-            (-most, most)
-        };
+        let velocity = (
+            if goal < 0.0 { limit } else { limit.min(-most) },
+            if goal > 0.0 { limit } else { limit.max(most) },
+        );
         self.mover.step_torque(torque);
         self.beside.order.torque = Some(TorqueOrder { torque, velocity });
         self.mover.publish(*self.mover.setpoint());
