@@ -29,15 +29,22 @@ struct Leg<'a> {
 impl<P: Planner> Axis<P> {
     /// A command has been queued with `mode`: if it is to blend, the owner may have to pass its end at
     /// another speed, and is planned anew from the last set-point (B15). Failing that, its plan stays, and so does one that passes its
-    /// end on a ramp, from which there may be no other way.
+    /// end on a ramp if no other is sooner.
     pub(super) fn arm(&mut self, mode: BufferMode, scope: &mut Scope<'_>) {
-        if mode.blends() && !self.is_on_a_ramp() {
-            self.arm_owner(scope);
+        if mode.blends() {
+            self.arm_owner_if(
+                |axis, owner, plan| !axis.passes_on_a_ramp() || axis.is_sooner(owner, plan),
+                scope,
+            );
         }
     }
 
     /// The same for whatever has changed behind the owner.
     pub(super) fn arm_owner(&mut self, scope: &mut Scope<'_>) {
+        self.arm_owner_if(|_, _, _| true, scope);
+    }
+
+    fn arm_owner_if(&mut self, is_good: impl Fn(&Self, &Entry, &P::Plan) -> bool, scope: &mut Scope<'_>) {
         let Some(was) = self.owner else { return };
         let mut owner = was;
         self.look_through(&mut owner, self.mover.setpoint().position, 0);
@@ -66,7 +73,7 @@ impl<P: Planner> Axis<P> {
                 planned.filter(|plan| was.run.count > 0 || owner.run.count > 0 || moves(plan))
             }
         };
-        match planned {
+        match planned.filter(|plan| is_good(self, &owner, plan)) {
             Some(plan) => self.adopt(owner, self.along(&owner, plan), scope),
             // It goes on as planned. What was one motion passes its end like that, and the next takes over there.
             None => self.end_run(),

@@ -6,9 +6,9 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; B14, B15. `docs/buffering.md`.
 
-use super::Axis;
 use super::commands::{Entry, ROUNDING, Work};
 use super::run::goal_past;
+use super::{Axis, Motion};
 use standstill_planner::{Excess, Limits, MoveProfile, Passage, Plan, Planner, Setpoint};
 
 /// The part of the deceleration it has at the end on the way down to the speed of the next one, with which an end is passed braking: some
@@ -92,8 +92,66 @@ impl<P: Planner> Axis<P> {
         (is_certain || goes_on()).then_some(plan)
     }
 
-    /// Whether the owner is on its way to pass its end on a ramp.
-    pub(super) fn is_on_a_ramp(&self) -> bool {
+    /// Whether what waits behind the end of the owner is done sooner along `plan`, which `owner` would have, than along the one in progress.
+    ///
+    /// Cost: for each of them the plan of the next command, and one of that behind it.
+    pub(super) fn is_sooner(&self, owner: &Entry, plan: &P::Plan) -> bool {
+        let (
+            Some(end),
+            Motion::Run {
+                plan: present,
+                elapsed,
+                scans,
+            },
+        ) = (owner.end, self.mover.motion())
+        else {
+            return true;
+        };
+        let forward = end > self.mover.setpoint().position;
+        let Some(behind) = self
+            .behind(owner, end, forward)
+            .filter(|behind| behind.number == 0)
+        else {
+            return true;
+        };
+        let goal = goal_past(plan, 0, end, forward);
+        let anew = goal.saturating_add(self.scans_of_next(&plan.at(goal), &behind));
+        let left = scans.saturating_sub(*elapsed);
+        let as_planned = left.saturating_add(self.scans_of_next(&present.at(*scans), &behind));
+        anew < as_planned && !self.turns(plan, forward)
+    }
+
+    /// Scans from a state at the begin of the next command, which is the first that waits, until it and the one behind it are done; [`u64::MAX`]
+    /// if they can't without turning.
+    fn scans_of_next(&self, from: &Setpoint, behind: &Behind<'_>) -> u64 {
+        let Behind { target, forward, .. } = *behind;
+        let mut next = Entry {
+            end: Some(target),
+            ..*behind.next
+        };
+        self.look_through(&mut next, from.position, 1);
+        let limits = next.limits;
+        let to_rest = || {
+            let planned = self
+                .planner
+                .move_to(self.config.profile, from, target, &limits, &limits);
+            planned.ok()
+        };
+        let plan = self.ahead(&mut next, from, &limits).or_else(to_rest);
+        let Some(plan) = plan.filter(|plan| !self.turns(plan, forward)) else {
+            return u64::MAX;
+        };
+        if next.run.count > 0 {
+            return goal_past(&plan, 0, next.run.end, forward);
+        }
+        let goal = goal_past(&plan, 0, target, forward);
+        let after = self.leading_on(1, target, forward);
+        let scans = after.map_or(0, |after| self.scans_behind(&plan.at(goal), &after));
+        goal.saturating_add(scans)
+    }
+
+    /// Whether the plan of the owner passes its end on a ramp.
+    pub(super) fn passes_on_a_ramp(&self) -> bool {
         let is_one = |owner: &Entry| owner.run.count == 0 && owner.passage.wanted > 0.0;
         self.mover.motion().goes_on()
             && !self.mover.setpoint().is_at_rest()
@@ -107,11 +165,18 @@ impl<P: Planner> Axis<P> {
 
     fn behind_at(&self, number: usize, entry: &Entry, end: f64, forward: bool) -> Option<Behind<'_>> {
         let next = self.queue.iter().nth(number)?;
+        let has_ramps = self.modulo.is_none() && self.mover.layer().is_none();
+        let is_other = next.limits != entry.limits;
+        (has_ramps && is_other).then(|| self.leading_on(number, end, forward))?
+    }
+
+    /// The same, whatever its dynamics.
+    fn leading_on(&self, number: usize, end: f64, forward: bool) -> Option<Behind<'_>> {
+        let next = self.queue.iter().nth(number)?;
         let is_move = matches!(next.work, Work::Position(_) | Work::Distance(_));
         let target = self.end_of_leg(next, end, forward)?;
         let is_onward = is_move && target != end && (target > end) == forward;
-        if self.modulo.is_some() || next.limits == entry.limits || !is_onward || self.mover.layer().is_some()
-        {
+        if !is_onward {
             return None;
         }
         let aimed = Entry {
