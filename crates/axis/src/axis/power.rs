@@ -166,7 +166,7 @@ impl<P: Planner> Axis<P> {
         } else {
             self.follow_power(feedback, scope);
             self.await_power(scope);
-            self.follow_actual();
+            self.follow_actual(scope);
             self.supervise(scope);
             if self.is_homing() {
                 self.follow_homing(scope);
@@ -316,7 +316,7 @@ impl<P: Planner> Axis<P> {
 
     /// Plans a ramp to rest within `limits`, or within more of those of the `axis` if it could not stay
     /// inside them otherwise.
-    fn ramp_down(&mut self, mut limits: Limits, axis: &Limits, scope: &mut Scope<'_>) {
+    pub(super) fn ramp_down(&mut self, mut limits: Limits, axis: &Limits, scope: &mut Scope<'_>) {
         // No stop is faster than this.
         self.mover.watch(false);
         // Only a plan has a set-point that is not at rest.

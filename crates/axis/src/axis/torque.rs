@@ -9,7 +9,7 @@
 
 use super::commands::{Entry, Work};
 use super::{Axis, Motion};
-use crate::{Direction, Dynamics, ErrorId, Raw, Scope, TorqueOrder, TorqueReport};
+use crate::{AxisState, Direction, Dynamics, ErrorId, Raw, Scope, TorqueOrder, TorqueReport};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
@@ -106,11 +106,21 @@ impl<P: Planner> Axis<P> {
         told.filter(|most| *most > 0.0).unwrap_or(0.0)
     }
 
-    /// After the latch: under a torque the set-point is the actual state.
-    pub(super) fn follow_actual(&mut self) {
-        if let (Motion::Torque { .. }, Ok(velocity)) = (self.mover.motion(), self.actual_velocity()) {
+    /// After the latch: under a torque the set-point is the actual state, where the ramp of an error that was raised before the latch begins,
+    /// too.
+    pub(super) fn follow_actual(&mut self, scope: &mut Scope<'_>) {
+        let Ok(velocity) = self.actual_velocity() else {
+            return;
+        };
+        let is_raised = self.state == AxisState::ErrorStop
+            && self.beside.order.torque.is_some()
+            && matches!(self.mover.motion(), Motion::Run { .. } | Motion::Hold);
+        if is_raised || matches!(self.mover.motion(), Motion::Torque { .. }) {
             self.mover.take_actual(self.feedback.position(), velocity);
             self.count_actual_turns();
+        }
+        if is_raised {
+            self.ramp_down(self.stop_limits(), &self.hardest_limits(), scope);
         }
     }
 
