@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, state diagram and sections on aborting and buffered commands; the
 //! table "state x command" with the choices V6, V6a, V7a, V11.
 
-use super::commands::{Ending, Entry, Place, Run, Start, Work, direction_of, refusal};
+use super::commands::{Asked, Ending, Entry, Place, Run, Start, Work, direction_of, refusal};
 use super::{Axis, Motion};
 use crate::{
     AxisEvent, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Fate, Raw, Request,
@@ -42,6 +42,7 @@ impl<P: Planner> Axis<P> {
             return self.await_start(work, limits, mode, scope);
         }
         let mut entry = Entry::new(self.new_id(), scope.instance, work, limits, mode);
+        entry.asked = Asked::by(&request.command, &work, limits);
         entry.direction = direction_of(&request.command);
         self.override_entry(&mut entry);
         if let (Command::MoveAdditive { .. }, Work::Position(_)) = (&request.command, work) {

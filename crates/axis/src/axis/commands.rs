@@ -541,6 +541,47 @@ pub(super) struct Asked {
     pub velocity: f64,
 }
 
+impl Asked {
+    /// Those of `work` within `limits`; what of `command` is above those stays as it was given, because the override finds the limits of
+    /// its time.
+    pub fn by(command: &Command, work: &Work, limits: Limits) -> Self {
+        let velocity = work.manner().velocity;
+        let (dynamics, given) = match command {
+            Command::MoveContinuousAbsolute {
+                dynamics,
+                end_velocity,
+                ..
+            }
+            | Command::MoveContinuousRelative {
+                dynamics,
+                end_velocity,
+                ..
+            } => (dynamics, *end_velocity),
+            Command::MoveAbsolute { dynamics, .. }
+            | Command::MoveRelative { dynamics, .. }
+            | Command::MoveAdditive { dynamics, .. }
+            | Command::MoveVelocity { dynamics, .. }
+            | Command::Jog { dynamics, .. } => (dynamics, dynamics.velocity),
+            _ => return Self { limits, velocity },
+        };
+        let pins = Limits {
+            velocity: dynamics.velocity.abs(),
+            acceleration: dynamics.acceleration,
+            deceleration: dynamics.deceleration,
+            jerk: dynamics.jerk,
+            snap: limits.snap,
+        };
+        Self {
+            limits: limits.or_larger(&pins),
+            velocity: if velocity == 0.0 {
+                0.0
+            } else {
+                velocity.abs().max(given.abs()).copysign(velocity)
+            },
+        }
+    }
+}
+
 impl Entry {
     /// A command that starts at rest or with the state its predecessor leaves.
     pub fn new(id: CommandId, instance: InstanceId, work: Work, limits: Limits, mode: BufferMode) -> Self {

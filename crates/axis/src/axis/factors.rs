@@ -57,8 +57,9 @@ impl Factors {
     }
 }
 
-/// `asked` times `factor`, in magnitude at most `limit`; 0 only where one of them is.
+/// `asked`, lowered to `limit`, times `factor`, in magnitude at most `limit`; 0 only where one of them is.
 fn scaled(asked: f64, factor: f64, limit: f64) -> f64 {
+    let asked = lowered(asked, limit);
     let product = asked * factor;
     // What is too small for a number is slow and not a command to stand still, which no limit is.
     let value = if product == 0.0 && asked != 0.0 && factor != 0.0 {
@@ -66,6 +67,11 @@ fn scaled(asked: f64, factor: f64, limit: f64) -> f64 {
     } else {
         product
     };
+    lowered(value, limit)
+}
+
+/// `value`, in magnitude at most `limit`.
+fn lowered(value: f64, limit: f64) -> f64 {
     if value.abs() <= limit {
         value
     } else if value < 0.0 {

@@ -45,7 +45,7 @@ impl<P: Planner> Axis<P> {
             return Ok(());
         }
         self.note_passing(&mut owner);
-        self.take_values(&mut owner, work, limits);
+        self.take_values(&mut owner, command, work, limits);
         owner.direction = direction;
         let planned = if moved {
             owner.passed = false;
@@ -71,7 +71,7 @@ impl<P: Planner> Axis<P> {
         let Some((work, limits)) = self.check_update(&entry, command, scope)? else {
             return Ok(());
         };
-        self.take_values(&mut entry, work, limits);
+        self.take_values(&mut entry, command, work, limits);
         entry.direction = direction_of(command);
         for slot in self.queue.iter_mut().filter(|slot| slot.id == id) {
             *slot = entry;
@@ -107,13 +107,10 @@ impl<P: Planner> Axis<P> {
         Ok((is_same_kind && work.manner().updated).then_some((work, limits)))
     }
 
-    pub(super) fn take_values(&self, entry: &mut Entry, work: Work, limits: Limits) {
+    pub(super) fn take_values(&self, entry: &mut Entry, command: &Command, work: Work, limits: Limits) {
         entry.work = work;
         entry.limits = limits;
-        entry.asked = Asked {
-            limits,
-            velocity: work.manner().velocity,
-        };
+        entry.asked = Asked::by(command, &work, limits);
         self.override_entry(entry);
     }
 

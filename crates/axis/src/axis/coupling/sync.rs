@@ -273,7 +273,7 @@ impl<P: Planner> Axis<P> {
         let Some((work, limits)) = self.check_update(&entry, command, scope)? else {
             return Ok(());
         };
-        self.take_values(&mut entry, work, limits);
+        self.take_values(&mut entry, command, work, limits);
         // A command that starts at once takes over in the next motion step, like one at its start point.
         self.follower.awaited = Awaited::new(entry).map(|awaited| Awaited {
             was: before.was,
