@@ -94,8 +94,13 @@ impl<P: Planner> Axis<P> {
             .as_ref()
             .is_none_or(|way| way.exceeds || way.lock == u64::MAX)
         {
+            let is_outside = best.as_ref().is_some_and(|way| way.exceeds);
             for limits in all {
-                let pace = self.at_shadow_pace(view, shadow, stretch, &limits);
+                let mut pace = self.at_shadow_pace(view, shadow, stretch, &limits);
+                // What exceeds from here may not do so a little later.
+                if let (true, Some(way)) = (is_outside, &mut pace) {
+                    way.left = way.left.min(self.next_switch_along(way));
+                }
                 take(&mut best, pace);
             }
         }
@@ -112,6 +117,17 @@ impl<P: Planner> Axis<P> {
             way.left = 0;
         }
         Choice::Take(way)
+    }
+
+    /// Scans until the plan of `way` first changes its highest derivative; the largest number if it never does.
+    fn next_switch_along(&self, way: &Way<P::Plan>) -> u64 {
+        let Motion::Closing { plan, .. } = &way.motion else {
+            return u64::MAX;
+        };
+        match self.planner.next_switch((plan, 0)) {
+            0 => u64::MAX,
+            scans => scans,
+        }
     }
 
     /// The shadow is faster than it may be anywhere on the cam, where the cam is flat: it comes down to less as fast as that part
@@ -325,8 +341,11 @@ impl<P: Planner> Axis<P> {
         let scans = u64::from(plan.scans());
         let arrives = scans.max(stretch.begin);
         let is_in_time = arrives <= stretch.end;
+        // One that still moves against the stretch is faster beside it than it will be, and yet within its limits.
+        let exceeds = plan.excess().is_some_and(|excess| leaves(&excess, limits))
+            && !self.keeps_beside_line(&shadow.at, stretch.velocity, &plan, limits);
         Some(Way {
-            exceeds: plan.excess().is_some_and(|excess| leaves(&excess, limits)),
+            exceeds,
             motion: Motion::closing(plan),
             rung: Rung::BesideLine {
                 start: curve.told_near(Place {
@@ -344,6 +363,24 @@ impl<P: Planner> Axis<P> {
             slows: false,
             laps,
         })
+    }
+
+    /// A motion from `now` by this plan beside a line of this `velocity` (u/s) keeps the limits.
+    fn keeps_beside_line(&self, now: &Setpoint, velocity: f64, plan: &P::Plan, limits: &Limits) -> bool {
+        let steady = Setpoint {
+            velocity,
+            ..Setpoint::default()
+        };
+        let Ok(line) = self.planner.ramp_to(&steady, velocity, limits, limits) else {
+            return false;
+        };
+        let line = Lead {
+            plan: &line,
+            elapsed: 0,
+            factor: 1.0,
+        };
+        self.planner
+            .fits_behind(&[Some(line), None], now, Some((plan, 0)), limits)
     }
 
     /// As fast as the shadow may go, the way its master goes.
