@@ -139,6 +139,12 @@ pub trait Planner {
     /// The ways (u) of the rest of a plan up to its goal: upwards, and downwards.
     fn ways(&self, rest: (&Self::Plan, u64)) -> (f64, f64);
 
+    /// How far (u) the rest of a plan leads from where it is now: to its lowest place and to its highest one.
+    fn reach(&self, rest: (&Self::Plan, u64)) -> (f64, f64) {
+        let (up, down) = self.ways(rest);
+        (-down, up)
+    }
+
     /// Whether the rest of the masters' plans and the slave's motion beside them together keep `limits`
     /// from now on, and no derivative jumps whose own derivative is bounded. `now` is the sum as
     /// published. A planner that can't decide returns FALSE; its slaves are then checked scan by scan.
@@ -531,6 +537,10 @@ impl Planner for Standard {
 
     fn ways(&self, rest: (&StandardPlan, u64)) -> (f64, f64) {
         sum::ways(rest, self.cycle)
+    }
+
+    fn reach(&self, rest: (&StandardPlan, u64)) -> (f64, f64) {
+        sum::reach(rest, self.cycle)
     }
 
     fn fits_behind(

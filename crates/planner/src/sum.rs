@@ -504,8 +504,36 @@ pub(crate) fn ways(part: Part<'_>, cycle: f64) -> (f64, f64) {
     if let StandardPlan::Profile(profile) = part.0 {
         return profile.ways(part.1);
     }
-    let mut walk = Walk::new(part.0.segments(), part, cycle);
     let (mut up, mut down) = (0.0, 0.0);
+    each_way(part, cycle, |way| {
+        if way > 0.0 {
+            up += way;
+        } else {
+            down -= way;
+        }
+    });
+    (up, down)
+}
+
+/// The lowest and the highest place (u) on the rest of a plan up to its goal, from where it is now; on a
+/// curve through points those are not known, and the sums of its ways are beyond them. Bounded as [`ways`].
+pub(crate) fn reach(part: Part<'_>, cycle: f64) -> (f64, f64) {
+    if let StandardPlan::Profile(profile) = part.0 {
+        let (up, down) = profile.ways(part.1);
+        return (-down, up);
+    }
+    let (mut at, mut lowest, mut highest) = (0.0_f64, 0.0_f64, 0.0_f64);
+    each_way(part, cycle, |way| {
+        at += way;
+        lowest = lowest.min(at);
+        highest = highest.max(at);
+    });
+    (lowest, highest)
+}
+
+/// The ways (u) of the rest of a plan one after the other, with their signs: none of them turns.
+fn each_way(part: Part<'_>, cycle: f64, mut go: impl FnMut(f64)) {
+    let mut walk = Walk::new(part.0.segments(), part, cycle);
     for _ in 0..MAX_SWITCHES {
         if !walk.left.is_finite() {
             break;
@@ -523,24 +551,16 @@ pub(crate) fn ways(part: Part<'_>, cycle: f64) -> (f64, f64) {
                 core::iter::once((walk.left, start.snap)),
             );
             let mut from = 0.0;
-            let mut go = |to: f64| {
-                if to > from {
-                    up += to - from;
-                } else {
-                    down += from - to;
-                }
-                from = to;
-            };
             path.extremes(0.0, |state, direction| {
                 if direction.is_none() {
-                    go(state.position);
+                    go(state.position - from);
+                    from = state.position;
                 }
             });
-            go(moved(&start, walk.left).position);
+            go(moved(&start, walk.left).position - from);
         }
         walk.go(walk.left);
     }
-    (up, down)
 }
 
 #[cfg(test)]
@@ -646,6 +666,8 @@ mod tests {
         let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
         let (up, down) = ways((&back, 0), CYCLE);
         assert!(near(up, 1.25) && near(down, 1.0), "{up} {down}");
+        let (lowest, highest) = reach((&back, 0), CYCLE);
+        assert!(lowest == 0.0 && near(highest, 1.25), "{lowest} {highest}");
         let (up, down) = ways((&back, 7), CYCLE);
         assert!(
             near(up, 0.0) && near(down, back.at(7).position - 3.25),

@@ -270,6 +270,7 @@ impl<P: Planner> Axis<P> {
         let scans = u64::from(plan.scans());
         Some(Way {
             exceeds: false,
+            ahead: false,
             motion: Motion::closing(plan),
             rung: Rung::Corner { start: shadow.place },
             lock: u64::MAX,

@@ -14,7 +14,7 @@ impl<P: Planner> Axis<P> {
     /// [`Axis::advance`] of an axis on a cam, with a look at its master.
     ///
     /// Cost: in sync one evaluation of the cam, and one ramp while what the master does next is not known or there are software
-    /// limits; where the master got another plan, a look along it ([`Axis::beyond_on_cam`]) and at most ten plans; on a long way behind
+    /// limits; where the master got another plan, a look along it ([`Axis::beyond_on_cam`]) and at most 50 plans; on a long way behind
     /// a master that comes round, one plan in some turns.
     #[inline(never)]
     pub(crate) fn advance_on_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {

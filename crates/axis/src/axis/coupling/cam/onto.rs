@@ -31,6 +31,8 @@ pub(super) struct Stretch {
     pub end: u64,
     pub velocity: f64,
     pub now: Place,
+    /// That line is ahead of the master until it begins.
+    pub is_ahead: bool,
 }
 
 /// How a shadow sets off: by how much its master comes nearer meanwhile, without a sign, and its own way with one (u of the cam's
@@ -58,6 +60,8 @@ pub(super) struct Way<Q> {
     pub laps: f64,
     /// It begins outside them.
     pub exceeds: bool,
+    /// It leads ahead of its master.
+    pub ahead: bool,
 }
 
 /// What is to be done.
@@ -313,6 +317,7 @@ impl<P: Planner> Axis<P> {
                 end: u64::MAX,
                 velocity: 0.0,
                 now: at(step),
+                is_ahead: false,
             };
         }
         let scans = view.future.measured().unwrap_or(UNKNOWN);
@@ -321,6 +326,7 @@ impl<P: Planner> Axis<P> {
             end: scans,
             velocity: now.at.velocity,
             now: at(step - now.at.velocity * cycle),
+            is_ahead: false,
         };
         let Some(lead) = self.lead_of_master(view) else {
             return unknown;
@@ -336,11 +342,13 @@ impl<P: Planner> Axis<P> {
         let way = then.position - lead.plan.at(lead.elapsed).position * lead.factor;
         let way = if late > 0 { way + step } else { way };
         let begin = begin.saturating_add(late);
+        let further = way - then.velocity * (begin as f64 * cycle);
         Stretch {
             begin,
             end: end.saturating_add(late),
             velocity: then.velocity,
-            now: at(way - then.velocity * (begin as f64 * cycle)),
+            now: at(further),
+            is_ahead: further * was.at.velocity > 0.0,
         }
     }
 
@@ -513,6 +521,7 @@ impl<P: Planner> Axis<P> {
         let lock = u64::from(plan.scans());
         Ok(Way {
             exceeds: false,
+            ahead: false,
             motion: Motion::closing(plan),
             rung: Rung::Moving {
                 turns: here.turns,
@@ -580,6 +589,7 @@ impl<P: Planner> Axis<P> {
         let plan = self.planner.ramp_to(&start, 0.0, &limits, &before).ok()?;
         Some(Way {
             exceeds: false,
+            ahead: false,
             motion: Motion::closing(plan),
             rung: Rung::Moving {
                 turns: here.turns,

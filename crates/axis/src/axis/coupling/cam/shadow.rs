@@ -67,7 +67,7 @@ impl<P: Planner> Axis<P> {
         difference: &Setpoint,
         stretch: &Stretch,
     ) -> Choice<P::Plan> {
-        let mut best: Option<Way<P::Plan>> = None;
+        let (mut best, mut ahead): (Option<Way<P::Plan>>, Option<Way<P::Plan>>) = (None, None);
         let take = |best: &mut Option<Way<P::Plan>>, way: Option<Way<P::Plan>>| {
             let Some(way) = way else { return };
             let order = |way: &Way<P::Plan>| (way.exceeds, way.lock);
@@ -83,17 +83,24 @@ impl<P: Planner> Axis<P> {
         for limits in all.clone() {
             let way = self.beside_stretch_of_master(shadow, stretch, &limits, curve, 0.0);
             take(&mut best, way);
-            take(&mut best, self.beside_master(view, difference, &limits, curve));
+            let way = self.beside_master(view, difference, &limits, curve);
+            let leads_ahead = way.as_ref().is_some_and(|way| way.ahead);
+            take(if leads_ahead { &mut ahead } else { &mut best }, way);
             if can_wait {
                 let period = curve.period().copysign(stretch.velocity);
                 let way = self.beside_stretch_of_master(shadow, stretch, &limits, curve, period);
                 take(&mut best, way);
             }
         }
-        if best
-            .as_ref()
-            .is_none_or(|way| way.exceeds || way.lock == u64::MAX)
-        {
+        let is_missing = |best: &Option<Way<P::Plan>>| {
+            best.as_ref()
+                .is_none_or(|way| way.exceeds || way.lock == u64::MAX)
+        };
+        // Beside its master it gets ahead of it only where it does so along the other ways, too, or is not in step along them.
+        if is_missing(&best) || best.as_ref().is_some_and(|way| way.ahead) {
+            take(&mut best, ahead);
+        }
+        if is_missing(&best) {
             let is_outside = best.as_ref().is_some_and(|way| way.exceeds);
             for limits in all {
                 let mut pace = self.at_shadow_pace(view, shadow, stretch, &limits);
@@ -193,6 +200,7 @@ impl<P: Planner> Axis<P> {
             }
             found = Some(Way {
                 exceeds,
+                ahead: false,
                 motion: Motion::closing(plan),
                 rung: Rung::BesideLine {
                     start: shadow.place,
@@ -232,7 +240,8 @@ impl<P: Planner> Axis<P> {
         is_under_way && self.follower.on_cam.as_ref().is_some_and(|on_cam| on_cam.slows)
     }
 
-    /// Beside the master: the difference comes to 0. None where that is not known to keep the limits, or leads ahead of it.
+    /// Beside the master: the difference comes to 0. None where that is not known to keep the limits, or goes a way that its master does
+    /// not go.
     fn beside_master(
         &self,
         view: &View<'_, P::Plan>,
@@ -254,32 +263,35 @@ impl<P: Planner> Axis<P> {
             snap: 0.0,
         };
         let leads = [Some(lead), None];
-        let own = self.room_beside(&leads, limits)?;
-        let plan = self
-            .planner
-            .move_to(MoveProfile::Online, difference, 0.0, &own, &own)
-            .ok()?;
-        let (up, down) = self.planner.ways((&plan, 0));
-        // It comes from behind and stays there, and it never goes back.
-        let forwards = 1.0_f64.copysign(lead.plan.at(lead.elapsed.saturating_add(1)).velocity * lead.factor);
-        let over = if difference.position * forwards <= 0.0 {
-            (if forwards > 0.0 { up } else { down }) - difference.position.abs()
-        } else {
-            0.0
+        let turns = |plan: &P::Plan| {
+            let found = self.planner.velocities_behind(&leads, (plan, 0));
+            found.is_none_or(|(lowest, highest)| {
+                let least = ROUNDING * limits.velocity;
+                (lowest < -least && !self.goes(&lead, -1.0)) || (highest > least && !self.goes(&lead, 1.0))
+            })
         };
-        let lowest = self.planner.velocities_behind(&leads, (&plan, 0));
-        let turns = lowest.is_none_or(|(lowest, highest)| {
-            let least = if forwards > 0.0 { lowest } else { -highest };
-            least < -ROUNDING * limits.velocity
-        });
-        let fits = self.planner.fits_behind(&leads, &now, Some((&plan, 0)), limits);
-        let resolved = RESOLVED * 4.0 * (difference.position.abs() + on_cam.was.place.position.abs());
-        if over > resolved || turns || !fits {
-            return None;
-        }
+        let attempt = |own: &Limits| {
+            let plan = self
+                .planner
+                .move_to(MoveProfile::Online, difference, 0.0, own, own)
+                .ok()?;
+            let fits = self.planner.fits_behind(&leads, &now, Some((&plan, 0)), limits);
+            (fits && !turns(&plan)).then_some(plan)
+        };
+        let plan = match attempt(limits) {
+            Some(plan) => plan,
+            None => attempt(&self.room_beside(&leads, limits)?)?,
+        };
         let lock = u64::from(plan.scans());
+        // It comes from behind and stays there.
+        let forwards = 1.0_f64.copysign(lead.plan.at(lead.elapsed.saturating_add(1)).velocity * lead.factor);
+        let (lowest, highest) = self.planner.reach((&plan, 0));
+        let furthest = difference.position + if forwards > 0.0 { highest } else { lowest };
+        let resolved = RESOLVED * 4.0 * (difference.position.abs() + on_cam.was.place.position.abs());
+        let ahead = difference.position * forwards <= 0.0 && furthest * forwards > resolved;
         Some(Way {
-            exceeds: plan.excess().is_some_and(|excess| leaves(&excess, limits)),
+            exceeds: false,
+            ahead,
             motion: Motion::closing(plan),
             rung: Rung::BesideMaster,
             lock,
@@ -290,6 +302,14 @@ impl<P: Planner> Axis<P> {
             slows: false,
             laps: 0.0,
         })
+    }
+
+    /// Whether the rest of this plan leads its master that way at all: up (1) or down (-1).
+    fn goes(&self, lead: &Lead<'_, P::Plan>, side: f64) -> bool {
+        let (up, down) = self.planner.ways((lead.plan, lead.elapsed));
+        let side = side * lead.factor;
+        let end = lead.plan.at(u64::from(lead.plan.scans())).velocity;
+        (if side > 0.0 { up } else { down }) > 0.0 || side * end > 0.0
     }
 
     /// Onto the next stretch of the master, or where that comes by so many `laps` later (u of the master).
@@ -346,6 +366,7 @@ impl<P: Planner> Axis<P> {
             && !self.keeps_beside_line(&shadow.at, stretch.velocity, &plan, limits);
         Some(Way {
             exceeds,
+            ahead: stretch.is_ahead && scans < stretch.begin,
             motion: Motion::closing(plan),
             rung: Rung::BesideLine {
                 start: curve.told_near(Place {
@@ -407,6 +428,7 @@ impl<P: Planner> Axis<P> {
         };
         Some(Way {
             exceeds: plan.excess().is_some_and(|excess| leaves(&excess, limits)),
+            ahead: false,
             motion: Motion::closing(plan),
             rung: Rung::BesideLine {
                 start: shadow.place,
