@@ -1,7 +1,7 @@
 //! Whether a slave keeps its limits on a cam along what its master does next.
 //!
-//! The rest of a plan is looked at in pieces, and each piece with what the cam is bounded by where it leads. The bounds are on the
-//! safe side by some per cent, the more so the longer the pieces.
+//! The rest of a plan is looked at in pieces, and each piece with what the cam is bounded by where it leads. Where the
+//! cam is bent, these bounds are on the safe side by some per cent, the more so the longer the pieces.
 
 use super::super::super::Axis;
 use super::super::follow::Beyond;
@@ -222,10 +222,18 @@ fn part_of<Q: Plan>(path: &Path<'_, Q>, from: u64, to: u64, cycle: f64) -> ((f64
     let acceleration_at = |t: f64| inside.acceleration + inside.jerk * t + 0.5 * inside.snap * t * t;
     let snap = inside.snap.abs();
     let jerk = larger(jerk_at(back), jerk_at(on));
-    let acceleration = larger(acceleration_at(back), acceleration_at(on)) + bent * snap;
+    // Largest on an end, or where the jerk is 0.
+    let level = -inside.jerk / inside.snap;
+    let between = if level > back && level < on { level } else { on };
+    let accelerations = [back, between, on].map(acceleration_at);
+    let up = accelerations.into_iter().fold(0.0, f64::max);
+    let down = accelerations.into_iter().fold(0.0, f64::min).abs();
+    let acceleration = larger(up, down);
+    // While it only speeds up, or only slows down, its velocity is largest on an end.
+    let passed = (bent * jerk).min(time * up.min(down));
     let most = Setpoint {
         position: 0.0,
-        velocity: larger(first.velocity, last.velocity) + bent * jerk,
+        velocity: larger(first.velocity, last.velocity) + passed,
         acceleration,
         jerk,
         snap,
