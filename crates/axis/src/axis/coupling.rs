@@ -112,6 +112,8 @@ pub(super) struct Follower<Plan> {
     on_cam: Option<OnCam>,
     /// The number of cam ends reached.
     cam_ends: u32,
+    /// In its last step it was on its law, and the law stood.
+    stands: bool,
     /// The phase shift between it and its master.
     phasing: Phasing<Plan>,
     /// The command that waits for a place of a master.
@@ -128,6 +130,7 @@ impl<P: Plan> Default for Follower<P> {
             coupling: None,
             on_cam: None,
             cam_ends: 0,
+            stands: false,
             phasing: Phasing::default(),
             awaited: None,
             bound: Bound::default(),

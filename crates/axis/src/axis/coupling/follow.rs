@@ -95,6 +95,7 @@ impl<P: Planner> Axis<P> {
             self.hand_over(self.mover.setpoint().position, scope);
         }
         self.finish_reset();
+        self.note_whether_law_stands(view);
         self.note_steady();
     }
 
@@ -282,6 +283,12 @@ impl<P: Planner> Axis<P> {
         let mut both = coupling.was.iter().zip(view.seen());
         view.future.kind() == Kind::Still
             && both.all(|(was, now)| was.place == now.place && was.at.is_at_rest())
+    }
+
+    /// After a step: its slaves see whether it stands as long as its law does.
+    pub(super) fn note_whether_law_stands(&mut self, view: &View<'_, P::Plan>) {
+        self.follower.stands =
+            self.is_on_law() && self.mover.setpoint().is_at_rest() && self.law_stands(view);
     }
 
     /// The plans ahead, as the law of a gear has them, or unchanged for a cam; `None` while the law is

@@ -371,6 +371,8 @@ impl<P: Planner> Axis<P> {
             // The motion along a curve through points ahead is not known.
             Motion::Run { plan, elapsed, .. } if self.planner.is_curve((plan, *elapsed)) => Course::Unknown,
             Motion::Run { plan, elapsed, .. } => Course::Plan(plan, *elapsed),
+            // Its slaves look along the plan of its master where it is in gear behind that.
+            Motion::Geared if self.follower.stands && self.factor_in_gear().is_none() => Course::Still,
             // In gear behind measured values it is no more even than they are.
             Motion::Geared if self.follows_actual() => Course::Measured(UNKNOWN),
             Motion::Follow | Motion::Torque { .. } | Motion::Geared | Motion::Closing { .. } => {

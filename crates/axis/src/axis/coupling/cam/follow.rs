@@ -55,6 +55,7 @@ impl<P: Planner> Axis<P> {
         self.measure_on_cam(view, scope);
         self.end_of_cam(shadow, view, scope);
         self.finish_reset();
+        self.note_whether_law_stands(view);
         self.note_steady();
     }
 
