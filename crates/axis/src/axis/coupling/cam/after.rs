@@ -151,7 +151,7 @@ impl<P: Planner> Axis<P> {
         ) {
             on_cam.shadow = Some(*shadow);
         }
-        let _begun = on_cam.ends.note(&cam, &on_cam.at);
+        let _begun = on_cam.ends.note(&cam, &curve.at(ended.master, &shadow.at, 0));
         self.follower.on_cam = Some(on_cam);
     }
 

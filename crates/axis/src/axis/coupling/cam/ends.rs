@@ -5,6 +5,9 @@ use standstill_planner::{Cam, CamAt};
 /// An end that was told is told again only after the slave was this part of the period away from it.
 const AWAY: f64 = 0.25;
 
+/// The same for an end that it began at, and that was never told.
+const OFF: f64 = 0.01;
+
 /// A place so near to an end is on it, relative to the period or to the places of both ends.
 const ROUNDING: f64 = 1e-12;
 
@@ -14,10 +17,26 @@ pub(super) struct Ends {
     /// The place at the end of the scan before.
     before: Option<(i64, f64)>,
     /// The end told last, or the one it began at, while the slave is near it.
-    told: Option<i64>,
+    told: Option<Told>,
     /// Without periods: it has been between its first and its last row, and it has come to an end.
     has_begun: bool,
     is_over: bool,
+}
+
+/// An end that is not told now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Told {
+    /// So many periods lie before it.
+    end: i64,
+    /// It may be told once the slave was this part of the period away from it.
+    away: f64,
+}
+
+impl Told {
+    /// The slave, at this share of this period, is far enough away.
+    fn is_left(&self, periods: i64, share: f64) -> bool {
+        ((periods - self.end) as f64 + share).abs() >= self.away
+    }
 }
 
 /// What a scan brought.
@@ -47,7 +66,9 @@ impl Ends {
         if let Some((before, _)) = &mut self.before {
             *before = before.saturating_add(periods);
         }
-        self.told = self.told.map(|told| told.saturating_add(periods));
+        if let Some(told) = &mut self.told {
+            told.end = told.end.saturating_add(periods);
+        }
     }
 
     /// The slave is `at` this place of the curve now.
@@ -58,20 +79,14 @@ impl Ends {
         let Some((periods, before)) = self.before else {
             self.before = Some((at.periods, way));
             self.has_begun = head.periodic || at.periods == 0;
-            self.told = near_end(at.periods, way / length);
+            self.told = begun_at(at.periods, way / length);
             return None;
         };
         self.before = Some((at.periods, way));
         if self.is_over {
             return None;
         }
-        if let Some(told) = self.told {
-            let from = (at.periods - told) as f64 + way / length;
-            if from.abs() >= AWAY && (head.periodic || at.periods == 0) {
-                self.told = None;
-            }
-        }
-        let passed = if at.periods > periods {
+        let mut passed = if at.periods > periods {
             let first = periods.saturating_add(1);
             self.passed(first, at.periods, true)
         } else if at.periods < periods {
@@ -88,26 +103,29 @@ impl Ends {
         } else {
             None
         };
-        if head.periodic {
-            let passed = self.tell(passed);
-            // In a long step it went far enough away from it.
-            let is_away = |told: &mut i64| ((at.periods - *told) as f64 + way / length).abs() >= AWAY;
-            self.told.take_if(is_away);
-            return passed;
+        if !head.periodic {
+            passed.take_if(|passed| !self.has_begun || (passed.end == 1) != passed.forwards);
+            // On its first or last row but for rounding it has not begun yet.
+            let rounding = ROUNDING * (head.begin.abs() + head.end.abs());
+            self.has_begun |= at.periods == 0 && way > rounding && length - way > rounding;
+            self.is_over = passed.is_some();
         }
-        let had_begun = self.has_begun;
-        // On its first or last row but for rounding it has not begun yet.
-        let rounding = ROUNDING * (head.begin.abs() + head.end.abs());
-        self.has_begun |= at.periods == 0 && way > rounding && length - way > rounding;
-        let passed = passed.filter(|passed| had_begun && (passed.end == 1) == passed.forwards);
-        self.is_over = passed.is_some();
-        self.tell(passed)
+        if let Some(passed) = &passed {
+            self.told = Some(Told {
+                end: passed.end,
+                away: AWAY,
+            });
+        }
+        if head.periodic || at.periods == 0 {
+            self.told.take_if(|told| told.is_left(at.periods, way / length));
+        }
+        passed
     }
 
     /// Ends from the first to the last, but for one that was told and not left since.
     fn passed(&mut self, first: i64, last: i64, forwards: bool) -> Option<Passed> {
         let all = last.abs_diff(first).saturating_add(1);
-        let told = u64::from(self.told == Some(first));
+        let told = u64::from(self.told.is_some_and(|told| told.end == first));
         let ends = u32::try_from(all.saturating_sub(told)).unwrap_or(u32::MAX);
         (ends > 0).then_some(Passed {
             ends,
@@ -115,23 +133,18 @@ impl Ends {
             forwards,
         })
     }
-
-    fn tell(&mut self, passed: Option<Passed>) -> Option<Passed> {
-        let passed = passed?;
-        self.told = Some(passed.end);
-        Some(passed)
-    }
 }
 
-/// The end next to a place, so many periods and this share of one from the first.
-fn near_end(periods: i64, share: f64) -> Option<i64> {
-    if share < AWAY {
-        Some(periods)
-    } else if share > 1.0 - AWAY {
-        Some(periods.saturating_add(1)).filter(|_| share >= 1.0 - ROUNDING)
+/// The end that a place is on, so many periods and this share of one from the first.
+fn begun_at(periods: i64, share: f64) -> Option<Told> {
+    let end = if share <= ROUNDING {
+        periods
+    } else if share >= 1.0 - ROUNDING {
+        periods.saturating_add(1)
     } else {
-        None
-    }
+        return None;
+    };
+    Some(Told { end, away: OFF })
 }
 
 #[cfg(test)]
@@ -199,6 +212,20 @@ mod tests {
         assert_eq!(pulses(&[near, 100.0, near, 50.0, -1.0], false), [(4, 1)]);
         assert_eq!(pulses(&[near, 100.0, near, 50.0, 101.0], true), [(4, 1)]);
         assert_eq!(pulses(&[-1.0, 1e-14, -1e-14, 50.0, 101.0], false), [(4, 1)]);
+    }
+
+    /// Covers: G67, G70
+    #[test]
+    fn an_end_that_it_begins_at_is_reached_as_any_other_once_it_was_left() {
+        assert_eq!(pulses(&[0.0, 22.0, 3.0, -1.0], true), [(3, 1)]);
+        assert_eq!(pulses(&[0.0, 22.0, 3.0, -1.0], false), [(3, 1)]);
+        // It does not begin on the first row.
+        assert_eq!(pulses(&[20.0, 3.0, -1.0], true), [(2, 1)]);
+        assert_eq!(pulses(&[20.0, 3.0, -1.0], false), [(2, 1)]);
+        assert_eq!(pulses(&[0.0, 0.5, -0.5, 0.5, -0.5, 0.0], true), []);
+        assert_eq!(pulses(&[0.0, 0.5, -0.5, 0.5, -0.5, 50.0], false), []);
+        // Over it but for rounding in a long step.
+        assert_eq!(pulses(&[100.0 - 1e-13, 110.0, 160.0], true), []);
     }
 
     /// Covers: G68
