@@ -166,13 +166,12 @@ impl<P: Planner> Axis<P> {
             };
         }
         let velocity = stretch.map_or(law.velocity, |stretch| stretch.velocity);
-        if coupling.is_syncing() {
+        // Behind a master whose motion is not known it may have to make up for what was lost.
+        if let (true, Some(stretch), Kind::Plan) = (coupling.is_syncing(), &stretch, view.future.kind()) {
             if coupling.goes_slowly() && velocity != 0.0 {
                 limits.velocity = limits.velocity.min(velocity.abs());
             }
-            if let (Some(stretch), Kind::Plan) = (&stretch, view.future.kind()) {
-                self.is_in_reach(stretch, &limits)?;
-            }
+            self.is_in_reach(stretch, &limits)?;
         }
         let mut onto = stretch.and_then(|stretch| self.onto(owner, view, &stretch, &limits, &before));
         let mut soonest = onto.as_ref().map_or(u64::MAX, |way| way.lock);
@@ -190,7 +189,7 @@ impl<P: Planner> Axis<P> {
             .filter(|way| way.lock < soonest);
         match beside.or(onto) {
             Some(way) => Ok(way),
-            None => self.at_pace(owner, view, velocity),
+            None => self.at_pace(owner, view, limits.velocity, velocity),
         }
     }
 
@@ -642,7 +641,7 @@ impl<P: Planner> Axis<P> {
         (least > 0.0 && leads.iter().any(Option::is_some)).then_some(room)
     }
 
-    /// Moves as fast as it may, in the direction of the law.
+    /// Moves as fast as it may, in the direction of the law, which has this `velocity` (u/s).
     ///
     /// # Errors
     /// The reason why it may not go there.
@@ -650,9 +649,9 @@ impl<P: Planner> Axis<P> {
         &self,
         owner: &Entry,
         view: &View<'_, P::Plan>,
+        most: f64,
         velocity: f64,
     ) -> Result<Way<P::Plan>, ErrorId> {
-        let most = self.limits_of_approach(owner).velocity;
         let goal = if velocity < 0.0 { -most } else { most };
         let (motion, limits) = self.to_velocity(owner, goal)?;
         let coupling = self.follower.coupling.as_ref();
