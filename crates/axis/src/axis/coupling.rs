@@ -71,7 +71,7 @@ enum Rung {
     Own,
     /// A plan beside the law through this anchor.
     BesideLaw(Anchor),
-    /// The same beside a law of measured values, within this room.
+    /// The same beside a law whose motion ahead is not known, within this room.
     BesideMeasured { anchor: Anchor, room: Limits },
     /// The master went out of operation: the slave is at rest until a block couples it anew.
     Lost,

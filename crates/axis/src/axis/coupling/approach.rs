@@ -154,7 +154,7 @@ impl<P: Planner> Axis<P> {
         let here = self.place();
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
         let (place, law) = coupling.law(&anchor, &coupling.was);
-        let (place_now, _) = coupling.law(&anchor, &view.seen());
+        let (place_now, law_now) = coupling.law(&anchor, &view.seen());
         let step = off(place_now, place, length);
         let stretch = self.next_stretch(view, here.position - difference.position, step);
         let mut limits = self.limits_of_approach(owner);
@@ -175,14 +175,21 @@ impl<P: Planner> Axis<P> {
         }
         let mut onto = stretch.and_then(|stretch| self.onto(owner, view, &stretch, &limits, &before));
         let mut soonest = onto.as_ref().map_or(u64::MAX, |way| way.lock);
-        if let (Some(way), Some(scans)) = (&mut onto, view.future.measured()) {
+        if let (Some(way), Some(scans)) = (&mut onto, view.future.unforeseen()) {
             // The line is a good guess that only leads near the law; the last part of the way goes beside
             // the law. A slave that waits for its sync point does so at rest beside the line, because the
             // law itself may jitter.
             (way.lock, way.left) = (way.motion.scans(), scans);
             let near = 2 * scans;
             let waits = coupling.is_syncing() && difference.position * velocity > 0.0 && way.lock > near;
-            soonest = if waits { 0 } else { way.lock.saturating_add(near) };
+            // A law that is even now may be the line itself. Measured values are never quite even.
+            let is_even = law_now.acceleration == 0.0 && law_now.jerk == 0.0;
+            let is_line = is_even && view.future.measured().is_none();
+            soonest = match (waits, is_line) {
+                (true, _) => 0,
+                (false, true) => way.lock,
+                (false, false) => way.lock.saturating_add(near),
+            };
         }
         let beside = self
             .beside_law(view, anchor, difference, velocity, &limits)
@@ -516,7 +523,7 @@ impl<P: Planner> Axis<P> {
         if difference.is_at_rest() && difference.position == 0.0 {
             return None;
         }
-        if view.future.measured().is_some() {
+        if view.future.unforeseen().is_some() {
             return self.beside_measured(view, anchor, difference, line, limits);
         }
         let coupling = self.follower.coupling.as_ref()?;
@@ -565,8 +572,8 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The same beside a law of measured values, with half of the limits that the law leaves now. Each
-    /// step is checked before it is made. There is none again if the half was not enough in this step.
+    /// The same beside a law whose motion ahead is not known, with half of the limits that it leaves now.
+    /// Each step is checked before it is made. There is none again if the half was not enough in this step.
     fn beside_measured(
         &self,
         view: &View<'_, P::Plan>,

@@ -235,6 +235,17 @@ impl<'a, P: Plan> Future<'a, P> {
         scans.filter(|_| self.kind() == Kind::Measured)
     }
 
+    /// If the motion of a master is not known: the number of scans after which the way onto the law is
+    /// searched again.
+    pub(super) fn unforeseen(&self) -> Option<u64> {
+        let scans = |part: &Part<'_, P>| match part.course {
+            Course::Measured(scans) => Some(scans),
+            Course::Unknown => Some(UNKNOWN),
+            Course::Still | Course::Plan(..) => None,
+        };
+        self.parts.iter().filter_map(scans).max()
+    }
+
     /// Whether it has a plan that was not used for the master's step in this scan.
     pub(in crate::axis) fn is_late(&self) -> bool {
         let plans = self.parts.iter().map(|part| &part.course);
