@@ -720,8 +720,8 @@ impl<P: Planner> Axis<P> {
         if self.modulo.is_some() {
             self.start_of_plan();
         }
-        self.mover
-            .watch(self.owner.is_some_and(|owner| self.needs_watching(&owner)));
+        let may_leave = self.may_leave_on_way(&way.rung);
+        self.mover.watch(may_leave);
         let told = Some((way.name, way.velocity));
         let mut is_told = false;
         if let Some(coupling) = &mut self.follower.coupling {

@@ -577,6 +577,7 @@ impl<P: Planner> Axis<P> {
             self.mover.keep_only(coupling.limits);
         }
         self.mover.gear();
+        self.mover.watch(self.parameters.software_limits.is_some());
         self.stir();
         self.record_in_gear(scope);
         self.note_sync(view, scope);
@@ -685,7 +686,7 @@ impl<P: Planner> Axis<P> {
             self.pause(error, scope);
             return self.advance(scope);
         }
-        if self.parameters.software_limits.is_some() && self.would_leave(next) {
+        if self.mover.is_watched() && self.would_leave(next) {
             return self.fail(ErrorId::SoftwareLimitReached, scope);
         }
         if let Some(modulo) = &mut self.modulo {

@@ -1,11 +1,11 @@
 //! A master that is commanded to a place where its slave must not go. This is reported at once, and not
 //! only when the slave stops inside.
 
-use super::super::Axis;
+use super::super::{Axis, Motion};
 use super::view::{View, way_to_rest};
-use super::{Coupling, OnCam};
+use super::{Coupling, OnCam, Rung};
 use crate::{Event, Scope};
-use standstill_planner::{Leads, Plan, Planner};
+use standstill_planner::{Leads, Limits, Plan, Planner, Setpoint};
 
 /// The way (in the unit of the `leads`) from the end of this scan until all masters have come to rest.
 /// `None` while it is not known or one of them is endless.
@@ -25,6 +25,29 @@ impl Coupling {
 }
 
 impl<P: Planner> Axis<P> {
+    /// Whether it may leave its software limits on a way of this kind: on all but one that leads to rest inside and does not turn
+    /// outside.
+    pub(super) fn may_leave_on_way(&self, rung: &Rung) -> bool {
+        let Some((min, max)) = self.parameters.software_limits else {
+            return false;
+        };
+        let (Rung::BesideLine { start, velocity, .. }, Motion::Closing { plan, scans, .. }) =
+            (rung, self.mover.motion())
+        else {
+            return true;
+        };
+        // The plan counts from where the line begins.
+        let range = (min - start.position, max - start.position);
+        let end = plan.at(*scans).position;
+        let limits = &self.config.limits;
+        let line = self.planner.ramp_to(&Setpoint::at_rest(0.0), 0.0, limits, limits);
+        let stays = line.is_ok_and(|line| {
+            self.planner
+                .fits((plan, 0), (&line, 0), &Limits::NONE, Some(range))
+        });
+        *velocity != 0.0 || end < range.0 || end > range.1 || !stays
+    }
+
     /// Records that the masters lead out of the software limits of this slave, once for each end place.
     /// The law is known once the slave was in gear, or from the sync positions of MC_GearInPos; a cam is
     /// known as soon as it is laid.
