@@ -67,7 +67,8 @@ impl<P: Planner> Axis<P> {
         difference: &Setpoint,
         stretch: &Stretch,
     ) -> Choice<P::Plan> {
-        let (mut best, mut ahead): (Option<Way<P::Plan>>, Option<Way<P::Plan>>) = (None, None);
+        let mut best: Option<Way<P::Plan>> = None;
+        let mut ahead: Option<Way<P::Plan>> = None;
         let take = |best: &mut Option<Way<P::Plan>>, way: Option<Way<P::Plan>>| {
             let Some(way) = way else { return };
             let order = |way: &Way<P::Plan>| (way.exceeds, way.lock);
