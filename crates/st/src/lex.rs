@@ -354,12 +354,22 @@ impl Lexer<'_> {
             self.at += 1;
             let kind = text.to_ascii_uppercase();
             if matches!(kind.as_str(), "T" | "TIME" | "LTIME" | "LT") {
-                self.skip_while(|byte| is_name(byte) || byte == b'.' || byte == b'-' || byte == b'+');
+                self.duration();
                 return Some(Token::Duration);
             }
             return Some(Token::Typed);
         }
         Some(Word::find(text).map_or(Token::Name, Token::Word))
+    }
+
+    /// What stands behind `T#`. A sign behind its first number is an operator, and `..` a range.
+    fn duration(&mut self) {
+        self.skip_while(|byte| matches!(byte, b'+' | b'-'));
+        self.skip_while(is_name);
+        while self.peek(0) == b'.' && self.peek(1).is_ascii_digit() {
+            self.at += 1;
+            self.skip_while(is_name);
+        }
     }
 
     /// A word with letters that an identifier cannot have, or signs of a word processor.
@@ -483,6 +493,22 @@ mod tests {
         assert_eq!(
             kinds("16#FF_0 T#1d_2h3.5s INT#5"),
             [Token::Based, Token::Duration, Token::Typed, Token::Integer]
+        );
+    }
+
+    /// Covers: ST3
+    #[test]
+    fn a_sign_behind_a_number_is_an_operator() {
+        use Token::{Duration, Integer, Minus, Name, Plus, Range, Real};
+        assert_eq!(kinds("T#1s+Wait"), [Duration, Plus, Name]);
+        assert_eq!(kinds("T#1s-T#500ms"), [Duration, Minus, Duration]);
+        assert_eq!(kinds("T#-1.5s-LTIME#+2ms"), [Duration, Minus, Duration]);
+        assert_eq!(kinds("T#1s..T#2.5s"), [Duration, Range, Duration]);
+        assert_eq!(kinds("1.5E3+x"), [Real, Plus, Name]);
+        assert_eq!(kinds("1.5E-3-2.0"), [Real, Minus, Real]);
+        assert_eq!(
+            kinds("1-2..3+4"),
+            [Integer, Minus, Integer, Range, Integer, Plus, Integer]
         );
     }
 }

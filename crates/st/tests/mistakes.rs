@@ -385,6 +385,24 @@ const MISTAKES: &[(&str, Code, &str, &str)] = &[
         "TIME",
     ),
     (
+        "PROGRAM P VAR x : TIME; END_VAR x := T#5; END_PROGRAM",
+        Code::BadLiteral,
+        "T#5",
+        "`T#5` is no duration: a unit is missing behind `5`",
+    ),
+    (
+        "PROGRAM P VAR x : TIME; END_VAR x := T#S; END_PROGRAM",
+        Code::BadLiteral,
+        "T#S",
+        "a number is missing before `S`",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR x := SEL(FALSE, D#2020-01-01, 5); END_PROGRAM",
+        Code::Unsupported,
+        "D#",
+        "TIME",
+    ),
+    (
         "PROGRAM P VAR x : POINTER TO INT; END_VAR END_PROGRAM",
         Code::Unsupported,
         "POINTER",

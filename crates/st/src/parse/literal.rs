@@ -73,9 +73,9 @@ impl Parser<'_> {
 
     pub(super) fn duration(&mut self) -> Kind {
         let span = self.span();
-        let text = self.text_of(span).to_ascii_lowercase();
-        let (prefix, rest) = text.split_once('#').unwrap_or(("t", &text));
-        let long = prefix.starts_with('l');
+        let text = self.text_of(span).to_owned();
+        let (prefix, rest) = text.split_once('#').unwrap_or(("T", &text));
+        let long = prefix.starts_with(['l', 'L']);
         let kind = match nanoseconds(rest) {
             Ok(ns) => Kind::Duration(ns, long),
             Err(why) => {
@@ -106,7 +106,7 @@ impl Parser<'_> {
                 "dates and times of day",
                 "use TIME, which counts from the start of the run: TIME()",
             );
-            self.skip_glued();
+            self.skip_date();
             return Kind::Wrong;
         }
         if self.span().start != prefix.end {
@@ -172,11 +172,12 @@ impl Parser<'_> {
         Kind::Bool(value)
     }
 
-    /// Skips text without a space after the last token.
-    fn skip_glued(&mut self) {
-        while self.token() != Token::End
-            && self.token() != Token::Semicolon
-            && self.span().start == self.before().end
+    /// `2024-01-01-12:30:15.5`, without a space after the last token.
+    fn skip_date(&mut self) {
+        while matches!(
+            self.token(),
+            Token::Integer | Token::Real | Token::Minus | Token::Colon
+        ) && self.span().start == self.before().end
         {
             self.next();
         }
@@ -212,7 +213,7 @@ fn unescaped(text: &str) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// A duration behind its `#`, in lower case.
+/// A duration behind its `#`.
 fn nanoseconds(text: &str) -> Result<i64, String> {
     let text: String = text.chars().filter(|c| *c != '_').collect();
     let (negative, mut rest) = match text.strip_prefix('-') {
@@ -229,13 +230,18 @@ fn nanoseconds(text: &str) -> Result<i64, String> {
             .find(|c: char| !c.is_ascii_digit() && c != '.')
             .unwrap_or(rest.len());
         let (number, behind) = rest.split_at(end);
+        if number.is_empty() {
+            return Err(format!("a number is missing before `{behind}`"));
+        }
         let end = behind
-            .find(|c: char| !c.is_ascii_lowercase())
+            .find(|c: char| !c.is_ascii_alphabetic())
             .unwrap_or(behind.len());
         let (unit, behind) = behind.split_at(end);
-        let place = UNITS.iter().position(|(name, _)| *name == unit);
-        let place =
-            place.ok_or_else(|| format!("a unit is missing behind `{number}`, or `{unit}` is none"))?;
+        if unit.is_empty() {
+            return Err(format!("a unit is missing behind `{number}`"));
+        }
+        let place = UNITS.iter().position(|(name, _)| name.eq_ignore_ascii_case(unit));
+        let place = place.ok_or_else(|| format!("`{unit}` is no unit"))?;
         if place < least {
             return Err(format!("`{unit}` stands behind a smaller unit, or twice"));
         }
@@ -298,6 +304,20 @@ mod tests {
             ".s",
         ] {
             assert!(nanoseconds(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_duration_is_told_as_it_is_written() {
+        for (text, why) in [
+            ("5", "a unit is missing behind `5`"),
+            ("1s2", "a unit is missing behind `2`"),
+            ("1m2Q", "`Q` is no unit"),
+            ("S", "a number is missing before `S`"),
+            ("--1s", "a number is missing before `-1s`"),
+            ("1s1S", "`S` stands behind a smaller unit, or twice"),
+        ] {
+            assert_eq!(nanoseconds(text), Err(why.to_owned()));
         }
     }
 }
