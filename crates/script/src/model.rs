@@ -154,7 +154,7 @@ impl Instance {
 pub struct Program {
     /// Name as written.
     pub name: String,
-    /// When it runs; at least one task.
+    /// When it runs; at least one.
     pub calls: Vec<Call>,
     /// What was compiled.
     pub guest: standstill_guest::Program,
@@ -166,11 +166,11 @@ pub struct Program {
     pub text: Option<Arc<ProgramText>>,
 }
 
-/// A task that runs a program.
+/// When a program runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Call {
-    /// Index of the task in [`Script::tasks`].
-    pub task: usize,
+    /// Index of the task in [`Script::tasks`]; `None` runs once a scan, after all tasks.
+    pub task: Option<usize>,
     /// The function that does it; `plc_scan` if absent.
     pub entry: Option<String>,
 }

@@ -289,7 +289,8 @@ impl Reader {
         self.report(diagnostic);
     }
 
-    /// The tasks that run the programs: those of a CONFIGURATION become the script's.
+    /// When the programs run: the tasks of a CONFIGURATION become the script's, and its programs without one run after
+    /// all of them.
     pub(super) fn program_calls(&mut self, fields: &Fields<'_>, tasks: &mut Option<Vec<Task>>) {
         let Some(Json::Map(members)) = fields.get("programs").map(|node| &node.json) else {
             return;
@@ -301,9 +302,9 @@ impl Reader {
                 .programs
                 .get(index)
                 .and_then(|program| program.as_ref()?.text.clone());
-            let listed = text.map_or(Vec::new(), |text| text.symbols.tasks().to_vec());
-            let configured = listed.iter().any(|task| !task.name.is_empty());
-            if let (true, Some((_, node))) = (configured, task) {
+            let symbols = text.as_ref().map(|text| &text.symbols);
+            let listed = symbols.filter(|symbols| symbols.is_configured());
+            if let (Some(_), Some((_, node))) = (listed, task) {
                 let message = "the CONFIGURATION of the sources says which tasks there are";
                 self.report(Diagnostic::new(Code::BadValue, node.span, message).help("leave `task` out"));
             }
@@ -314,21 +315,27 @@ impl Reader {
                 };
                 reader.task_index(name, span, tasks.as_deref())
             };
-            let calls: Option<Vec<Call>> = if configured {
+            let calls: Option<Vec<Call>> = if let Some(symbols) = listed {
                 let call = |task: &st::Task| {
                     let index = if task.name.is_empty() {
-                        self.task_index(MAIN, key.span, tasks.as_deref())
+                        None
                     } else {
-                        self.configured_task(task, fields, key.span, tasks.as_mut())
+                        Some(self.configured_task(task, fields, key.span, tasks.as_mut())?)
                     };
                     Some(Call {
-                        task: index?,
+                        task: index,
                         entry: Some(task.entry.clone()),
                     })
                 };
-                listed.iter().map(call).collect()
+                symbols.tasks().iter().map(call).collect()
             } else {
-                own(self, tasks).map(|task| vec![Call { task, entry: None }])
+                let task = own(self, tasks);
+                task.map(|task| {
+                    vec![Call {
+                        task: Some(task),
+                        entry: None,
+                    }]
+                })
             };
             if let (Some(calls), Some(Some(program))) = (calls, self.programs.get_mut(index)) {
                 program.calls = calls;

@@ -79,9 +79,9 @@ fn fail(axis: usize, kind: FaultKind, code: u16, time: ScanTime, machine: &mut S
 /// The instances of a task, and its calls of guest programs: the program, and the number of the call.
 type OfTask = (Vec<usize>, Vec<(usize, usize)>);
 
-/// What runs in each task.
+/// What runs in each task, and then what runs without one.
 fn by_task(script: &Script) -> Vec<OfTask> {
-    let mut tasks = vec![(Vec::new(), Vec::new()); script.tasks.len()];
+    let mut tasks = vec![(Vec::new(), Vec::new()); script.tasks.len() + 1];
     let called = script.blocks.iter().enumerate();
     for (index, instance) in called.filter(|(_, instance)| !instance.left_out) {
         if let Some((blocks, _)) = tasks.get_mut(instance.task) {
@@ -90,7 +90,8 @@ fn by_task(script: &Script) -> Vec<OfTask> {
     }
     for (index, program) in script.programs.iter().enumerate() {
         for (place, call) in program.calls.iter().enumerate() {
-            if let Some((_, guests)) = tasks.get_mut(call.task) {
+            let task = call.task.unwrap_or(script.tasks.len());
+            if let Some((_, guests)) = tasks.get_mut(task) {
                 guests.push((index, place));
             }
         }
@@ -130,7 +131,7 @@ pub(crate) struct Bench<'a> {
     script: &'a Script,
     layout: Arc<Layout>,
     values: Values,
-    /// What runs in each task, in file order.
+    /// What runs in each task, and then what runs without one, in file order.
     tasks: Vec<OfTask>,
     writer: RowWriter,
     schedule: Schedule,

@@ -219,7 +219,8 @@ fn row(scan: u64) -> usize {
     usize::try_from(scan).unwrap_or(usize::MAX)
 }
 
-/// One program per task, in the order of the tasks: it calls the task's instances in file order.
+/// One program per task, in the order of the tasks: it calls the task's instances in file order. What runs without a task
+/// is the last one.
 fn executor(script: &Script) -> Result<Executor, RunError> {
     let cycle_ns = script.cycle_ns.unsigned_abs();
     let tasks: Vec<_> = script
@@ -240,10 +241,15 @@ fn executor(script: &Script) -> Result<Executor, RunError> {
             }
         })
         .collect();
-    let programs: Vec<_> = script
+    let mut programs: Vec<_> = script
         .tasks
         .iter()
         .map(|task| ProgramConfig::with(&task.name, &task.name))
         .collect();
+    let mut calls = script.programs.iter().flat_map(|program| &program.calls);
+    if calls.any(|call| call.task.is_none()) {
+        // No task has this name.
+        programs.push(ProgramConfig::free("without a task"));
+    }
     Executor::new(cycle_ns, &tasks, &programs).map_err(|error| RunError::Tasks(error.to_string()))
 }

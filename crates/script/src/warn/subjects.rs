@@ -43,7 +43,7 @@ pub(super) fn look(rows: &Rows<'_>, all: &mut Vec<Warning>) {
         }
     }
     for program in &script.programs {
-        let runs = program.calls.iter().any(|call| !is_idle(call.task));
+        let runs = program.calls.iter().any(|call| !call.task.is_some_and(is_idle));
         if !runs && !program.place.may_be_vacuous {
             let message = format!(
                 "the program {} never runs: no task that runs calls it",

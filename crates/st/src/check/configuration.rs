@@ -52,7 +52,10 @@ impl<'a> Checker<'a> {
             );
         }
         match (&self.options.program, first) {
-            (None, Some(configuration)) => self.configured(configuration),
+            (None, Some(configuration)) => {
+                self.is_configured = true;
+                self.configured(configuration)
+            }
             (Some(name), _) => {
                 let name = name.clone();
                 self.named_program(&name)

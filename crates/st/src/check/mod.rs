@@ -147,11 +147,14 @@ pub(crate) struct Program<'a> {
     pub bodies: Vec<Body>,
     pub instances: Vec<Instance<'a>>,
     pub tasks: Vec<Task>,
+    /// A CONFIGURATION says what runs.
+    pub is_configured: bool,
     pub layout: Layout,
 }
 
 pub(crate) struct Checker<'a> {
     sources: &'a Sources,
+    is_configured: bool,
     options: &'a Options,
     pub(crate) found: Found,
     types: Types,
@@ -193,6 +196,7 @@ pub(crate) fn check<'a>(
         units,
         globals,
         layout,
+        is_configured,
         ..
     } = checker;
     if found.has_errors() {
@@ -205,6 +209,7 @@ pub(crate) fn check<'a>(
         bodies,
         instances,
         tasks,
+        is_configured,
         layout,
     };
     (Some(program), found)
@@ -235,6 +240,7 @@ fn checked<'a>(
     let mut checker = Checker {
         sources,
         options,
+        is_configured: false,
         found,
         types,
         library_types,

@@ -111,6 +111,7 @@ pub struct Symbols {
     places: Vec<Place>,
     counters: Vec<Counter>,
     tasks: Vec<Task>,
+    is_configured: bool,
     writes: Vec<writers::Write>,
 }
 
@@ -169,6 +170,7 @@ impl Symbols {
         });
         Self {
             tasks: tasks.collect(),
+            is_configured: program.is_configured,
             units: units.collect(),
             types: std::sync::Arc::new(types),
             roots,
@@ -178,7 +180,14 @@ impl Symbols {
         }
     }
 
-    /// The tasks of the CONFIGURATION; without one a single task without a name.
+    /// Whether a CONFIGURATION says what runs.
+    #[must_use]
+    pub const fn is_configured(&self) -> bool {
+        self.is_configured
+    }
+
+    /// The tasks of the CONFIGURATION, its programs without a task in one without a name; without a CONFIGURATION that
+    /// alone.
     #[must_use]
     pub fn tasks(&self) -> &[Task] {
         &self.tasks
