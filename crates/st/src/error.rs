@@ -81,7 +81,7 @@ codes! {
     Doubtful = "doubtful",
     /// A warning: the text works here, and not with every other compiler.
     Portability = "portability",
-    /// A lint: a block of motion is called in a branch only.
+    /// A lint: a block of motion is not called in every scan.
     St50 = "ST50",
     /// A lint: Execute is given a constant TRUE.
     St51 = "ST51",

@@ -16,7 +16,7 @@ pub(crate) struct Place {
 }
 
 /// The base of an address.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Base {
     /// The beginning of memory.
     Memory,

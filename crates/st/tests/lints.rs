@@ -23,6 +23,21 @@ fn lints(variables: &str, statements: &str) -> Vec<(&'static str, u32)> {
         .collect()
 }
 
+/// The codes of what is doubtful in this text.
+fn codes(text: &str) -> Vec<&'static str> {
+    let source = Source {
+        name: "p.st",
+        bytes: text.as_bytes(),
+    };
+    let options = Options {
+        lint: true,
+        ..Options::default()
+    };
+    let report = standstill_st::check(&[source], &options);
+    assert!(!report.has_errors(), "{report}");
+    report.diagnostics().iter().map(|it| it.code.name()).collect()
+}
+
 const MOVE: &str = "Mv : MC_MoveAbsolute;";
 
 /// Covers: ST50
@@ -34,7 +49,7 @@ fn a_motion_block_is_called_in_every_scan() {
     assert_eq!(lints(MOVE, in_case), [("ST50", 11)]);
     let always = "Mv(Axis := X, Execute := done);\ngo := Mv.Error;";
     assert_eq!(lints(MOVE, always), []);
-    // Called in both branches and besides; a timer may stand still.
+    // Called besides; a timer may stand still.
     let both = "IF go THEN\nn := 1;\nEND_IF;\nMv(Axis := X, Execute := done);\ngo := Mv.Error;";
     assert_eq!(lints(MOVE, both), []);
     assert_eq!(
@@ -43,6 +58,52 @@ fn a_motion_block_is_called_in_every_scan() {
     );
     let all = "FOR i := 1 TO 2 DO\nMvs[i](Axis := X, Execute := done);\ngo := Mvs[i].Error;\nEND_FOR;";
     assert_eq!(lints("i : INT; Mvs : ARRAY [1..2] OF MC_MoveAbsolute;", all), []);
+}
+
+/// Covers: ST50
+#[test]
+fn every_path_counts_for_a_motion_block() {
+    let told = |statements: &str| lints(MOVE, &format!("{statements}\ngo := Mv.Error;"));
+    let call = "Mv(Axis := X, Execute := done);";
+    for always in [
+        format!("IF go THEN\n{call}\nELSE\n{call}\nEND_IF;"),
+        format!("IF go THEN\n{call}\nELSIF done THEN\n{call}\nELSE\n{call}\nEND_IF;"),
+        format!("CASE n OF\n1: {call}\nELSE\n{call}\nEND_CASE;"),
+        format!("CASE n OF\n0..4: {call}\n5, 6..9: {call}\nEND_CASE;"),
+        format!("IF go THEN\n{call}\nRETURN;\nEND_IF;\n{call}"),
+        format!("{call}\nIF go THEN\nRETURN;\nEND_IF;"),
+        format!("REPEAT\n{call}\nIF go THEN\nEXIT;\nEND_IF;\nUNTIL done END_REPEAT;"),
+        format!("IF go THEN\nIF done THEN\n{call}\nELSE\n{call}\nEND_IF;\nELSE\n{call}\nEND_IF;"),
+    ] {
+        assert_eq!(told(&always), [], "{always}");
+    }
+    for (not_always, line) in [
+        (format!("IF go THEN\nRETURN;\nEND_IF;\n{call}"), 13),
+        (
+            format!("IF go THEN\n{call}\nELSIF done THEN\n{call}\nEND_IF;"),
+            11,
+        ),
+        (format!("IF go THEN\n{call}\nELSE\nn := 1;\nEND_IF;"), 11),
+        (
+            format!("IF go THEN\nIF done THEN\n{call}\nEND_IF;\nELSE\n{call}\nEND_IF;"),
+            12,
+        ),
+        (format!("CASE n OF\n0..4: {call}\n6..9: {call}\nEND_CASE;"), 11),
+        (format!("WHILE go DO\n{call}\nEND_WHILE;"), 11),
+        (
+            format!("REPEAT\nIF go THEN\nEXIT;\nEND_IF;\n{call}\nUNTIL done END_REPEAT;"),
+            14,
+        ),
+        (
+            format!("REPEAT\nIF go THEN\nRETURN;\nEND_IF;\n{call}\nUNTIL done END_REPEAT;"),
+            14,
+        ),
+    ] {
+        assert_eq!(told(&not_always), [("ST50", line)], "{not_always}");
+    }
+    let modes = "Mode : (Idle, Work);\nMv : MC_MoveAbsolute;";
+    let by_mode = format!("CASE Mode OF\nIdle: {call}\nWork: {call}\nEND_CASE;\ngo := Mv.Error;");
+    assert_eq!(lints(modes, &by_mode), []);
 }
 
 /// Covers: ST51
@@ -60,6 +121,34 @@ fn execute_has_a_condition() {
         ),
         []
     );
+}
+
+/// Covers: ST51
+#[test]
+fn another_call_may_give_execute_otherwise() {
+    let told = |variables: &str, statements: &str| {
+        let told = lints(variables, &format!("{statements}\ngo := Mv.Error;"));
+        told.into_iter()
+            .filter(|(code, _)| *code == "ST51")
+            .collect::<Vec<_>>()
+    };
+    let given = |other: &str| {
+        format!("IF go THEN\nMv(Axis := X, Execute := TRUE);\nELSE\nMv(Axis := X{other});\nEND_IF;")
+    };
+    assert_eq!(told(MOVE, &given(", Execute := FALSE")), []);
+    assert_eq!(told(MOVE, &given(", Execute := done")), []);
+    assert_eq!(told(MOVE, &given("")), [("ST51", 11)]);
+    assert_eq!(
+        told(MOVE, &given(", Execute := TRUE")),
+        [("ST51", 11), ("ST51", 13)]
+    );
+    // A statement writes it, and a call takes that.
+    assert_eq!(told(MOVE, &format!("Mv.Execute := done;\n{}", given(""))), []);
+    let every = "Mv.Execute := done;\nMv(Axis := X, Execute := TRUE);";
+    assert_eq!(told(MOVE, every), [("ST51", 11)]);
+    // That of another instance is none of its own.
+    let two = "Mv(Axis := X, Execute := TRUE);\nMw(Axis := X, Execute := FALSE);\ngo := Mw.Error;";
+    assert_eq!(told("Mv, Mw : MC_MoveAbsolute;", two), [("ST51", 10)]);
 }
 
 /// Covers: ST52
@@ -84,6 +173,38 @@ fn a_refusal_is_noticed() {
         );
     }
     assert_eq!(lints(MOVE, "Mv(Axis := X, Execute := go, Error => done);"), []);
+}
+
+/// Covers: ST53
+#[test]
+fn an_instance_that_is_read_is_called() {
+    assert_eq!(lints("T : TON;", "go := T.Q;"), [("ST53", 7)]);
+    assert_eq!(lints("T : TON;", "T.IN := go;"), [("ST53", 7)]);
+    assert_eq!(lints("T : TON;", "T(IN := go, PT := T#1s);\ngo := T.Q;"), []);
+    assert_eq!(
+        lints("Ts : ARRAY [1..2] OF TON;", "go := Ts[1].Q;"),
+        [("ST53", 7)]
+    );
+    // Who gets it may call it.
+    let text = "FUNCTION_BLOCK Wait VAR_IN_OUT T : TON; END_VAR T(IN := TRUE, PT := T#1s); END_FUNCTION_BLOCK
+        FUNCTION_BLOCK Count VAR_OUTPUT n : INT; END_VAR METHOD Up n := n + 1; END_METHOD END_FUNCTION_BLOCK
+        PROGRAM P VAR T : TON; W : Wait; C : Count; go : BOOL; END_VAR
+        W(T := T); C.Up(); go := T.Q AND C.n > 3; END_PROGRAM";
+    assert_eq!(codes(text), [""; 0]);
+}
+
+/// Covers: ST50, ST53
+#[test]
+fn many_variables_and_calls_are_searched_in_a_moment() {
+    let most = 10_000;
+    let variables: String = (0..most).map(|i| format!("v{i} : INT; t{i} : TON;\n")).collect();
+    let calls: String = (0..most)
+        .map(|i| format!("t{i}(IN := v{i} > 0, PT := T#1s, Q => go);\nv{i} := v{i} + 1;\n"))
+        .collect();
+    let text = format!("PROGRAM P VAR go : BOOL;\n{variables}END_VAR\n{calls}END_PROGRAM");
+    let begun = std::time::Instant::now();
+    assert!(codes(&text).iter().all(|code| *code == "ST52"));
+    assert!(begun.elapsed().as_secs() < 10, "{:?}", begun.elapsed());
 }
 
 /// Covers: ST54

@@ -1,9 +1,11 @@
 //! The uses of a program's variables: calls, reads and writes.
 
+use super::paths::{Paths, Way, meet};
 use crate::check::Program;
 use crate::source::Span;
-use crate::typed::{Argument, Base, Expr, Kind, Place, Stmt, StmtKind};
-use crate::types::{Elementary, MemberKind, Type, TypeId, UnitId};
+use crate::typed::{Argument, Base, Branch, Expr, Kind, Place, Stmt, StmtKind};
+use crate::types::{Elementary, Member, MemberKind, Type, UnitId};
+use std::collections::BTreeSet;
 
 /// A variable of a unit, or a global one, by its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -24,8 +26,6 @@ pub(super) struct Call {
     pub callee: UnitId,
     /// The enclosing lists of statements, from the outside in; the last one is its own.
     pub lists: Vec<usize>,
-    /// Whether it is in a branch.
-    pub branch: bool,
     /// Inputs by their offset in the instance, whether they are constant TRUE, and the place.
     pub inputs: Vec<(u32, bool, Span)>,
     /// Outputs by their place in the instance.
@@ -39,10 +39,14 @@ pub(super) struct Call {
 #[derive(Debug, Default)]
 pub(super) struct Facts {
     pub calls: Vec<Call>,
+    /// Instances that are called on every path through a body.
+    pub always: BTreeSet<Variable>,
+    /// Instances that are called, by themselves or by one of their methods, or passed to somebody who may call them.
+    pub called: BTreeSet<Variable>,
     /// Variables that are read, written, called or passed.
-    pub used: std::collections::BTreeSet<Variable>,
-    /// Variables that a statement gives a value.
-    pub assigned: std::collections::BTreeSet<Variable>,
+    pub used: BTreeSet<Variable>,
+    /// Parts of variables that a statement gives a value: the variable, and the offset as in `reads`.
+    pub assigned: BTreeSet<(Variable, u32)>,
     /// Reads of a part of a variable: its offset, and for an array whether it is any element.
     pub reads: Vec<(Variable, u32)>,
     /// Comparisons of two numbers with a point.
@@ -57,73 +61,127 @@ pub(super) struct Facts {
 pub(super) fn gather(program: &Program<'_>) -> Facts {
     let mut facts = Facts::default();
     let mut lists = 0;
-    for body in &program.bodies {
+    let places = Places::new(program);
+    let bodies = program
+        .bodies
+        .iter()
+        .map(|body| (Some(body.unit), &body.statements));
+    let tasks = program.tasks.iter().map(|task| (None, &task.statements));
+    for (unit, statements) in bodies.chain(tasks) {
         let mut walk = Walk {
             program,
-            unit: Some(body.unit),
+            places: &places,
+            unit,
             facts: &mut facts,
             lists: Vec::new(),
             next: &mut lists,
-            branches: 0,
+            paths: Paths::default(),
         };
-        walk.list(&body.statements);
-    }
-    for task in &program.tasks {
-        let mut walk = Walk {
-            program,
-            unit: None,
-            facts: &mut facts,
-            lists: Vec::new(),
-            next: &mut lists,
-            branches: 0,
-        };
-        walk.list(&task.statements);
+        let way = walk.list(statements);
+        let called = walk.paths.on_all(way);
+        facts.always.extend(called);
     }
     facts
 }
 
+/// The variables of a unit, or the global ones, in the order of memory: where each begins and ends, and its place in their list.
+#[derive(Default)]
+struct Spans(Vec<(u32, u32, usize)>);
+
+impl Spans {
+    fn new(mut spans: Vec<(u32, u32, usize)>) -> Self {
+        spans.sort_unstable();
+        Self(spans)
+    }
+
+    /// The variable at an offset.
+    fn at(&self, offset: u32) -> Option<usize> {
+        let behind = self.0.partition_point(|(begin, ..)| *begin <= offset);
+        let (_, end, member) = self.0.get(behind.checked_sub(1)?)?;
+        (offset < *end).then_some(*member)
+    }
+}
+
+/// Where all variables are.
+struct Places {
+    globals: Spans,
+    /// Of each unit, the variables that it holds, and the in_outs, of which it holds the addresses alone.
+    units: Vec<(Spans, Spans)>,
+}
+
+impl Places {
+    fn new(program: &Program<'_>) -> Self {
+        let unit_size = |unit: UnitId| {
+            let info = program.units.get(unit.0 as usize);
+            info.map_or(0, |info| info.members.size)
+        };
+        let span = |(place, member): (usize, &Member)| {
+            let bytes = match member.kind {
+                MemberKind::InOut => 1,
+                _ => program.types.size(member.ty, unit_size).0.max(1),
+            };
+            (member.offset, member.offset.saturating_add(bytes), place)
+        };
+        let globals = program.globals.iter().map(|global| &global.member);
+        let units = program.units.iter().map(|info| {
+            let members = info.members.list.iter().enumerate();
+            let own = members.filter(|(_, member)| !matches!(member.kind, MemberKind::External(_)));
+            let (pointers, held): (Vec<_>, Vec<_>) =
+                own.partition(|(_, member)| member.kind == MemberKind::InOut);
+            let spans = |members: Vec<_>| Spans::new(members.into_iter().map(span).collect());
+            (spans(held), spans(pointers))
+        });
+        Self {
+            globals: Spans::new(globals.enumerate().map(span).collect()),
+            units: units.collect(),
+        }
+    }
+}
+
 struct Walk<'w, 'p, 'a> {
     program: &'p Program<'a>,
+    places: &'w Places,
     unit: Option<UnitId>,
     facts: &'w mut Facts,
     lists: Vec<usize>,
     next: &'w mut usize,
-    branches: usize,
+    paths: Paths,
 }
 
 impl Walk<'_, '_, '_> {
-    fn list(&mut self, statements: &[Stmt]) {
+    fn list(&mut self, statements: &[Stmt]) -> Way {
         *self.next += 1;
         self.lists.push(*self.next);
+        self.paths.begin_list();
         for statement in statements {
             self.statement(statement);
         }
         self.lists.pop();
+        self.paths.end_list()
     }
 
-    fn branch(&mut self, statements: &[Stmt]) {
-        self.branches += 1;
-        self.list(statements);
-        self.branches -= 1;
+    fn looping(&mut self, statements: &[Stmt]) -> Way {
+        self.paths.begin_loop();
+        let way = self.list(statements);
+        self.paths.end_loop(way)
     }
 
     fn statement(&mut self, statement: &Stmt) {
         match &statement.kind {
             StmtKind::Assign(target, value) | StmtKind::Copy(target, value, _) => {
-                self.write(target);
-                if let Some((variable, _)) = self.variable(target) {
-                    self.facts.assigned.insert(variable);
-                }
+                self.assign(target);
                 self.expression(value);
             }
             StmtKind::Evaluate(value) => self.expression(value),
             StmtKind::Block(call) => self.call(call, statement.span),
             StmtKind::If(branches, other) => {
+                let mut way = None;
                 for (condition, body) in branches {
                     self.expression(condition);
-                    self.branch(body);
+                    meet(&mut way, self.list(body));
                 }
-                self.branch(other);
+                meet(&mut way, self.list(other));
+                self.paths.go_on(way);
             }
             StmtKind::Case(selector, _, branches, other) => {
                 self.expression(selector);
@@ -134,6 +192,7 @@ impl Walk<'_, '_, '_> {
                     },
                     _ => None,
                 };
+                let mut way = None;
                 for branch in branches {
                     let beyond = |(low, high): (i128, i128)| {
                         branch.labels.iter().all(|(from, to)| *to < low || *from > high)
@@ -141,43 +200,82 @@ impl Walk<'_, '_, '_> {
                     if let (true, Some(first)) = (range.is_some_and(beyond), branch.body.first()) {
                         self.facts.unreachable.push(first.span);
                     }
-                    self.branch(&branch.body);
+                    meet(&mut way, self.list(&branch.body));
                 }
-                self.branch(other);
+                let otherwise = self.list(other);
+                if !other.is_empty() || !self.is_complete(selector, branches) {
+                    meet(&mut way, otherwise);
+                }
+                self.paths.go_on(way);
             }
             StmtKind::For(each) => {
-                self.write(&each.variable);
+                self.assign(&each.variable);
                 for value in [&each.from, &each.to, &each.by] {
                     self.expression(value);
                 }
-                self.list(&each.body);
+                // A FOR over the elements of an array is taken to run.
+                let way = self.looping(&each.body);
+                self.paths.go_on(Some(way.unwrap_or_default()));
             }
             StmtKind::While(condition, body) => {
                 self.expression(condition);
-                self.branch(body);
+                self.looping(body);
             }
             StmtKind::Repeat(body, condition) => {
-                self.list(body);
+                let way = self.looping(body);
+                self.paths.go_on(way);
                 self.expression(condition);
             }
-            StmtKind::Exit | StmtKind::Continue | StmtKind::Return => {}
+            StmtKind::Exit | StmtKind::Continue => self.paths.leave_loop(),
+            StmtKind::Return => self.paths.leave(),
+        }
+    }
+
+    /// Whether each value that a subrange or an enumeration may have leads to a branch.
+    fn is_complete(&self, selector: &Expr, branches: &[Branch]) -> bool {
+        let Kind::Load(place) = &selector.kind else {
+            return false;
+        };
+        let labels = branches.iter().flat_map(|branch| &branch.labels);
+        match self.program.types.get(place.ty) {
+            Type::Subrange { low, high, .. } => {
+                let mut labels: Vec<_> = labels.copied().collect();
+                labels.sort_unstable();
+                let mut next = *low;
+                for (from, to) in labels {
+                    if from <= next {
+                        next = next.max(to + 1);
+                    }
+                }
+                next > *high
+            }
+            Type::Enumeration(enumeration) => {
+                let labels: BTreeSet<i128> = labels.filter(|(from, to)| from == to).map(|it| it.0).collect();
+                enumeration
+                    .elements
+                    .iter()
+                    .all(|(_, number)| labels.contains(number))
+            }
+            _ => false,
         }
     }
 
     fn call(&mut self, call: &crate::typed::BlockCall, span: Span) {
         self.write(&call.instance);
+        self.may_call(&call.instance);
         for (_, place) in &call.references {
-            self.read(place);
+            self.pass(place);
         }
         for (_, value) in &call.inputs {
             self.expression(value);
         }
         for (target, _) in &call.outputs {
-            self.write(target);
+            self.assign(target);
         }
         let Some((variable, _)) = self.variable(&call.instance) else {
             return;
         };
+        self.paths.call(variable);
         let is_true = |value: &Expr| matches!(value.kind, Kind::Integer(1)) && value.ty == crate::types::BOOL;
         let outputs = call.outputs.iter().filter_map(|(_, value)| place_in(value));
         let begin = call.instance.offset;
@@ -187,7 +285,6 @@ impl Walk<'_, '_, '_> {
             place: (call.instance.base, begin),
             callee: call.unit,
             lists: self.lists.clone(),
-            branch: self.branches > 0,
             inputs: call
                 .inputs
                 .iter()
@@ -235,15 +332,16 @@ impl Walk<'_, '_, '_> {
             Kind::Call(call) => {
                 if let Some(instance) = &call.instance {
                     self.write(instance);
+                    self.may_call(instance);
                 }
                 for argument in &call.arguments {
                     match argument {
                         Argument::Value(value) => self.expression(value),
-                        Argument::Reference(place) => self.read(place),
+                        Argument::Reference(place) => self.pass(place),
                     }
                 }
                 for (target, _) in &call.outputs {
-                    self.write(target);
+                    self.assign(target);
                 }
             }
             Kind::Library(_, _, values) => values.iter().for_each(|value| self.expression(value)),
@@ -260,6 +358,30 @@ impl Walk<'_, '_, '_> {
         self.indices(place);
         if let Some((variable, _)) = self.variable(place) {
             self.facts.used.insert(variable);
+        }
+    }
+
+    fn assign(&mut self, place: &Place) {
+        self.write(place);
+        if let Some(part) = self.variable(place) {
+            self.facts.assigned.insert(part);
+        }
+    }
+
+    /// A variable that is passed by its address: an instance, or something with instances in it, may be called there.
+    fn pass(&mut self, place: &Place) {
+        self.read(place);
+        if matches!(
+            self.program.types.get(place.ty),
+            Type::Block(_) | Type::Array(_) | Type::Structure(_)
+        ) {
+            self.may_call(place);
+        }
+    }
+
+    fn may_call(&mut self, place: &Place) {
+        if let Some((variable, _)) = self.variable(place) {
+            self.facts.called.insert(variable);
         }
     }
 
@@ -293,32 +415,21 @@ impl Walk<'_, '_, '_> {
             (Base::Memory, _) => (None, place.offset),
             _ => return None,
         };
-        let size = |ty: TypeId| {
-            program
-                .types
-                .size(ty, |unit| info(unit).map_or(0, |info| info.members.size))
-                .0
-        };
-        let found = match unit {
+        let (member, declared) = match unit {
             Some(unit) => {
-                let mut members = info(unit)?.members.list.iter().enumerate();
-                members.find(|(_, member)| {
-                    let pointer = matches!(place.base, Base::ThisPointer(_) | Base::MemoryPointer(_));
-                    // Of a VAR_IN_OUT the unit holds the address alone.
-                    let bytes = if pointer { 1 } else { size(member.ty).max(1) };
-                    (member.offset..member.offset + bytes).contains(&offset)
-                        && pointer == (member.kind == MemberKind::InOut)
-                        && !matches!(member.kind, MemberKind::External(_))
-                })
+                let (held, pointers) = self.places.units.get(unit.0 as usize)?;
+                let spans = match place.base {
+                    Base::ThisPointer(_) | Base::MemoryPointer(_) => pointers,
+                    _ => held,
+                };
+                let member = spans.at(offset)?;
+                (member, info(unit)?.members.list.get(member)?)
             }
             None => {
-                let mut globals = program.globals.iter().map(|global| &global.member).enumerate();
-                globals.find(|(_, member)| {
-                    (member.offset..member.offset + size(member.ty).max(1)).contains(&offset)
-                })
+                let member = self.places.globals.at(offset)?;
+                (member, &program.globals.get(member)?.member)
             }
         };
-        let (member, declared) = found?;
         let mut within = offset - declared.offset;
         let mut ty = declared.ty;
         while let Type::Array(array) = program.types.get(ty) {

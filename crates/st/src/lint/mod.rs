@@ -5,6 +5,7 @@
 //! `{lint on ST55}`.
 
 mod facts;
+mod paths;
 mod rules;
 
 use crate::check::Program;

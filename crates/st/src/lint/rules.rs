@@ -3,6 +3,7 @@
 use super::facts::{Call, Facts, Variable};
 use crate::check::{Program, UnitKind};
 use crate::error::{Code, Diagnostic};
+use crate::typed::Base;
 use crate::types::{Member, MemberKind, Type, UnitId};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,12 +14,12 @@ pub(super) fn all(program: &Program<'_>, facts: &Facts) -> Vec<Diagnostic> {
     for call in &facts.calls {
         by_variable.entry(call.variable).or_default().push(call);
     }
-    for calls in by_variable.values() {
-        in_a_branch(program, calls, &mut told);
+    for (variable, calls) in &by_variable {
+        if !facts.always.contains(variable) {
+            not_always(program, calls, &mut told);
+        }
         twice(program, calls, &mut told);
-    }
-    for call in &facts.calls {
-        always_true(program, call, &mut told);
+        always_true(program, facts, calls, &mut told);
     }
     two_writers(program, facts, &mut told);
     refusals(program, facts, &by_variable, &mut told);
@@ -70,21 +71,18 @@ fn pin(program: &Program<'_>, unit: UnitId, key: &str) -> Option<u32> {
     members.find(key).map(|(_, member)| member.offset)
 }
 
-/// ST50: a block of motion is called in a branch only.
-fn in_a_branch(program: &Program<'_>, calls: &[&Call], told: &mut Vec<Diagnostic>) {
+/// ST50: a block of motion has a path on which it is not called.
+fn not_always(program: &Program<'_>, calls: &[&Call], told: &mut Vec<Diagnostic>) {
     let Some(first) = calls.first().filter(|call| motion(program, call.callee)) else {
         return;
     };
-    if calls.iter().any(|call| !call.branch) {
-        return;
-    }
     let name = member(program, first.variable).map_or("", |member| member.name.as_str());
     let message = format!(
-        "`{name}` is called in a branch only: while it is not, its outputs stand still and an edge may be missed"
+        "`{name}` is not called in every scan: while it is not, its outputs stand still and an edge may be missed"
     );
     told.push(
         Diagnostic::warning(Code::St50, first.span, message)
-            .help("call it in every scan, and say in Execute or Enable when it works"),
+            .help("call it on every path, and say in Execute or Enable when it works"),
     );
 }
 
@@ -108,28 +106,47 @@ fn twice(program: &Program<'_>, calls: &[&Call], told: &mut Vec<Diagnostic>) {
 }
 
 /// ST51: Execute is TRUE for good.
-fn always_true(program: &Program<'_>, call: &Call, told: &mut Vec<Diagnostic>) {
-    let execute = pin(program, call.callee, "EXECUTE").filter(|_| motion(program, call.callee));
-    let given = call
-        .inputs
-        .iter()
-        .find(|(at, value, _)| Some(*at) == execute && *value);
-    if let Some((.., span)) = given {
+fn always_true(program: &Program<'_>, facts: &Facts, calls: &[&Call], told: &mut Vec<Diagnostic>) {
+    let Some(first) = calls.first().filter(|call| motion(program, call.callee)) else {
+        return;
+    };
+    let Some(execute) = pin(program, first.callee, "EXECUTE") else {
+        return;
+    };
+    let given = |call: &Call| call.inputs.iter().find(|(at, ..)| *at == execute).copied();
+    // A call that does not give it takes what a statement has written to it.
+    let is_written = facts.assigned.contains(&(first.variable, execute));
+    let may_be_false = |call: &Call| given(call).map_or(is_written, |(_, value, _)| !value);
+    let others = calls.iter().filter(|call| may_be_false(call));
+    let others: BTreeSet<(Base, u32)> = others.map(|call| call.place).collect();
+    let any_other = calls.iter().any(|call| call.indexed && may_be_false(call));
+    for call in calls {
+        let Some((_, true, span)) = given(call) else {
+            continue;
+        };
+        if any_other || others.contains(&call.place) || call.indexed && !others.is_empty() {
+            continue;
+        }
         let message = "Execute is always TRUE: it rises once, and never again";
-        told.push(Diagnostic::warning(Code::St51, *span, message).help("give it a condition"));
+        told.push(Diagnostic::warning(Code::St51, span, message).help("give it a condition"));
     }
 }
 
 /// ST52: two instances write one variable.
 fn two_writers(program: &Program<'_>, facts: &Facts, told: &mut Vec<Diagnostic>) {
-    for (place, call) in facts.calls.iter().enumerate() {
+    // The first call that writes each variable, and the first one of another instance.
+    let mut writers: BTreeMap<(Option<UnitId>, Base, u32), (&Call, Option<&Call>)> = BTreeMap::new();
+    for call in &facts.calls {
         for (base, offset, span) in &call.targets {
-            let same = |other: &&Call| {
-                other.variable.unit == call.variable.unit
-                    && other.place != call.place
-                    && other.targets.iter().any(|(b, o, _)| (b, o) == (base, offset))
+            let key = (call.variable.unit, *base, *offset);
+            let (first, second) = writers.entry(key).or_insert((call, None));
+            let other = if first.place == call.place {
+                *second
+            } else {
+                second.get_or_insert(call);
+                Some(*first)
             };
-            if let Some(other) = facts.calls.iter().take(place).find(same) {
+            if let Some(other) = other {
                 let name =
                     |call: &Call| member(program, call.variable).map_or("", |member| member.name.as_str());
                 let message = format!(
@@ -193,7 +210,7 @@ fn unused(program: &Program<'_>, facts: &Facts, told: &mut Vec<Diagnostic>) {
     });
     for (variable, member) in of_units.chain(of_all) {
         let own = variable.unit.is_none() || matches!(member.kind, MemberKind::Var | MemberKind::Temp);
-        if !own || facts.used.contains(&variable) || member.constant || member.address.is_some() {
+        if !own || member.constant || member.address.is_some() {
             continue;
         }
         let mut ty = member.ty;
@@ -201,12 +218,13 @@ fn unused(program: &Program<'_>, facts: &Facts, told: &mut Vec<Diagnostic>) {
             ty = array.of;
         }
         match program.types.get(ty) {
+            Type::Block(_) if facts.called.contains(&variable) => {}
             Type::Block(_) => {
                 let message = format!("`{}` is declared and never called", member.name);
                 told.push(Diagnostic::warning(Code::St53, member.span, message));
             }
             // The script, or another program, may want a global one.
-            _ if variable.unit.is_none() => {}
+            _ if variable.unit.is_none() || facts.used.contains(&variable) => {}
             _ => {
                 let message = format!("`{}` is never used", member.name);
                 told.push(Diagnostic::warning(Code::St57, member.span, message));
@@ -218,7 +236,7 @@ fn unused(program: &Program<'_>, facts: &Facts, told: &mut Vec<Diagnostic>) {
 /// See [`super::without_axis`].
 pub(super) fn without_axis(program: &Program<'_>, facts: &Facts, image: &[u8]) -> Vec<Diagnostic> {
     let is_axis = |member: &Member| matches!(program.types.get(member.ty), Type::Structure(structure) if structure.name == "AXIS_REF");
-    let mut assigned = facts.assigned.iter().filter_map(|it| member(program, *it));
+    let mut assigned = facts.assigned.iter().filter_map(|(it, _)| member(program, *it));
     if assigned.any(is_axis) {
         return Vec::new();
     }
