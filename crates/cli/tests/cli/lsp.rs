@@ -21,6 +21,7 @@ VAR
   X : AXIS_REF;
 END_VAR
 Mv(Axis := X, Execute := Count > 3, Error => Feed.Open);
+Feed();
 END_PROGRAM
 ";
 

@@ -53,7 +53,7 @@ impl GridPlan {
     ///
     /// # Errors
     /// - [`PlanError::InvalidInput`]: `cycle` or a bound is not positive, `start` or `target` is not finite,
-    ///   or their distance is beyond the range of `f64`.
+    ///   or their distance, or the fourth power of a frequency of scans, is beyond the range of `f64`.
     /// - [`PlanError::Unbounded`]: no bound at all.
     /// - [`PlanError::TooLong`]: more than 2^31 - 1 scans; names the bound that makes it so, or the target where the distance in scans
     ///   is beyond the range of `f64`.
@@ -283,6 +283,9 @@ pub(super) fn checked_distance(
     }
     // The first three derivatives can't exceed the larger of this and the distance.
     let squared = cycle * cycle;
+    if !(1.0 / (squared * squared)).is_finite() {
+        return invalid(Field::Cycle, cycle);
+    }
     if !(distance / (squared * squared)).is_finite() {
         return Err(PlanError::TooLong {
             field: Field::Target,
