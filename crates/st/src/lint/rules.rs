@@ -132,10 +132,13 @@ fn always_true(program: &Program<'_>, facts: &Facts, calls: &[&Call], told: &mut
     }
 }
 
+/// What a call writes an output to: the unit it is in, and the place.
+type Target = (Option<UnitId>, Base, u32);
+
 /// ST52: two instances write one variable.
 fn two_writers(program: &Program<'_>, facts: &Facts, told: &mut Vec<Diagnostic>) {
     // The first call that writes each variable, and the first one of another instance.
-    let mut writers: BTreeMap<(Option<UnitId>, Base, u32), (&Call, Option<&Call>)> = BTreeMap::new();
+    let mut writers: BTreeMap<Target, (&Call, Option<&Call>)> = BTreeMap::new();
     for call in &facts.calls {
         for (base, offset, span) in &call.targets {
             let key = (call.variable.unit, *base, *offset);
