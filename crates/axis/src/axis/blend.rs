@@ -326,9 +326,8 @@ impl<P: Planner> Axis<P> {
             .end
             .map(|end| if first.is_behind { start - end } else { end - start });
         let mut forward = way.is_none_or(|way| way > 0.0);
-        let layer = self.mover.layer();
         // What is added may all be there when the next begins, or not yet: the shorter way is looked at.
-        let farthest = first.end.map(|end| match layer {
+        let farthest = first.end.map(|end| match self.mover.layer() {
             Some(layer) => layer.farthest_above(end, forward, skip == 0),
             None => end,
         });
@@ -350,11 +349,7 @@ impl<P: Planner> Axis<P> {
             end: farthest,
             way,
         };
-        let (count, end) = if layer.is_some() {
-            (0, 0.0)
-        } else {
-            self.joined(&alone, &legs, shortest)
-        };
+        let (count, end) = self.joined(&alone, &legs, shortest);
         let mut run = Run {
             count,
             end,
@@ -382,7 +377,7 @@ impl<P: Planner> Axis<P> {
         let Some(way) = first.way.filter(|_| first.entry.work.manner().blends) else {
             return none;
         };
-        if self.way_barred(way).is_some() {
+        if self.way_barred(way).is_some() || self.mover.layer().is_some() {
             return none;
         }
         // What must not turn back has to have a plan.

@@ -41,7 +41,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the motion of `entry` in progress may leave the software limits. Cost: at most one ramp.
+    /// Whether the motion of `entry` in progress may leave the software limits, together with what is superimposed. Cost: at most one
+    /// ramp, or a check of each piece of both.
     pub(super) fn needs_watching(&self, entry: &Entry) -> bool {
         match (self.parameters.software_limits, self.mover.layer()) {
             (Some(limits), None) => self.may_leave(entry, limits),
@@ -68,11 +69,8 @@ impl<P: Planner> Axis<P> {
     /// each of their pieces.
     #[inline(never)]
     fn sum_leaves(&self, layer: &Layer<P::Plan>, (min, max): (f64, f64)) -> bool {
-        let still = |position| {
-            let (still, limits) = (Setpoint::at_rest(position), &self.config.limits);
-            self.planner.ramp_to(&still, 0.0, limits, limits).ok()
-        };
-        let (Some(base), Some(added)) = (still(layer.base().position), still(layer.added().position)) else {
+        let places = [layer.base(), layer.added()].map(|part| self.still(part.position));
+        let [Some(base), Some(added)] = places else {
             return true;
         };
         let base = self.mover.plan().unwrap_or((&base, 0));
@@ -205,14 +203,19 @@ impl<P: Planner> Axis<P> {
         else {
             return false;
         };
+        !self.turns_within((plan, *elapsed), range)
+    }
+
+    /// Whether the rest of a plan turns only within `range` (u). Cost: a check of each of its pieces.
+    pub(super) fn turns_within(&self, rest: (&P::Plan, u64), range: (f64, f64)) -> bool {
         // Over no motion it is the sum of both.
-        let still = Setpoint::at_rest(0.0);
-        let limits = &self.config.limits;
-        let hold = self.planner.ramp_to(&still, 0.0, limits, limits);
-        hold.is_ok_and(|hold| {
-            !self
-                .planner
-                .fits((plan, *elapsed), (&hold, 0), &Limits::NONE, Some(range))
-        })
+        let still = self.still(0.0);
+        still.is_none_or(|still| self.planner.fits(rest, (&still, 0), &Limits::NONE, Some(range)))
+    }
+
+    /// The plan of standing at `position` (u).
+    fn still(&self, position: f64) -> Option<P::Plan> {
+        let (still, limits) = (Setpoint::at_rest(position), &self.config.limits);
+        self.planner.ramp_to(&still, 0.0, limits, limits).ok()
     }
 }

@@ -5,7 +5,7 @@ use super::super::{Axis, Motion};
 use super::view::{View, way_to_rest};
 use super::{Coupling, OnCam, Rung};
 use crate::{Event, Scope};
-use standstill_planner::{Leads, Limits, Plan, Planner, Setpoint};
+use standstill_planner::{Leads, Plan, Planner};
 
 /// The way (in the unit of the `leads`) from the end of this scan until all masters have come to rest.
 /// `None` while it is not known or one of them is endless.
@@ -39,13 +39,7 @@ impl<P: Planner> Axis<P> {
         // The plan counts from where the line begins.
         let range = (min - start.position, max - start.position);
         let end = plan.at(*scans).position;
-        let limits = &self.config.limits;
-        let line = self.planner.ramp_to(&Setpoint::at_rest(0.0), 0.0, limits, limits);
-        let stays = line.is_ok_and(|line| {
-            self.planner
-                .fits((plan, 0), (&line, 0), &Limits::NONE, Some(range))
-        });
-        *velocity != 0.0 || end < range.0 || end > range.1 || !stays
+        *velocity != 0.0 || end < range.0 || end > range.1 || !self.turns_within((plan, 0), range)
     }
 
     /// Records that the masters lead out of the software limits of this slave, once for each end place.
