@@ -1,6 +1,6 @@
 //! Lints: the findings of each, and code without a finding.
 
-use standstill_st::{Options, Source};
+use standstill_st::{Options, Report, Source};
 
 /// The codes and lines of what is doubtful in a program with these variables and statements, from line 10 on.
 fn lints(variables: &str, statements: &str) -> Vec<(&'static str, u32)> {
@@ -8,16 +8,7 @@ fn lints(variables: &str, statements: &str) -> Vec<(&'static str, u32)> {
         "PROGRAM P\nVAR\n  X : AXIS_REF;\n  go, done : BOOL;\n  n : INT(0..9);\n  a, b : LREAL;\n{variables}\nEND_VAR\n\n\
          {statements}\ngo := done AND n = 1 AND a > b AND X.Number = 1;\nEND_PROGRAM\n"
     );
-    let source = Source {
-        name: "p.st",
-        bytes: text.as_bytes(),
-    };
-    let options = Options {
-        lint: true,
-        ..Options::default()
-    };
-    let report = standstill_st::check(&[source], &options);
-    assert!(!report.has_errors(), "{report}");
+    let report = report(&text);
     let told = report.diagnostics().iter();
     told.map(|it| (it.code.name(), report.positions(it.span).0.line))
         .collect()
@@ -25,6 +16,12 @@ fn lints(variables: &str, statements: &str) -> Vec<(&'static str, u32)> {
 
 /// The codes of what is doubtful in this text.
 fn codes(text: &str) -> Vec<&'static str> {
+    let report = report(text);
+    report.diagnostics().iter().map(|it| it.code.name()).collect()
+}
+
+/// What there is to say of this text, which has no mistake.
+fn report(text: &str) -> Report {
     let source = Source {
         name: "p.st",
         bytes: text.as_bytes(),
@@ -35,7 +32,7 @@ fn codes(text: &str) -> Vec<&'static str> {
     };
     let report = standstill_st::check(&[source], &options);
     assert!(!report.has_errors(), "{report}");
-    report.diagnostics().iter().map(|it| it.code.name()).collect()
+    report
 }
 
 const MOVE: &str = "Mv : MC_MoveAbsolute;";

@@ -1,8 +1,8 @@
 //! Random programs in Structured Text: the instances and the steps of an episode, written as a program, move the axes as the script does.
 
+use super::wired::{info, rows};
 use serde_json::{Map, Value, json};
-use standstill_blocks::registry::find;
-use standstill_fb::{BlockInfo, Direction, PinType, TableInfo};
+use standstill_fb::{Direction, PinType, TableInfo};
 use standstill_script::{Outcome, read_with_programs};
 use standstill_soak::monkey::record;
 use standstill_testkit::cases;
@@ -18,10 +18,6 @@ const SPECIAL: [(&str, &str); 3] = [
 
 fn text(value: &Value) -> &str {
     value.as_str().expect("text")
-}
-
-fn info(block: &Value) -> &'static BlockInfo {
-    find(text(&block["type"])).expect("a block of the registry")
 }
 
 /// A value at a pin or in a record, in Structured Text; `None` for the number of an element that does not exist, which the compiler
@@ -211,15 +207,13 @@ fn run(script: &Value, program: &str) -> Outcome {
 
 /// Its columns by name, a NaN the same as itself, without the name of the program; and its events.
 fn seen(outcome: &Outcome) -> (BTreeMap<String, Vec<String>>, Vec<String>) {
-    let columns = outcome.trace.columns();
-    let mut cells = vec![Vec::new(); columns.len()];
-    for scan in 0..outcome.trace.scans() {
-        for (cell, column) in outcome.trace.row(scan).zip(&mut cells) {
-            column.push(format!("{cell:?}"));
-        }
-    }
+    let rows = rows(outcome);
     let name = |name: &str| name.strip_prefix("main.").unwrap_or(name).to_owned();
-    let columns = columns.iter().map(|column| name(&column.name)).zip(cells);
+    let columns = outcome.trace.columns().iter().enumerate();
+    let columns = columns.map(|(place, column)| {
+        let cells = rows.iter().map(|row| row[place].clone());
+        (name(&column.name), cells.collect())
+    });
     let notes = outcome.trace.notes().iter();
     let notes =
         notes.map(|note| format!("{} {} {}", note.scan, note.subject, note.text).replace("main.", ""));

@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// In the order in which they are written, that of the alphabet.
 const TASKS: [&str; 3] = ["fast", "main", "slow"];
 
-fn info(block: &Value) -> &'static BlockInfo {
+pub fn info(block: &Value) -> &'static BlockInfo {
     find(block["type"].as_str().expect("a type")).expect("a block of the registry")
 }
 
@@ -317,7 +317,7 @@ impl Judge {
 }
 
 /// The cells of each row, as text: a NaN is the same as itself.
-fn rows(outcome: &Outcome) -> Vec<Vec<String>> {
+pub fn rows(outcome: &Outcome) -> Vec<Vec<String>> {
     let row = |scan| outcome.trace.row(scan).map(|cell| format!("{cell:?}")).collect();
     (0..outcome.trace.scans()).map(row).collect()
 }
