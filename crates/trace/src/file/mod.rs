@@ -267,6 +267,14 @@ impl Write for Draft {
     }
 }
 
+/// The folder that `path` is in.
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    }
+}
+
 /// An empty file beside `path` with the permissions of the existing one, or those of any new file.
 fn begun(path: &Path) -> io::Result<NamedTempFile> {
     let there = fs::symlink_metadata(path).ok();
@@ -276,10 +284,6 @@ fn begun(path: &Path) -> io::Result<NamedTempFile> {
     {
         return Err(io::Error::other("this is no file that could be replaced"));
     }
-    let folder = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
     let mut builder = tempfile::Builder::new();
     builder.prefix(".standstill-").suffix(".partial");
     #[cfg(unix)]
@@ -288,7 +292,7 @@ fn begun(path: &Path) -> io::Result<NamedTempFile> {
         // The system removes the permissions in its mask.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let draft = builder.tempfile_in(folder).map_err(without_path)?;
+    let draft = builder.tempfile_in(folder_of(path)).map_err(without_path)?;
     #[cfg(unix)]
     if let Some(there) = there.filter(fs::Metadata::is_file) {
         draft.as_file().set_permissions(there.permissions())?;

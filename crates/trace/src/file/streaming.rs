@@ -1,6 +1,6 @@
 //! A trace that is written during its run.
 
-use super::{Draft, FileError, Form, form, replace_beside};
+use super::{Draft, FileError, Form, folder_of, form, replace_beside};
 use crate::csv::{self, Dialect};
 use crate::jsonl::{self, END_KEY};
 use crate::trace::Trace;
@@ -41,10 +41,9 @@ impl Streaming {
         }
         let special = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
         // Beside the trace, where there is room for it; a device has none beside it.
-        let folder = match path.parent() {
-            _ if special => std::env::temp_dir(),
-            Some(folder) if folder != Path::new("") => folder.to_owned(),
-            _ => PathBuf::from("."),
+        let folder = match special {
+            true => std::env::temp_dir(),
+            false => folder_of(path).to_owned(),
         };
         let notes = Notes::begin(&folder).map_err(at(&folder))?;
         let (out, partial) = match special {
