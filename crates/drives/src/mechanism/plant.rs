@@ -219,7 +219,7 @@ impl Mechanism {
         Ok(self)
     }
 
-    /// One substep under a constant torque. Cost: about 25 multiplications; at a stop [`ROUNDS`] times that at most.
+    /// One substep under a constant torque. Cost: about 25 multiplications; at a stop 100 times that at most.
     #[inline]
     pub fn step(&mut self, torque: f64) {
         let mut moved = self.moved(torque);
