@@ -29,14 +29,24 @@ struct Leg<'a> {
 impl<P: Planner> Axis<P> {
     /// A command has been queued with `mode`: if it is to blend, the owner may have to pass its end at
     /// another speed, and is planned anew from the last set-point (B15). Failing that, its plan stays, and so does one that passes its
-    /// end on a ramp if no other is sooner.
+    /// end on a ramp if no other is sooner, and one motion whose next command could not come to rest behind the new plan.
     pub(super) fn arm(&mut self, mode: BufferMode, scope: &mut Scope<'_>) {
         if mode.blends() {
             self.arm_owner_if(
-                |axis, owner, plan| !axis.passes_on_a_ramp() || axis.is_sooner(owner, plan),
+                |axis, owner, plan| {
+                    (!axis.passes_on_a_ramp() || axis.is_sooner(owner, plan))
+                        && !axis.splits_too_fast(owner, plan)
+                },
                 scope,
             );
         }
+    }
+
+    /// Whether the owner is one motion with others, and along `plan`, which `owner` would have, passes its own end too fast for the next.
+    fn splits_too_fast(&self, owner: &Entry, plan: &P::Plan) -> bool {
+        let is_split = owner.run.count == 0 && self.owner.is_some_and(|was| was.run.count > 0);
+        let speed = plan.at(u64::from(plan.scans())).velocity.abs();
+        is_split && speed > owner.passage.most * (1.0 + ROUNDING)
     }
 
     /// The same for whatever has changed behind the owner.

@@ -562,7 +562,16 @@ impl Asked {
             | Command::MoveAdditive { dynamics, .. }
             | Command::MoveVelocity { dynamics, .. }
             | Command::Jog { dynamics, .. } => (dynamics, dynamics.velocity),
-            _ => return Self { limits, velocity },
+            // Ramps and ends at rest have no velocity of their own, slaves have that of their master.
+            Command::Torque { .. }
+            | Command::Halt { .. }
+            | Command::Stop { .. }
+            | Command::Home { .. }
+            | Command::GearIn { .. }
+            | Command::CombineAxes { .. }
+            | Command::GearOut
+            | Command::CamIn(_)
+            | Command::CamOut => return Self { limits, velocity },
         };
         let pins = Limits {
             velocity: dynamics.velocity.abs(),

@@ -214,7 +214,7 @@ impl<P: Planner> Axis<P> {
     /// one. Distances count from `from` (u), and so does the way to a target. Returns its start in its
     /// frame (u).
     ///
-    /// Cost: on a modulo axis at most one ramp.
+    /// Cost: on a modulo axis at most two ramps.
     #[inline]
     pub(super) fn aim(&self, entry: &mut Entry, from: f64) -> f64 {
         let start = self.mover.setpoint().position;
@@ -236,7 +236,7 @@ impl<P: Planner> Axis<P> {
     /// The same for the command at the head of the buffer, and how it is to pass its end: what passes it in motion need not be
     /// able to stop before it.
     ///
-    /// Cost: on a modulo axis at most two ramps, and that of [`Axis::look_through`].
+    /// Cost: on a modulo axis at most four ramps, and that of [`Axis::look_through`].
     pub(super) fn aim_passing(&self, entry: &mut Entry, from: f64) {
         let mut stopping = Entry {
             passage: REST,
@@ -345,24 +345,61 @@ impl<P: Planner> Axis<P> {
         } else {
             (target, entry.passage)
         };
-        // A command that passes its target in the same direction need not stop before it.
-        let velocity = match entry.work {
-            Work::Through { end_velocity, .. } if (end_velocity > 0.0) == forward => end_velocity,
+        // A command that passes its target in the same direction need not stop before it. One that is blended may: where jerk and snap
+        // bind, that takes less way than to slow down.
+        let (velocity, is_blended) = match entry.work {
+            Work::Through { end_velocity, .. } if (end_velocity > 0.0) == forward => (end_velocity, false),
             Work::Position(_) | Work::Distance(_) if passage.wanted > 0.0 => {
                 let speed = passage.most.min(start.velocity.abs());
-                if forward { speed } else { -speed }
+                (if forward { speed } else { -speed }, true)
             }
-            _ => 0.0,
+            _ => (0.0, false),
         };
         let before = self.limits_before(&entry.limits);
+        let to_target = target - back_by(start.position, turns, length);
+        let missing_to = |velocity: f64| {
+            let ramp = self
+                .planner
+                .ramp_to(start, velocity, &entry.limits, &before)
+                .ok()?;
+            let way = ramp.at(u64::from(ramp.scans())).position - start.position;
+            let missing = if forward { way - to_target } else { to_target - way };
+            Some(missing - ROUNDING * way.abs())
+        };
         // If the stop cannot be planned, the move cannot be planned either; planning it gives the reason.
-        let Ok(ramp) = self.planner.ramp_to(start, velocity, &entry.limits, &before) else {
+        let Some(mut missing) = missing_to(velocity) else {
             return turns;
         };
-        let way = ramp.at(u64::from(ramp.scans())).position - start.position;
-        let to_target = target - back_by(start.position, turns, length);
-        let missing = if forward { way - to_target } else { to_target - way };
-        let missing = missing - ROUNDING * way.abs();
+        if is_blended && missing > 0.0 {
+            missing = missing_to(0.0).map_or(missing, |at_rest| at_rest.min(missing));
+        }
+        // A ramp takes whole scans, the plan past the target need not: what is slowing down for it already can go on so, if a little faster
+        // than is wanted by now.
+        if missing > 0.0 && velocity != 0.0 {
+            let here = Setpoint {
+                position: back_by(start.position, turns, length),
+                ..*start
+            };
+            let most = if self.owner.is_some_and(|owner| owner.id == entry.id) {
+                start.velocity.abs()
+            } else {
+                passage.most * (1.0 + ROUNDING)
+            };
+            let planned = if is_blended {
+                let blended = self
+                    .planner
+                    .blend(&here, target, &passage, &entry.limits, &before);
+                let ends_slowly = |plan: &P::Plan| plan.at(u64::from(plan.scans())).velocity.abs() <= most;
+                blended.ok().flatten().filter(ends_slowly)
+            } else {
+                self.planner
+                    .pass(&here, target, velocity, &entry.limits, &before)
+                    .ok()
+            };
+            if planned.is_some_and(|plan| !self.turns(&plan, forward)) {
+                return turns;
+            }
+        }
         if missing <= 0.0 {
             return turns;
         }
