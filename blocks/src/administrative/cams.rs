@@ -144,8 +144,10 @@ impl Sample {
         let Some(turn) = self.turn else { return way };
         let time = (self.now_ns.saturating_sub(before.now_ns)) as f64 * NS;
         let expected = 0.5 * (self.velocity + before.velocity) * time;
-        let ahead = split(way - expected, turn).1;
-        expected + if ahead > 0.5 * turn { ahead - turn } else { ahead }
+        let turns = (expected - way) / turn;
+        // Whole turns are added to what the positions say, so that no rounding is left that would be a motion at rest.
+        let whole = (if turns < 0.0 { turns - 0.5 } else { turns + 0.5 }) as i64;
+        way + whole as f64 * turn
     }
 }
 

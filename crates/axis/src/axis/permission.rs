@@ -210,7 +210,7 @@ impl<P: Planner> Axis<P> {
         }
         match self.plan_anew(owner, scope) {
             Ok(()) | Err(ErrorId::PositiveBarred | ErrorId::NegativeBarred) => {}
-            Err(error) if self.mover.setpoint().is_at_rest() && self.mover.layer().is_none() => {
+            Err(error) if self.mover.setpoint().is_at_rest() && !self.is_superimposing() => {
                 self.refuse_plan(&owner, error, &mut self.owner_scope(scope));
                 self.end_owner(Fate::Failed(error));
                 self.mover.hold();

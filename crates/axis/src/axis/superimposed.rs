@@ -616,8 +616,14 @@ impl<P: Planner> Axis<P> {
             self.end_of_superimposed(scope);
         }
         let still = !matches!(self.mover.motion(), Motion::Run { .. });
-        if still && self.mover.layer().is_some_and(|layer| layer.command.is_none()) {
-            self.mover.drop_layer();
+        // A paused owner goes on to its end later, and that lies where something has been added.
+        let keeps = |layer: &Layer<P::Plan>| self.is_paused() && layer.added.position != layer.taken;
+        let kept = self.mover.layer().is_some_and(keeps);
+        let is_idle = self.mover.layer().is_some_and(|layer| layer.command.is_none());
+        if still && is_idle && (was_busy || !kept) {
+            if !kept {
+                self.mover.drop_layer();
+            }
             self.stir();
             if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
                 self.enter(AxisEvent::MotionDone);
