@@ -170,7 +170,9 @@ impl<P: Planner> Axis<P> {
         self.note_passing(&mut owner);
         owner.is_behind |= owner.halted && self.is_past_its_end(&owner);
         self.override_entry(&mut owner);
-        self.replan(owner, scope)?;
+        if !self.leaves_to_next(owner, scope) {
+            self.replan(owner, scope)?;
+        }
         self.end_orphan();
         Ok(())
     }

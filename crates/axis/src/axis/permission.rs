@@ -204,6 +204,16 @@ impl<P: Planner> Axis<P> {
         if self.has_lost_master() {
             return;
         }
+        owner.is_behind |= self.is_past_its_end(&owner);
+        if owner.is_behind {
+            let on_its_way = Entry {
+                paused: false,
+                ..owner
+            };
+            if self.leaves_to_next(on_its_way, scope) {
+                return;
+            }
+        }
         if owner.turns == 0 {
             self.look_through(&mut owner, self.mover.base().position, 0);
             self.stay_in_direction(&mut owner, &self.mover.base());

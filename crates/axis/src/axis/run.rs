@@ -7,7 +7,7 @@
 //! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; B2, B14. `docs/buffering.md` tells which
 //! commands are one motion.
 
-use super::commands::{Entry, ROUNDING, Run};
+use super::commands::{Entry, ROUNDING, Run, Work};
 use super::mover::scans_to_goal;
 use super::supervision::Arrival;
 use super::through::is_braking;
@@ -224,7 +224,31 @@ impl<P: Planner> Axis<P> {
         let beyond = self.mover.setpoint().position - end;
         let target = self.end_of_leg(next, end, self.mover.last_velocity() > 0.0);
         let is_onward = target.is_some_and(|target| (target - end) * beyond > 0.0);
-        self.mover.layer().is_none() && owner.passage.wanted > 0.0 && next.mode.blends() && is_onward
+        // What is paused was to come to rest wherever it is.
+        let was_to_pass = owner.passage.wanted > 0.0 || owner.paused;
+        self.mover.layer().is_none() && was_to_pass && next.mode.blends() && is_onward
+    }
+
+    /// Hands over to the next command if `owner`, the present one as it is to go on, has been held up behind its end and is no one motion
+    /// with that. What is barred waits, and what may need a run-up does not begin here.
+    pub(super) fn leaves_to_next(&mut self, mut owner: Entry, scope: &mut Scope<'_>) -> bool {
+        let (true, Some(end), Some(next)) = (owner.is_behind && !owner.halted, owner.end, self.queue.first())
+        else {
+            return false;
+        };
+        let here = self.mover.base().position;
+        let is_move = matches!(next.work, Work::Position(_) | Work::Distance(_));
+        let target = self.end_of_leg(next, end, here > end);
+        self.look_through(&mut owner, here, 0);
+        if !is_move
+            || owner.run.count > 0
+            || target.is_none_or(|target| self.way_barred(target - here).is_some())
+        {
+            return false;
+        }
+        self.own(owner);
+        self.hand_over(end, scope);
+        self.owner.is_none_or(|now| now.id != owner.id)
     }
 
     /// Where the last of what is one motion with `first`, which is at the head of the buffer, ends (u).
