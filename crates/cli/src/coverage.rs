@@ -5,6 +5,7 @@ use crate::exit::Failure;
 use standstill_script::run::Counted;
 use standstill_script::suite::{self, Allowed};
 use standstill_trace::file::{replace, replace_beside};
+use standstill_trace::printable;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -248,15 +249,9 @@ fn table(file: &str, text: &str, counts: &Counts) -> String {
 }
 
 fn escaped(text: &str) -> String {
-    let visible = text.chars().map(|c| {
-        if c.is_control() && c != '\t' {
-            '\u{FFFD}'
-        } else {
-            c
-        }
-    });
+    let pieces: Vec<_> = text.split('\t').map(printable).collect();
     let mut out = String::new();
-    for c in visible {
+    for c in pieces.join("\t").chars() {
         match c {
             '&' => out.push_str("&amp;"),
             '<' => out.push_str("&lt;"),

@@ -1,7 +1,9 @@
 //! The faults of a script, and how they are shown.
 
 use crate::model::Span;
-use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet, normalize_untrusted_str};
+use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Origin, Renderer, Snippet};
+use standstill_trace::{printable, printable_lines};
+use std::borrow::Cow;
 use std::fmt;
 
 macro_rules! codes {
@@ -161,17 +163,16 @@ pub(crate) struct File {
 }
 
 impl File {
-    /// `text` without a byte order mark.
+    /// A text without a byte order mark; its name has `/` on every system.
     pub(crate) fn new(name: &str, text: &str, start: usize) -> Self {
         Self {
-            // The same on every system; see the contract's rule for paths.
-            name: name.replace('\\', "/"),
+            name: name.to_owned(),
             text: text.to_owned(),
             start,
         }
     }
 
-    /// As given, with `/`.
+    /// As given.
     pub(crate) fn name(&self) -> &str {
         &self.name
     }
@@ -192,6 +193,11 @@ impl File {
         self.start + self.text.len() + 1
     }
 
+    /// Its text and its name, for an excerpt.
+    fn snippet(&self) -> Snippet<'_, Annotation<'_>> {
+        Snippet::source(without_joiners(&self.text)).path(printable(&self.name))
+    }
+
     /// A place of all files as one of this file.
     fn inner(&self, span: Span) -> std::ops::Range<usize> {
         span.start.saturating_sub(self.start)..span.end.saturating_sub(self.start)
@@ -210,6 +216,9 @@ pub struct ScriptError {
 
 /// Most diagnostics that are rendered in full; the rest is only counted.
 pub const DIAGNOSTICS_SHOWN: usize = 20;
+
+/// Most bytes of a line that is shown with its message: drawing it takes a time of its length.
+const LINE_SHOWN: usize = 20_000;
 
 /// Most characters of a name or value that a message quotes.
 const SHOWN_CHARS: usize = 60;
@@ -246,12 +255,12 @@ impl ScriptError {
         file(&self.files, place)
     }
 
-    /// Name of the file a place is in, with `/`.
+    /// Name of the file a place is in, as given.
     pub fn file_of(&self, place: Span) -> &str {
         &self.file(place).name
     }
 
-    /// The file's name as given, with `/`.
+    /// The file's name as given.
     pub fn file_name(&self) -> &str {
         self.file_of(Span::default())
     }
@@ -277,9 +286,13 @@ impl ScriptError {
             .collect();
         let hidden = self.diagnostics.len().saturating_sub(DIAGNOSTICS_SHOWN);
         if hidden > 0 {
-            out.push(format!("error: {hidden} more errors in {}", self.file_name()));
+            out.push(format!(
+                "error: {hidden} more errors in {}",
+                printable(self.file_name())
+            ));
         }
-        out.extend(self.reports.iter().map(standstill_st::Report::render));
+        let reports = self.reports.iter().map(standstill_st::Report::render);
+        out.extend(reports.map(|report| printable_lines(&report).into_owned()));
         out.join("\n\n")
     }
 }
@@ -291,42 +304,65 @@ pub(crate) fn rendered(
     kind: &str,
     diagnostic: &Diagnostic,
 ) -> String {
-    // They contain pieces of the script, which must not reach a terminal as control characters.
-    let visible = normalize_untrusted_str;
-    let title = level.clone().primary_title(visible(&diagnostic.message)).id(kind);
+    // They contain pieces of the script, which must not reach a terminal as they are.
+    let title = level
+        .clone()
+        .primary_title(printable_lines(&diagnostic.message))
+        .id(kind);
+    let spans = diagnostic.related.iter().map(|related| related.0);
+    let is_long = diagnostic.span.into_iter().chain(spans).any(|span| {
+        let file = file(files, span);
+        longest_line(&file.text, file.inner(span)) > LINE_SHOWN
+    });
     let mut group = match diagnostic.span {
-        None => Group::with_title(title).element(Origin::path(file(files, Span::default()).name.as_str())),
+        Some(span) if is_long => {
+            let (line, column) = place_of(files, span);
+            let origin = Origin::path(printable(&file(files, span).name));
+            let related = diagnostic.related.iter().map(|related| &related.1);
+            let labels = std::iter::once(&diagnostic.label).chain(related);
+            let notes = labels.filter(|label| !label.is_empty());
+            let group = Group::with_title(title).element(origin.line(line).char_column(column));
+            group.elements(notes.map(|label| Level::NOTE.message(printable(label))))
+        }
+        None => Group::with_title(title).element(Origin::path(printable(&file(files, Span::default()).name))),
         Some(span) => {
             let found = file(files, span);
             let mut primary = AnnotationKind::Primary.span(found.inner(span));
             if !diagnostic.label.is_empty() {
-                primary = primary.label(visible(&diagnostic.label));
+                primary = primary.label(printable(&diagnostic.label));
             }
-            let own = Snippet::source(found.text.as_str())
-                .path(found.name.as_str())
-                .annotation(primary);
+            let own = found.snippet().annotation(primary);
             match diagnostic.related.as_deref() {
                 None => title.element(own),
                 Some((span, label)) => {
                     let other = file(files, *span);
                     let context = AnnotationKind::Context
                         .span(other.inner(*span))
-                        .label(visible(label));
+                        .label(printable(label));
                     if other.start == found.start {
                         title.element(own.annotation(context))
                     } else {
-                        let other = Snippet::source(other.text.as_str()).path(other.name.as_str());
-                        title.element(own).element(other.annotation(context))
+                        title.element(own).element(other.snippet().annotation(context))
                     }
                 }
             }
         }
     };
     if let Some(help) = &diagnostic.help {
-        group = group.element(Level::HELP.message(visible(help)));
+        group = group.element(Level::HELP.message(printable_lines(help)));
     }
     // A fixed width, so that long lines are cut in the same way everywhere.
     Renderer::plain().term_width(140).render(&[group])
+}
+
+/// The renderer drops a joiner, as if it were not there. Both have three bytes, so places stay.
+fn without_joiners(text: &str) -> Cow<'_, str> {
+    const JOINER: char = '\u{200d}';
+    if text.contains(JOINER) {
+        Cow::Owned(text.replace(JOINER, "\u{fffd}"))
+    } else {
+        Cow::Borrowed(text)
+    }
 }
 
 /// The file a place is in.
@@ -349,6 +385,18 @@ pub(crate) fn place_of(files: &[File], span: Span) -> (usize, usize) {
     line_column(&file.text, file.inner(span).start)
 }
 
+/// The length of the longest line that a piece of a text is in.
+fn longest_line(text: &str, piece: std::ops::Range<usize>) -> usize {
+    let before = text.get(..piece.start).unwrap_or_default();
+    let behind = text.get(piece.end..).unwrap_or_default();
+    let start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    let end = behind
+        .find('\n')
+        .map_or(text.len(), |newline| piece.end + newline);
+    let lines = text.get(start..end).unwrap_or_default().split('\n');
+    lines.map(str::len).max().unwrap_or(0)
+}
+
 /// Line and column of byte `offset`, both from 1; the column counts characters.
 pub(crate) fn line_column(text: &str, offset: usize) -> (usize, usize) {
     let before = text.get(..offset).unwrap_or(text);
@@ -357,10 +405,10 @@ pub(crate) fn line_column(text: &str, offset: usize) -> (usize, usize) {
     (line, before[line_start..].chars().count() + 1)
 }
 
-/// A piece of the script inside a sentence: in backticks, cut if long.
+/// A piece of the script inside a sentence: in one line, in backticks, cut if long.
 pub(crate) fn quoted(text: &str) -> String {
     match text.char_indices().nth(SHOWN_CHARS) {
-        None => ["`", text, "`"].concat(),
-        Some((end, _)) => ["`", &text[..end], "..`"].concat(),
+        None => ["`", &printable(text), "`"].concat(),
+        Some((end, _)) => ["`", &printable(&text[..end]), "..`"].concat(),
     }
 }

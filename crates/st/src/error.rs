@@ -283,7 +283,6 @@ impl Report {
 
     fn group<'a>(&'a self, diagnostic: &Diagnostic) -> Group<'a> {
         // They contain pieces of the source, which must not reach a terminal as control characters.
-        let visible = normalize_untrusted_str;
         let level = match diagnostic.severity {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
@@ -291,7 +290,7 @@ impl Report {
         let title = level
             .primary_title(visible(&diagnostic.message))
             .id(diagnostic.code.name());
-        let file = self.file_name(diagnostic.span);
+        let file = in_one_line(self.file_name(diagnostic.span));
         let mut group = match self.sources.excerpt(diagnostic.span) {
             None => {
                 let position = self.sources.position(diagnostic.span.start);
@@ -303,7 +302,9 @@ impl Report {
                 if !diagnostic.label.is_empty() {
                     primary = primary.label(visible(&diagnostic.label));
                 }
-                let own = Snippet::source(text).line_start(line as usize).path(file);
+                let own = Snippet::source(without_joiners(text))
+                    .line_start(line as usize)
+                    .path(file);
                 title.element(own.annotation(primary))
             }
         };
@@ -311,9 +312,9 @@ impl Report {
             group = match self.sources.excerpt(*span) {
                 Some((text, line, range)) => {
                     let context = AnnotationKind::Context.span(range).label(visible(label));
-                    let path = self.file_name(*span);
+                    let path = in_one_line(self.file_name(*span));
                     group.element(
-                        Snippet::source(text)
+                        Snippet::source(without_joiners(text))
                             .line_start(line as usize)
                             .path(path)
                             .annotation(context),
@@ -336,6 +337,21 @@ impl fmt::Display for Report {
 }
 
 impl std::error::Error for Report {}
+
+/// A text in which control characters and directions of writing can be seen.
+fn visible(text: &str) -> String {
+    normalize_untrusted_str(&without_joiners(text))
+}
+
+/// The same of the name of a file.
+fn in_one_line(name: &str) -> String {
+    visible(name).replace('\n', "\u{240a}")
+}
+
+/// The renderer drops a joiner, as if it were not there. Both have three bytes, so places stay.
+fn without_joiners(text: &str) -> String {
+    text.replace('\u{200d}', "\u{fffd}")
+}
 
 /// A piece of the source inside a sentence: in backticks, cut if long.
 pub(crate) fn quoted(text: &str) -> String {

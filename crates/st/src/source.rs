@@ -68,6 +68,11 @@ struct File {
     lines: Vec<u32>,
 }
 
+/// The bytes of all of them.
+pub(crate) fn total(sources: &[Source<'_>]) -> usize {
+    sources.iter().map(|source| source.bytes.len()).sum()
+}
+
 /// The files of a project.
 #[derive(Clone, Debug)]
 pub struct Sources {
@@ -80,11 +85,11 @@ impl Sources {
         let mut files = Vec::new();
         let mut wrong = Vec::new();
         let mut start = 0_u32;
-        let total: usize = sources.iter().map(|source| source.bytes.len()).sum();
+        let total = total(sources);
         for source in sources {
             let bytes = source.bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(source.bytes);
+            let bytes: &[u8] = if total > SOURCES_MOST { &[] } else { bytes };
             let (text, bad) = match std::str::from_utf8(bytes) {
-                _ if total > SOURCES_MOST => (String::new(), None),
                 Ok(text) => (text.to_owned(), None),
                 Err(error) => {
                     let good = bytes.get(..error.valid_up_to()).unwrap_or_default();
@@ -110,7 +115,7 @@ impl Sources {
             let starts = text.bytes().zip(1..).filter(|(byte, _)| *byte == b'\n');
             let lines = std::iter::once(0).chain(starts.map(|(_, at)| at)).collect();
             files.push(File {
-                name: source.name.replace('\\', "/"),
+                name: source.name.to_owned(),
                 text,
                 start,
                 lines,

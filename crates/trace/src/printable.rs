@@ -2,12 +2,14 @@
 //!
 //! Titles, units, names, texts of guests and paths come from the author of the script. A control
 //! character in them could overwrite the screen. A line break could forge a line. A bidirectional
-//! override could show a text in another order than it is read in.
+//! override could show a text in another order than it is read in. Two names that differ in an invisible
+//! character would look the same.
 
 use std::borrow::Cow;
 
 /// `text` as one line with only visible characters: control characters, line and paragraph separators,
-/// and those that change the direction of writing become escapes such as `\u{1b}`.
+/// those that change the direction of writing and those that nothing is shown for become escapes such as
+/// `\u{1b}`.
 #[must_use]
 pub fn printable(text: &str) -> Cow<'_, str> {
     escaped(text, is_hidden)
@@ -34,15 +36,25 @@ fn escaped(text: &str, hidden: impl Fn(char) -> bool) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// Whether a character has another effect than to be shown.
+/// Whether a character has another effect than to be shown, or cannot be seen.
 fn is_hidden(character: char) -> bool {
+    // Most texts have no others.
+    if character.is_ascii() {
+        return character.is_ascii_control();
+    }
     character.is_control()
         || matches!(
             character,
             // Line and paragraph separators.
             '\u{2028}' | '\u{2029}'
-            // Directions of writing: marks, embeddings, overrides, isolates.
-            | '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
+            // Marks between the lines of a text.
+            | '\u{fff9}'..='\u{fffb}'
+            // What Unicode lets a font show nothing for (Default_Ignorable_Code_Point): joiners, marks of no width,
+            // directions of writing, fillers, choices of a variant, tags.
+            | '\u{ad}' | '\u{34f}' | '\u{61c}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}'
+            | '\u{180b}'..='\u{180f}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
+            | '\u{3164}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}' | '\u{ffa0}' | '\u{fff0}'..='\u{fff8}'
+            | '\u{1bca0}'..='\u{1bca3}' | '\u{1d173}'..='\u{1d17a}' | '\u{e0000}'..='\u{e0fff}'
         )
 }
 
@@ -63,6 +75,10 @@ mod tests {
         assert_eq!(
             printable("\u{202e}x\u{2066}\u{2028}\u{85}\u{7f}\u{9b}"),
             "\\u{202e}x\\u{2066}\\u{2028}\\u{85}\\u{7f}\\u{9b}"
+        );
+        assert_eq!(
+            printable("s\u{200b}e\u{200d}t\u{feff}\u{e0041}\u{fe0f}\u{ad}"),
+            "s\\u{200b}e\\u{200d}t\\u{feff}\\u{e0041}\\u{fe0f}\\u{ad}"
         );
         assert_eq!(printable_lines("a\nb\u{7}\r\n"), "a\nb\\u{7}\\u{d}\n");
         for plain in ["", "Größe (µm), 速度 ≤ 5", "\\u{1b}"] {

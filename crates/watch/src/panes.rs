@@ -10,7 +10,7 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Paragraph};
 use standstill_axis::AxisState;
 use standstill_script::Standing;
-use standstill_trace::{Cell, shortest};
+use standstill_trace::{Cell, printable, shortest};
 
 /// Characters of a bar.
 const BAR: usize = 8;
@@ -18,11 +18,11 @@ const BAR: usize = 8;
 /// The first characters of a text that fit into the room; two points replace the rest.
 pub(crate) fn cut(text: &str, room: usize) -> String {
     // A control character would move the cursor.
-    let clean = text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c });
+    let text = printable(text);
     if text.chars().count() <= room {
-        return clean.collect();
+        return text.into_owned();
     }
-    let kept = clean.take(room.saturating_sub(2)).collect::<String>();
+    let kept: String = text.chars().take(room.saturating_sub(2)).collect();
     if room < 2 { kept } else { format!("{kept}..") }
 }
 

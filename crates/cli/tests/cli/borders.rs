@@ -10,7 +10,7 @@ fn hostile() -> String {
     SCRIPT
         .replace(
             "One short move",
-            r"\u001b[2Jmove\nhostile.scan.json: passed, 9 of 9 claims\u2028ok\r\u202e",
+            r"\u001b[2Jmove\nhostile.scan.json: passed, 9 of 9 claims\u2028ok\r\u202e\u200b\u200d\u2060\ufeff\u00ad\ufe0f",
         )
         .replace(r#""unit": "mm""#, r#""unit": "mm\u001b]0;x\u0007\nok  a""#)
         .replace("\"at\": 21", "\"at\": 19")
@@ -22,7 +22,11 @@ fn is_plain(what: &str, text: &str) {
     let hidden = |character: &char| {
         *character != '\n'
             && (character.is_control()
-                || matches!(character, '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}'))
+                || matches!(character, '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}')
+                || matches!(
+                    character,
+                    '\u{200b}'..='\u{200f}' | '\u{2060}' | '\u{feff}' | '\u{ad}' | '\u{fe0f}'
+                ))
     };
     assert_eq!(text.chars().find(hidden), None, "{what}: {text:?}");
     let forged = |line: &&str| line.trim_start().starts_with("ok  a") || line.contains("claims\u{2028}");
@@ -81,6 +85,97 @@ fn what_a_script_says_is_one_line_and_can_be_seen_wherever_it_is_printed() {
     assert_eq!(ended.status, 1);
     assert!(ended.out.contains("+Exe\\u{1b}[2Jcute"), "{}", ended.out);
     is_plain("difference", &ended.out);
+}
+
+#[test]
+fn names_that_look_alike_are_told_apart() {
+    let folder = scratch("borders_invisible");
+    for hidden in [
+        '\u{200b}',
+        '\u{200d}',
+        '\u{2060}',
+        '\u{feff}',
+        '\u{202e}',
+        '\u{e0041}',
+    ] {
+        let key = format!("\"sc{hidden}ans\"");
+        write(&folder, "key.scan.json", &SCRIPT.replace("\"scans\"", &key));
+        let refused = standstill(&folder, &["run", "key.scan.json"]);
+        assert_eq!(refused.status, 3);
+        let told = format!("unknown key `sc{}ans`", hidden.escape_unicode());
+        assert!(refused.err.contains(&told), "{}", refused.err);
+        is_plain("messages", &refused.err);
+    }
+}
+
+#[test]
+fn a_line_without_end_is_told_by_its_place() {
+    let folder = scratch("borders_line");
+    let line = format!("{{\"a\": \"{}\"}}", "long ".repeat(2_000_000));
+    write(&folder, "line.scan.json", &line);
+    let begin = Instant::now();
+    let refused = standstill(&folder, &["run", "line.scan.json"]);
+    assert_eq!(refused.status, 3);
+    let told = "error[unknown_key]: unknown key `a` in a script\n--> line.scan.json:1:2";
+    assert!(refused.err.contains(told), "{}", refused.err);
+    assert!(refused.err.len() < 10_000, "{} bytes", refused.err.len());
+    assert!(begin.elapsed() < Duration::from_secs(10));
+}
+
+/// Names that Windows does not have.
+#[cfg(unix)]
+mod names {
+    use super::*;
+
+    /// As given, and as it is printed.
+    const NAMES: [(&str, &str); 3] = [
+        (r"a\b", r"a\b"),
+        ("a\nok  a", r"a\u{a}ok  a"),
+        ("a\u{1b}[2J\u{200b}", r"a\u{1b}[2J\u{200b}"),
+    ];
+
+    #[test]
+    fn a_file_has_the_name_that_was_typed_in_every_message() {
+        let folder = scratch("borders_file_names");
+        let wrong = SCRIPT.replace("\"Axis\": \"X\"", "\"Axis\": \"Z\"");
+        let includes = r#"{"standstill": 1, "axes": {"Y": {"limit": {}}}}"#;
+        for (name, printed) in NAMES {
+            let (script, source) = (format!("{name}.scan.json"), format!("{name}.st"));
+            write(&folder, &script, &wrong);
+            write(&folder, &source, "PROGRAM p\nx := 1;\nEND_PROGRAM\n");
+            for (command, file, ending) in [
+                (&["run"][..], &script, ".scan.json:15:"),
+                (&["test"], &script, ".scan.json:15:"),
+                (&["st", "check"], &source, ".st:2:1"),
+                (&["st", "lint"], &source, ".st:2:1"),
+            ] {
+                let ended = standstill(&folder, &[command, &[file.as_str()]].concat());
+                assert_eq!(ended.status, 3, "{}", ended.err);
+                let told = ended.out + &ended.err;
+                assert!(
+                    told.contains(&format!("--> {printed}{ending}")),
+                    "{command:?}: {told}"
+                );
+                is_plain("messages", &told);
+            }
+            // A file that the script names.
+            let machine = format!("{}.machine.json", name.replace('\\', ""));
+            write(&folder, &machine, includes);
+            let include = serde_json::json!(machine);
+            let key = "\"standstill\": 1,";
+            let script = SCRIPT.replace(key, &format!("{key} \"include\": {include},"));
+            write(&folder, "includes.scan.json", &script);
+            let ended = standstill(&folder, &["run", "includes.scan.json"]);
+            assert_eq!(ended.status, 3);
+            let printed = printed.replace(r"a\b", "ab");
+            assert!(
+                ended.err.contains(&format!("--> {printed}.machine.json:1:")),
+                "{}",
+                ended.err
+            );
+            is_plain("messages", &ended.err);
+        }
+    }
 }
 
 #[cfg(unix)]

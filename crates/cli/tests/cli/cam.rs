@@ -640,7 +640,7 @@ fn a_bad_file_of_a_script_is_told_with_its_own_line_and_column_and_nothing_runs(
         ),
         (
             b"Master,Slave\n0,0\n90,\x1b[31m\n",
-            "knife.csv:3:4: `[31m` is no number for `Slave` (LREAL)",
+            "knife.csv:3:4: `\\u{1b}[31m` is no number for `Slave` (LREAL)",
             "write a finite number",
         ),
         (

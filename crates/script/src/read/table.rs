@@ -9,6 +9,7 @@ use crate::csv;
 use crate::error::{Code, Diagnostic, quoted};
 use crate::model::NamedTable;
 use standstill_fb::{TableInfo, TableRef, Value};
+use standstill_trace::printable;
 
 impl Reader {
     /// The records at a pin of a table's type; they join the numbers of all tables.
@@ -102,6 +103,7 @@ impl Reader {
         let name = self.text(node, "`csv`")?;
         let rows = match load(name) {
             Ok(bytes) => csv::read(&bytes, &info).map_err(|fault| {
+                let name = printable(name);
                 let message = format!("{name}:{}:{}: {}", fault.line, fault.column, fault.message);
                 (message, Some(fault.help))
             }),
@@ -110,7 +112,6 @@ impl Reader {
         match rows {
             Ok(rows) => self.placed(rows),
             Err((message, help)) => {
-                let message: String = message.chars().filter(|c| !c.is_control()).collect();
                 self.report(Diagnostic::new(Code::BadValue, node.span, message).maybe_help(help));
                 None
             }

@@ -109,8 +109,21 @@ fn columns_count_characters_and_crlf_counts_as_one_line_end() {
 fn strange_names_cannot_disturb_the_terminal() {
     let text = GOOD.replacen("\"GO\": false", "\"\\u001b[2J\": false", 1);
     let error = refused(&text).render();
-    assert!(error.contains("\u{241b}[2J"), "{error}");
+    assert!(error.contains("`\\u{1b}[2J` cannot be a name"), "{error}");
     assert!(!error.contains('\u{1b}'), "{error}");
+    // Nor forge a line, or look like another name.
+    for (hidden, shown) in [
+        ("\\nerror", "\\u{a}error"),
+        ("\\u200d", "\\u{200d}"),
+        ("\\ufeff", "\\u{feff}"),
+    ] {
+        let text = GOOD.replacen("\"GO\": false", &format!("\"G{hidden}O\": false"), 1);
+        let error = refused(&text).render();
+        assert!(
+            error.contains(&format!("`G{shown}O` cannot be a name")),
+            "{error}"
+        );
+    }
 }
 
 /// A script of `scans` scans and `inputs` inputs, and the codes of its errors.

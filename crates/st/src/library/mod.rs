@@ -2,7 +2,7 @@
 
 pub(crate) mod blocks;
 
-use crate::source::Source;
+use crate::source::{SOURCES_MOST, Source, total};
 use crate::types::Elementary;
 
 macro_rules! functions {
@@ -132,6 +132,10 @@ pub(crate) fn conversion(name: &str) -> Option<(Option<&str>, Elementary)> {
 /// widths than INT, and conversions to strings and back. Each is included only if a source may name it,
 /// because checking them takes longer than checking a short program. Cost: linear in the sources.
 pub(crate) fn prelude(sources: &[Source<'_>]) -> String {
+    if total(sources) > SOURCES_MOST {
+        // They are refused unread.
+        return String::new();
+    }
     let counts = names(sources, &["CTU_", "CTD_", "CTUD_"]);
     let converts = names(sources, &["TO_STRING", "STRING_TO"]);
     let counters = if counts { counters() } else { String::new() };
