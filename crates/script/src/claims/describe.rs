@@ -212,11 +212,21 @@ fn comparison(rows: &Rows<'_>, signal: &Signal, comparison: &Comparison) -> Stri
     }
 }
 
+/// Whether a signal is an expression without a value in a scan, which counts as FALSE. Another failure of its claim says
+/// why it has none.
+fn faulted(rows: &Rows<'_>, signal: &Signal, scan: u64) -> bool {
+    let Signal::Formula(formula) = *signal else {
+        return false;
+    };
+    rows.truths.faults(formula).any(|(fault, _)| fault == scan)
+}
+
 /// The values a condition uses in a scan: `X.Velocity 50.1`, and the value it is compared with.
 pub(super) fn values(rows: &Rows<'_>, condition: &Condition, scan: u64) -> String {
-    let text = |signal| {
-        rows.cell(signal, scan)
-            .map_or_else(|| "nothing".to_owned(), cell_text)
+    let text = |signal: &Signal| match rows.cell(signal, scan) {
+        None => "nothing".to_owned(),
+        Some(_) if faulted(rows, signal, scan) => "no value".to_owned(),
+        Some(cell) => cell_text(cell),
     };
     let mut text_of_all = text(&condition.signal);
     if let Test::Compare(comparisons) = &condition.test {

@@ -5,6 +5,8 @@
 mod claims;
 mod subjects;
 
+pub(crate) use subjects::never_runs;
+
 use crate::advice;
 use crate::error::{Code, Diagnostic, File, file, place_of, rendered};
 use crate::model::{Script, Span, When};

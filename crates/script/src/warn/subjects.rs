@@ -115,7 +115,7 @@ fn claimed(claim: &Claim) -> Vec<Point> {
 }
 
 /// Whether a task has neither an interval nor an edge that starts it.
-fn never_runs(rows: &Rows<'_>, task: usize) -> bool {
+pub(crate) fn never_runs(rows: &Rows<'_>, task: usize) -> bool {
     let Some(task) = rows.script.tasks.get(task) else {
         return false;
     };

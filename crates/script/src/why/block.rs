@@ -24,6 +24,10 @@ impl Walk<'_> {
         let Some(found) = self.look.instance(instance) else {
             return Vec::new();
         };
+        if let Some(task) = self.look.idle_task(instance) {
+            let text = format!("{} is never called: its task {task} never runs", found.name);
+            return vec![Finding::new(Rank::Stopped, None, text)];
+        }
         match found.block.name {
             "MC_Power" => match self.look.axes_of(instance).first() {
                 Some(axis) => self.power(*axis, scan),

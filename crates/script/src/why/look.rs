@@ -5,6 +5,7 @@ use crate::claims::Verdict;
 use crate::model::{ClaimKind, Condition, Instance, Point, Script, Signal, Test, When, Wire};
 use crate::run::Rows;
 use crate::run::cells::point_name;
+use crate::warn::never_runs;
 use standstill_axis::ErrorId;
 use standstill_fb::{Group, PinType, Value};
 use standstill_trace::{Cell, Note, cell_text};
@@ -54,6 +55,17 @@ impl<'a> Look<'a> {
         let notes = notes.get(..end).unwrap_or_default();
         self.spend(notes.len() as u64);
         notes.iter().filter(move |note| note.subject == subject)
+    }
+
+    /// The task that would call an instance, if it never runs.
+    pub(super) fn idle_task(&self, instance: usize) -> Option<&'a str> {
+        let index = self.instance(instance)?.task;
+        let task = self.script().tasks.get(index)?;
+        // The rows are only read for such a task.
+        if task.single.is_some() {
+            self.spend(self.rows.count());
+        }
+        never_runs(&self.rows, index).then_some(task.name.as_str())
     }
 
     pub(super) fn script(&self) -> &'a Script {
