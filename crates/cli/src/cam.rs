@@ -1,9 +1,11 @@
 //! `standstill cam`: checks a table against its axes, draws it, and writes rows of the usual laws.
 
+use crate::apart;
 use crate::args::{Cam, CamCheckArguments, CamLaw, CamLawArguments, Outside};
 use crate::exit::{Exit, Failure};
 use crate::is_standard;
 use crate::json::{Object, list, number, string};
+use crate::limit;
 use crate::outcome;
 use standstill_picture as picture;
 use standstill_script::cam::{Asked, CamError, CamTable, Curve, Finding, Fit, Law, Lift, Stretch, csv, fit};
@@ -26,7 +28,10 @@ pub fn cam(what: &Cam, out: &mut dyn Write) -> Result<Exit, Failure> {
             svg,
             periodic,
             outside,
-        } => plot(file, svg, *periodic, outside),
+        } => {
+            apart::checked(&apart::written("--svg", Some(svg)), [split(file).0.as_path()])?;
+            plot(file, svg, *periodic, outside)
+        }
         Cam::Law(arguments) => law(arguments, out),
     }
 }
@@ -38,13 +43,19 @@ fn failure(error: CamError) -> Failure {
     }
 }
 
+/// The file, and the name of a table of a script behind `#`.
+fn split(file: &Path) -> (PathBuf, Option<&str>) {
+    match file.to_str().and_then(|file| file.rsplit_once('#')) {
+        Some((script, table)) if script.ends_with(EXTENSION) => (PathBuf::from(script), Some(table)),
+        _ => (file.to_owned(), None),
+    }
+}
+
 /// The table of a CSV file, or of a script.
 fn table(file: &Path, outside: &Outside) -> Result<CamTable, Failure> {
     let name = shown(file);
-    let (path, table) = match name.rsplit_once('#') {
-        Some((script, table)) if script.ends_with(EXTENSION) => (PathBuf::from(script), Some(table)),
-        _ => (file.to_owned(), None),
-    };
+    let (path, table) = split(file);
+    limit::doing(format!("reading {name}"));
     if path.to_string_lossy().ends_with(EXTENSION) {
         let (script, _) = read_file(&path, &[], &outside.allowed())?;
         return CamTable::of_script(&shown(&path), &script, table).map_err(failure);

@@ -4,6 +4,7 @@
 //! beside the program lets a fuzzer and a page call the reader of plan lines.
 #![forbid(unsafe_code)]
 
+mod apart;
 mod args;
 mod blocks;
 mod cam;
@@ -267,6 +268,13 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
                 svg: svg.as_deref(),
                 report: report.as_deref(),
             };
+            let writes = [
+                apart::written("--samples", samples.as_deref()),
+                apart::written("--svg", svg.as_deref()),
+                apart::written("--report", report.as_deref()),
+            ];
+            let reads = Some(file).filter(|file| !is_standard(file));
+            apart::checked(&writes.concat(), reads)?;
             with_lines(file, |lines, name| plan::plan_to_files(lines, name, files, out))
         }
         Command::ComparePlanners { cases } => {

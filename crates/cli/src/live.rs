@@ -18,6 +18,7 @@ pub use linux::live;
 #[cfg(target_os = "linux")]
 mod linux {
     use super::*;
+    use crate::apart;
     use crate::args;
     use crate::exit::complain;
     use crate::limit;
@@ -47,7 +48,11 @@ mod linux {
                 "--trace {name}: a trace is a .csv or a .jsonl file"
             )));
         }
+        let timing = apart::written("--timing", arguments.timing.as_deref());
+        let writes = [apart::trace(arguments.trace.as_deref()), timing];
+        apart::checked(&writes.concat(), [path.as_path()])?;
         let name = shown(path);
+        limit::doing(format!("reading {name}"));
         let (script, _) = suite::read_file(path, set, &outside.allowed()).map_err(failure)?;
         let cycle = script.cycle_ns.unsigned_abs();
         if cycle != *period {

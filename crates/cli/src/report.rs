@@ -1,6 +1,7 @@
 //! `standstill report`, and the files that `run` writes beside its text: a trace as a page, a picture, a
 //! waveform.
 
+use crate::apart;
 use crate::exit::{Exit, Failure, complain};
 use crate::limit;
 use standstill_picture as picture;
@@ -38,6 +39,12 @@ pub fn report(traces: &[PathBuf], targets: Targets<'_>) -> Result<Exit, Failure>
             "--svg and --vcd take one trace; -o lays several over each other",
         ));
     }
+    let writes = [
+        apart::written("--output", targets.html),
+        apart::written("--svg", targets.svg),
+        apart::written("--vcd", targets.vcd),
+    ];
+    apart::checked(&writes.concat(), traces.iter().map(PathBuf::as_path))?;
     let loaded: Vec<(String, Loaded)> = traces.iter().map(|path| load(path)).collect::<Result<_, _>>()?;
     let sources: Vec<_> = loaded.iter().map(|(name, loaded)| source(name, loaded)).collect();
     write_all(&sources, &[], targets)?;

@@ -1,5 +1,6 @@
 //! `standstill run`: one or more scripts, shown to a person.
 
+use crate::apart;
 use crate::args::RunArguments;
 use crate::exit::{Exit, Failure, complain, go_on};
 use crate::failing;
@@ -18,7 +19,7 @@ use standstill_script::{Code, Outcome, ScriptError, keeps_rows, run_with, warnin
 use standstill_trace::csv::Dialect;
 use standstill_trace::{Header, Trace, digest, events_text, extremes_text, file};
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Width of drawings (characters). It does not follow the terminal: the output is the same everywhere.
 const WIDTH: usize = 100;
@@ -111,6 +112,14 @@ fn checked(arguments: &RunArguments) -> Result<Dialect, Failure> {
             "--trace {name}: a trace is a .csv or a .jsonl file"
         )));
     }
+    let writes = [
+        apart::trace(trace.as_deref()),
+        apart::written("--report", report.as_deref()),
+        apart::written("--svg", svg.as_deref()),
+        apart::written("--vcd", vcd.as_deref()),
+    ];
+    let reads = scripts.iter().chain(&arguments.axes);
+    apart::checked(&writes.concat(), reads.map(PathBuf::as_path))?;
     let asks = arguments.delimiter.is_some() || arguments.decimal_comma;
     if asks && trace.as_ref().is_some_and(|path| !file::is_csv(path)) {
         return Err(Failure::usage(

@@ -1,14 +1,16 @@
 //! `standstill st`: the compiler of Structured Text, its messages and its modules.
 
+use crate::apart;
 use crate::args::StSources;
 use crate::exit::{Exit, Failure, complain};
 use crate::json::{Object, list, string};
+use crate::{limit, outcome};
 use standstill_script::suite::shown;
 use standstill_st::{
     Diagnostic, Dialect, FAULT_SITE, FAULT_VALUE, LOOP_SITE, Options, Report, Severity, Source, Symbols,
     Value,
 };
-use standstill_trace::file::replace_beside;
+use standstill_trace::file::{replace, replace_beside};
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -20,10 +22,20 @@ const SYMBOLS_MOST: usize = 65_536;
 fn read(paths: &[PathBuf]) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let read = |path: &PathBuf| {
         let name = shown(path);
+        limit::doing(format!("reading {name}"));
         let bytes = fs::read(path).map_err(|error| Failure::io(&name, &error))?;
         Ok((name, bytes))
     };
     paths.iter().map(read).collect()
+}
+
+/// The files in a few words.
+fn named(files: &[(String, Vec<u8>)]) -> String {
+    match files {
+        [(name, _)] => name.clone(),
+        [(first, _), others @ ..] => format!("{first} and {} more", others.len()),
+        [] => "nothing".to_owned(),
+    }
 }
 
 fn sources(files: &[(String, Vec<u8>)]) -> Vec<Source<'_>> {
@@ -99,6 +111,7 @@ fn diagnostic(report: &Report, it: &Diagnostic) -> String {
 pub fn lay_out(paths: &[PathBuf], check: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
     let mut exit = Exit::Passed;
     for ((name, bytes), path) in read(paths)?.iter().zip(paths) {
+        limit::doing(format!("laying out {name}"));
         let canonical = standstill_st::format(name, bytes)
             .map_err(|report| Failure::Told(Exit::BadInput, report.render()))?;
         if canonical.as_bytes() == bytes {
@@ -120,6 +133,12 @@ pub fn build(
     axes: &[String],
     out: &mut dyn Write,
 ) -> Result<Exit, Failure> {
+    let table = output.with_extension("symbols.json");
+    let writes = [
+        apart::written("--output", Some(output)),
+        apart::written("the file of symbols", Some(&table)),
+    ];
+    apart::checked(&writes.concat(), given.files.iter().map(PathBuf::as_path))?;
     let files = read(&given.files)?;
     let options = Options {
         program: given.program.clone(),
@@ -127,29 +146,16 @@ pub fn build(
         dialect: dialect(given.dialect.as_deref())?,
         ..Options::default()
     };
+    limit::doing(format!("compiling {}", named(&files)));
     let compiled = standstill_st::compile(&sources(&files), &options)
         .map_err(|report| Failure::Told(Exit::BadInput, report.render()))?;
     if !compiled.report.diagnostics().is_empty() {
         complain(&compiled.report.render());
     }
-    let table = output.with_extension("symbols.json");
-    replace(&table, format!("{}\n", symbols(&compiled.symbols)).as_bytes())?;
-    replace(output, &compiled.wasm)?;
+    replace(&table, |file| writeln!(file, "{}", symbols(&compiled.symbols)))?;
+    replace(output, |file| file.write_all(&compiled.wasm))?;
     writeln!(out, "{}\n{}", shown(output), shown(&table))?;
     Ok(Exit::Passed)
-}
-
-/// Writes a file whole or not at all: beside its place first.
-fn replace(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".partial");
-    let partial = path.with_file_name(name);
-    let written = fs::write(&partial, bytes).and_then(|()| fs::rename(&partial, path));
-    written.map_err(|error| {
-        // It exists only if the disk was full or the place is a folder.
-        let _gone = fs::remove_file(&partial);
-        Failure::io(&shown(path), &error)
-    })
 }
 
 fn symbols(symbols: &Symbols) -> String {

@@ -1,5 +1,6 @@
 //! `standstill sweep`: a script with many values of its parameters.
 
+use crate::apart;
 use crate::args::SweepArguments;
 use crate::exit::{Exit, Failure, complain};
 use crate::limit;
@@ -10,12 +11,16 @@ use standstill_trace::digest::fnv1a;
 use standstill_trace::file::replace;
 use std::fmt;
 use std::io::Write;
+use std::path::PathBuf;
 use std::thread;
 use std::time::{Duration, Instant};
 
 /// Runs the sweep, or merges its shards, and prints how many cases passed.
 pub fn sweep(arguments: &SweepArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
     limit::doing(shown(&arguments.sweep));
+    let reads = std::iter::once(&arguments.sweep).chain(&arguments.merge);
+    let writes = apart::written("--output", arguments.output.as_deref());
+    apart::checked(&writes, reads.map(PathBuf::as_path))?;
     let job = Job::load(&arguments.sweep, &arguments.outside.allowed())?;
     let (rows, part) = if arguments.merge.is_empty() {
         computed(&job, arguments)?

@@ -1,5 +1,6 @@
 //! `standstill test`: scripts as tests of their claims and goldens.
 
+use crate::apart;
 use crate::args::{Golden, SCRIPTS};
 use crate::cores;
 use crate::coverage::Coverage;
@@ -185,6 +186,12 @@ fn told(wish: Wish<'_>, first: &BTreeSet<String>, out: &mut dyn Write) -> Result
             "--accept writes goldens, and --golden none asks for none",
         ));
     }
+    let writes = [
+        apart::written("--junit", wish.junit),
+        apart::written("--coverage", wish.coverage),
+    ];
+    let reads = wish.paths.iter().map(PathBuf::as_path).chain(wish.recording);
+    apart::checked(&writes.concat(), reads)?;
     let tally = match wish.recording {
         Some(recording) => on_recording(wish, recording, out)?,
         None => judged(wish, first, out)?,

@@ -263,6 +263,33 @@ mod links {
     }
 
     #[test]
+    fn a_module_is_written_through_no_link() {
+        let folder = scratch("borders_module");
+        write(&folder, "outside", SECRET);
+        write(
+            &folder,
+            "p.st",
+            "PROGRAM p\nVAR x : INT; END_VAR\nx := 1;\nEND_PROGRAM\n",
+        );
+        for name in [
+            "p.wasm",
+            "p.wasm.partial",
+            "p.symbols.json",
+            "p.symbols.json.partial",
+        ] {
+            symlink("outside", folder.join(name)).expect("a link");
+        }
+        let built = standstill(&folder, &["st", "build", "p.st", "-o", "p.wasm"]);
+        assert_eq!(built.status, 0, "{}", built.err);
+        is_untouched(&folder, "outside");
+        assert!(
+            fs::read(folder.join("p.wasm"))
+                .expect("a module")
+                .starts_with(b"\0asm")
+        );
+    }
+
+    #[test]
     fn pages_stay_below_their_folder_and_scripts_that_are_links_are_not_laid_out() {
         let folder = scratch("borders_pages");
         for name in ["suite", "elsewhere", "pages"] {

@@ -1,0 +1,80 @@
+//! Files that a command writes are apart from each other and from those that it reads.
+
+use crate::exit::Failure;
+use standstill_script::suite::shown;
+use standstill_trace::csv::meta_path;
+use standstill_trace::file::is_csv;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A file that a command writes, with the words that name it in a message.
+#[derive(Clone, Debug)]
+pub struct Written {
+    what: String,
+    path: PathBuf,
+}
+
+/// The files of an option that is given.
+pub fn written(option: &str, path: Option<&Path>) -> Vec<Written> {
+    let path = path.into_iter();
+    path.map(|path| Written {
+        what: option.to_owned(),
+        path: path.to_owned(),
+    })
+    .collect()
+}
+
+/// Those of a trace: a table has its header beside it.
+pub fn trace(path: Option<&Path>) -> Vec<Written> {
+    let header = path.filter(|path| is_csv(path)).map(meta_path);
+    let mut all = written("--trace", path);
+    all.extend(written("the header of --trace", header.as_deref()));
+    all
+}
+
+/// Refuses two files in one place, by whatever paths they are named, and one in the place of a file that is read. To be
+/// asked before anything is written.
+pub fn checked<'a>(writes: &[Written], reads: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
+    // A device or a pipe takes what comes.
+    let is_special = |path: &Path| fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
+    let placed: Vec<_> = writes
+        .iter()
+        .filter(|file| !is_special(&file.path))
+        .map(|file| (file, place(&file.path)))
+        .collect();
+    for (index, (file, own)) in placed.iter().enumerate() {
+        let same = placed.iter().take(index).find(|(_, other)| other == own);
+        if let Some((other, _)) = same {
+            let (what, path) = (&file.what, shown(&file.path));
+            let message = format!(
+                "{} and {what} are one file, {path}: each needs its own",
+                other.what
+            );
+            return Err(Failure::usage(&message));
+        }
+    }
+    for path in reads {
+        // Of a link both: what it leads to is lost as well as the link.
+        let places = [Some(place(path)), fs::canonicalize(path).ok()];
+        let lost = placed
+            .iter()
+            .find(|(_, own)| places.iter().flatten().any(|read| read == own));
+        if let Some((file, _)) = lost {
+            let message = format!("{} would replace {}, which is read", file.what, shown(path));
+            return Err(Failure::usage(&message));
+        }
+    }
+    Ok(())
+}
+
+/// The place of a file, whether it is there or not: its own name in the system's own path of its folder. A link at this
+/// place is replaced, so it is not followed.
+fn place(path: &Path) -> PathBuf {
+    let folder = path.parent().filter(|folder| *folder != Path::new(""));
+    let folder = fs::canonicalize(folder.unwrap_or(Path::new(".")));
+    match (folder, path.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        // It cannot be written at all.
+        _ => path.to_owned(),
+    }
+}
