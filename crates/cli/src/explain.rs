@@ -11,8 +11,10 @@ use std::path::Path;
 
 /// Prints how `found` differs from `expected`, from the first scan and signals on, and the likely causes.
 pub fn explain(expected: &Path, found: &Path, json: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
-    let story = story(&load(expected)?, &load(found)?);
+    let (one, other) = (load(expected)?, load(found)?);
     let (expected, found) = (shown(expected), shown(found));
+    limit::doing(format!("holding {found} against {expected}"));
+    let story = story(&one, &other);
     if json {
         let exit = Exit::of(story.is_none());
         writeln!(

@@ -24,6 +24,7 @@ pub fn files(paths: &[PathBuf], check: bool, out: &mut dyn Write) -> Result<Exit
 /// Lays out a script from standard input to standard output. With `check` only the status says whether it
 /// is laid out already.
 pub fn filter(check: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
+    limit::doing("reading standard input");
     let mut text = String::new();
     let read = io::stdin().lock().read_to_string(&mut text);
     read.map_err(|error| Failure::io("standard input", &error))?;

@@ -374,6 +374,7 @@ fn with_lines(
     command: impl FnOnce(&mut dyn BufRead, &str) -> Result<Exit, Failure>,
 ) -> Result<Exit, Failure> {
     if is_standard(path) {
+        limit::doing("reading standard input");
         return command(&mut standard_input(), "standard input");
     }
     let name = shown(path);

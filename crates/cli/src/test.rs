@@ -201,6 +201,7 @@ fn told(wish: Wish<'_>, first: &BTreeSet<String>, out: &mut dyn Write) -> Result
         junit::save(&tally.cases, path)?;
     }
     if let Some(path) = wish.coverage {
+        limit::doing("counting what the scripts execute");
         let coverage = Coverage::of(&found(wish.paths, wish.word)?, wish.allowed);
         writeln!(out, "{}", coverage.save(path)?)?;
         if let Some(folder) = wish.report {
@@ -354,6 +355,7 @@ pub fn where_scripts_are(paths: &[PathBuf]) -> Vec<PathBuf> {
 pub fn found(paths: &[PathBuf], word: Option<&str>) -> Result<Vec<PathBuf>, Failure> {
     let mut all = Vec::new();
     for path in paths {
+        limit::doing(format!("looking for scripts in {}", suite::shown(path)));
         let scripts = suite::find(path)?;
         if scripts.is_empty() {
             if path.is_dir() {

@@ -131,6 +131,7 @@ fn each_line(
     let mut line = Vec::new();
     for number in 1.. {
         line.clear();
+        limit::doing(format!("waiting for line {number} of {name}"));
         let read = input.read_until(b'\n', &mut line);
         if read.map_err(|error| Failure::io(name, &error))? == 0 {
             break;

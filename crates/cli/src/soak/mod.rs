@@ -83,6 +83,8 @@ fn run<T: Trial>(state: &mut State<T>, chains: u64, file: Option<&Path>) -> Resu
     let mut progress = Progress::new(true);
     let mut early = BTreeMap::new();
     let mut saved = Instant::now();
+    let doing = |done: u64| limit::doing(format!("{done} of {} {}", chains * T::LINKS, T::CASES));
+    doing(first * T::LINKS);
     let mut take = |begin: u64, tally: T| {
         early.insert(begin, tally);
         while let Some(tally) = early.remove(&state.chains) {
@@ -90,7 +92,7 @@ fn run<T: Trial>(state: &mut State<T>, chains: u64, file: Option<&Path>) -> Resu
             state.tally.add(tally);
         }
         let (done, failed) = (state.chains * T::LINKS, state.tally.failed());
-        limit::doing(format!("{done} of {} {}", chains * T::LINKS, T::CASES));
+        doing(done);
         progress.show(|| format!("{done} of {} {}, {failed} failed", chains * T::LINKS, T::CASES));
         if let Some(path) = file
             && saved.elapsed() >= SAVE_EVERY

@@ -439,6 +439,47 @@ fn a_time_limit_ends_any_command_with_what_it_was_at() {
     );
 }
 
+#[test]
+#[cfg(unix)]
+fn what_waits_says_what_it_waits_for_when_the_time_is_up() {
+    use std::process::Stdio;
+    let folder = scratch("borders_waiting");
+    let made = std::process::Command::new("mkfifo")
+        .arg(folder.join("pipe"))
+        .status();
+    assert!(made.expect("every Unix has it").success());
+    for (arguments, at) in [
+        (&["lsp"][..], "serving an editor"),
+        (&["plan"], "waiting for line 1 of standard input"),
+        (&["plan", "-"], "waiting for line 1 of standard input"),
+        (&["plan", "pipe"], "reading pipe"),
+        (&["compare-planners", "-"], "waiting for line 1 of standard input"),
+        (&["fmt", "-"], "reading standard input"),
+        (&["st", "check", "pipe"], "reading pipe"),
+        (&["st", "lint", "pipe"], "reading pipe"),
+        (&["st", "fmt", "pipe"], "reading pipe"),
+        (&["cam", "plot", "pipe", "--svg", "a.svg"], "reading pipe"),
+    ] {
+        let mut waiting = command(&[arguments, &["--time-limit", "200ms"]].concat());
+        let piped = waiting
+            .current_dir(&folder)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
+        let mut child = piped.spawn().expect("the program starts");
+        let input = child.stdin.take();
+        let output = child.wait_with_output().expect("it ends");
+        drop(input);
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(
+            told,
+            format!("error: --time-limit T#200ms: the time is up; it was at {at}\n"),
+            "{arguments:?}"
+        );
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+    }
+}
+
 /// A module that takes 80 MiB when it starts.
 const LARGE: &str = r#"(module (memory (export "memory") 1)
     (func (export "plc_init") (drop (memory.grow (i32.const 1280))))
