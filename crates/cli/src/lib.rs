@@ -92,11 +92,14 @@ pub fn status_of(arguments: impl IntoIterator<Item = OsString>) -> Exit {
 }
 
 fn program(arguments: &[OsString]) -> Exit {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let given = arguments;
+    let arguments = match Arguments::try_parse_from(given) {
         Ok(arguments) => arguments,
-        Err(error) => return explained(&error),
+        Err(error) => return explained(&error, given),
     };
-    if let Some(Err(failure)) = arguments.time_limit.map(limit::start) {
+    let as_json = as_json(&arguments.command);
+    let limit = arguments.time_limit;
+    if let Some(Err(failure)) = limit.map(|limit| limit::start(limit, as_json)) {
         return failure.report();
     }
     limit::doing("reading the arguments");
@@ -105,7 +108,12 @@ fn program(arguments: &[OsString]) -> Exit {
     } else {
         Out::text()
     };
-    let result = dispatch(&arguments.command, &mut out);
+    let mut result = dispatch(&arguments.command, &mut out);
+    if let (Some(command), Err(Failure::Told(exit, text))) = (as_json, &result)
+        && let Err(error) = writeln!(out, "{}", outcome::refused(command, *exit, text))
+    {
+        result = Err(error.into());
+    }
     // Text printed before must come before the message that follows from it.
     let flushed = out.flush().map_err(Failure::from);
     match result.and_then(|exit| flushed.map(|()| exit)) {
@@ -114,8 +122,60 @@ fn program(arguments: &[OsString]) -> Exit {
     }
 }
 
+/// The name of a command that answers with JSON, in its answer.
+fn as_json(command: &Command) -> Option<&'static str> {
+    let (wanted, name) = match command {
+        Command::Run(arguments) => (arguments.json, "run"),
+        Command::Test { json, .. } => (*json, "test"),
+        Command::Explain { json, .. } => (*json, "explain"),
+        Command::Identify(arguments) => (arguments.json, "identify"),
+        Command::Blocks { json, .. } => (*json, "blocks"),
+        Command::Cam {
+            what: Cam::Check(arguments),
+        } => (arguments.json, "cam check"),
+        Command::St {
+            what: St::Check { json, .. },
+        } => (*json, "st check"),
+        Command::St {
+            what: St::Lint { json, .. },
+        } => (*json, "st lint"),
+        _ => (false, ""),
+    };
+    wanted.then_some(name)
+}
+
+/// The same for arguments that do not parse.
+fn json_of(arguments: &[OsString]) -> Option<&'static str> {
+    const COMMANDS: [&str; 8] = [
+        "run",
+        "test",
+        "explain",
+        "identify",
+        "blocks",
+        "cam check",
+        "st check",
+        "st lint",
+    ];
+    let words: Vec<&str> = arguments
+        .iter()
+        .skip(1)
+        .filter_map(|word| word.to_str())
+        .collect();
+    let place = |name: &&'static str| {
+        let name: Vec<&str> = name.split(' ').collect();
+        let place = words.windows(name.len()).position(|words| words == name);
+        place.unwrap_or(usize::MAX)
+    };
+    let first = COMMANDS.into_iter().min_by_key(place)?;
+    (words.contains(&"--json") && place(&first) < words.len()).then_some(first)
+}
+
 /// Whether the output of a command is for programs.
 fn is_data(command: &Command) -> bool {
+    as_json(command).is_some() || is_always_data(command)
+}
+
+fn is_always_data(command: &Command) -> bool {
     match command {
         Command::Plan { .. }
         | Command::ComparePlanners { .. }
@@ -123,17 +183,14 @@ fn is_data(command: &Command) -> bool {
         | Command::Blocks { .. }
         | Command::Completions { .. }
         | Command::Schema { .. } => true,
-        Command::St { what } => matches!(what, St::Check { json: true, .. } | St::Lint { json: true, .. }),
         Command::Fmt { paths, .. } => paths.iter().any(|path| is_standard(path)),
-        Command::Cam { what } => match what {
-            Cam::Check(arguments) => arguments.json,
-            Cam::Law(_) => true,
-            Cam::Plot { .. } => false,
-        },
-        Command::Run(arguments) => arguments.json,
-        Command::Test { json, .. } | Command::Explain { json, .. } => *json,
-        Command::Identify(arguments) => arguments.json,
-        Command::Live(_)
+        Command::Cam { what } => matches!(what, Cam::Law(_)),
+        Command::Run(_)
+        | Command::Test { .. }
+        | Command::Explain { .. }
+        | Command::Identify(_)
+        | Command::St { .. }
+        | Command::Live(_)
         | Command::Watch(_)
         | Command::Serve(_)
         | Command::Lsp { .. }
@@ -149,7 +206,14 @@ fn is_data(command: &Command) -> bool {
 }
 
 /// Prints clap's text: help and version on standard output, mistakes on standard error.
-fn explained(error: &clap::Error) -> Exit {
+fn explained(error: &clap::Error, arguments: &[OsString]) -> Exit {
+    if error.use_stderr()
+        && let Some(command) = json_of(arguments)
+    {
+        let text = error.render().to_string();
+        // Its reader may have gone, and the status is that of the mistake.
+        let _ = writeln!(io::stdout(), "{}", outcome::refused(command, Exit::Usage, &text));
+    }
     match error.print() {
         // An error remains an error even if its message has no reader.
         _ if error.use_stderr() => Exit::Usage,

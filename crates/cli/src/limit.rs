@@ -1,7 +1,7 @@
 //! `--time-limit`: ends any command that takes too long.
 
 use crate::exit::{Exit, Failure, complain};
-use crate::out;
+use crate::{out, outcome};
 use standstill_trace::time_literal;
 use std::process;
 use std::sync::{Mutex, MutexGuard};
@@ -30,19 +30,22 @@ pub fn before_end(first: fn()) {
     *locked(&FIRST) = Some(first);
 }
 
-/// Ends the program after this time, unless it has ended by itself.
-pub fn start(limit_ns: u64) -> Result<(), Failure> {
+/// Ends the program after this time, unless it has ended by itself. A command that answers with JSON, and so has not
+/// answered yet, then says why.
+pub fn start(limit_ns: u64, as_json: Option<&'static str>) -> Result<(), Failure> {
     let watch = move || {
         thread::sleep(Duration::from_nanos(limit_ns));
         let at = locked(&DOING).clone();
-        out::flush_if_free();
+        let text = format!(
+            "error: --time-limit {}: the time is up; it was at {at}",
+            time_literal(limit_ns)
+        );
+        let answer = as_json.map(|command| outcome::refused(command, Exit::Failed, &text) + "\n");
+        out::end_if_free(&answer.unwrap_or_default());
         if let Some(first) = *locked(&FIRST) {
             first();
         }
-        complain(&format!(
-            "error: --time-limit {}: the time is up; it was at {at}",
-            time_literal(limit_ns)
-        ));
+        complain(&text);
         process::exit(i32::from(Exit::Failed as u8));
     };
     thread::Builder::new()

@@ -44,6 +44,9 @@ pub fn mutate(
             &mut total,
             (!json).then_some(&mut *out),
         );
+        if let Err(Failure::Told(_, text)) = &one {
+            told.push(outcome::broken(&suite::shown(script), text));
+        }
         exit = exit.max(go_on(one, out)?);
     }
     if json {

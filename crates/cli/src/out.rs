@@ -73,10 +73,11 @@ pub fn is_closed() -> bool {
     standard().closed
 }
 
-/// Writes the waiting text, unless another thread is writing.
-pub fn flush_if_free() {
+/// Writes the waiting text and a last one, unless another thread is writing.
+pub fn end_if_free(last: &str) {
     if let Ok(mut standard) = STANDARD.try_lock() {
         // The program ends in any case.
+        let _ = standard.with(|out| out.write_all(last.as_bytes()));
         let _ = standard.flush();
     }
 }

@@ -1,5 +1,4 @@
-//! The JSON output of `test --json`, `run --json` and `explain --json`: the contents of their text, for
-//! programs.
+//! The output of commands with `--json`: the contents of their text, for programs.
 
 use crate::exit::Exit;
 use crate::json::{Object, list, string};
@@ -22,6 +21,11 @@ pub fn begun(command: &str, exit: Exit) -> Object {
         .with("command", string(command))
         .with("passed", (exit == Exit::Passed).to_string())
         .with("status", (exit as u8).to_string())
+}
+
+/// The answer of a command that could not do its work, with what standard error says.
+pub fn refused(command: &str, exit: Exit, text: &str) -> String {
+    begun(command, exit).with("error", string(text.trim_end())).text()
 }
 
 /// How two traces differ, which have these names.

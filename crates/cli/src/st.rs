@@ -67,24 +67,25 @@ pub fn check(given: &StSources, json: bool, lint: bool, out: &mut dyn Write) -> 
         dialect: dialect(given.dialect.as_deref())?,
         ..Options::default()
     };
+    limit::doing(format!("checking {}", named(&files)));
     let report = standstill_st::check(&sources(&files), &options);
+    let exit = if report.has_errors() {
+        Exit::BadInput
+    } else if lint && !report.diagnostics().is_empty() {
+        Exit::Failed
+    } else {
+        Exit::Passed
+    };
     if json {
         let told = report.diagnostics().iter().map(|it| diagnostic(&report, it));
-        let object = Object::new()
-            .with("standstill_json", "1")
+        let object = outcome::begun(if lint { "st lint" } else { "st check" }, exit)
             .with("hidden", report.hidden().to_string())
             .with("diagnostics", list(told));
         writeln!(out, "{}", object.text())?;
     } else if !report.diagnostics().is_empty() {
         writeln!(out, "{report}")?;
     }
-    Ok(if report.has_errors() {
-        Exit::BadInput
-    } else if lint && !report.diagnostics().is_empty() {
-        Exit::Failed
-    } else {
-        Exit::Passed
-    })
+    Ok(exit)
 }
 
 fn diagnostic(report: &Report, it: &Diagnostic) -> String {

@@ -496,8 +496,11 @@ fn judged(said: &Said) -> Result<(), String> {
 /// The output of a command with `--json`. If it could not run at all that is an error; failures of single
 /// scripts are in the answer.
 fn told(said: Said) -> Result<Answer, String> {
-    match serde_json::from_str(&said.out) {
-        Ok(value) => Ok(Answer::Json(value)),
+    match serde_json::from_str::<Value>(&said.out) {
+        Ok(value) => match value["error"].as_str() {
+            Some(error) => Err(error.to_owned()),
+            None => Ok(Answer::Json(value)),
+        },
         Err(error) => {
             judged(&said)?;
             Err(format!("the program did not answer in JSON: {error}"))

@@ -21,6 +21,7 @@ mod mcp;
 mod plan;
 mod readme;
 mod recorder;
+mod refusals;
 mod reports;
 mod run;
 mod serve;
