@@ -39,7 +39,7 @@ pub fn filter(check: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
 fn lay_out(path: &Path, check: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
     let name = suite::shown(path);
     limit::doing(name.as_str());
-    let text = fs::read_to_string(path).map_err(|error| Failure::io(&name, &error))?;
+    let text = suite::read_text(path)?;
     let canonical = canonical(&text, &name)?;
     if text == canonical {
         return Ok(Exit::Passed);

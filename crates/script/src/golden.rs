@@ -148,9 +148,13 @@ pub fn judge(
     if !proposing || !outcome.passed() {
         return Ok(Standing::Failed(what));
     }
-    golden::propose(&snap, trace)?;
-    let hint = "review the proposal (.snap.new), then accept it: `standstill test --accept` with the \
-                script's path, or `cargo insta review`";
+    let hint = match golden::propose(&snap, trace) {
+        Ok(()) => "review the proposal (.snap.new), then accept it: `standstill test --accept` with the script's path, or \
+             `cargo insta review`"
+            .to_owned(),
+        // What differs is worth more than the file, in a folder that nobody may write to.
+        Err(error) => format!("there is no proposal: {error}"),
+    };
     Ok(Standing::Failed(format!("{}\n{hint}", what.trim_end())))
 }
 

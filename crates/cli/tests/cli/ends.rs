@@ -1,6 +1,6 @@
 //! The end of the program after an error of its environment.
 
-use crate::support::{command, ended, standstill, with_script};
+use crate::support::{command, ended, standstill, with_script, write};
 use std::io::{Write, pipe};
 use std::process::Stdio;
 
@@ -32,6 +32,39 @@ fn a_closed_pipe_ends_quietly() {
         (&["blocks"], 0),
         (&["schema"], 0),
         (&["--help"], 0),
+    ] {
+        assert_eq!(
+            unread(&folder, arguments),
+            (Some(status), String::new()),
+            "{arguments:?}"
+        );
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn a_file_that_is_a_closed_pipe_ends_quietly() {
+    let folder = with_script("ends_named_pipe");
+    write(
+        &folder,
+        "line.jsonl",
+        r#"{"Ts":0.01,"target":1,"limits":{"velocity":1}}"#,
+    );
+    for (arguments, status) in [
+        (&["run", "-q", "move.scan.json", "--svg", "/dev/stdout"][..], 0),
+        (
+            &[
+                "run",
+                "-q",
+                "--set",
+                "v=2",
+                "move.scan.json",
+                "--report",
+                "/dev/stdout",
+            ],
+            1,
+        ),
+        (&["plan", "line.jsonl", "--samples", "/dev/stdout"], 0),
     ] {
         assert_eq!(
             unread(&folder, arguments),

@@ -222,12 +222,18 @@ impl Draft {
     ///
     /// # Errors
     /// As [`replace`].
-    pub fn finish(self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
-        fill(self.file(), write).map_err(|source| FileError::Io {
-            path: self.path.clone(),
-            source,
-        })?;
-        self.keep()
+    pub fn finish(mut self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
+        let mut out = BufWriter::new(&mut self);
+        let written = write(&mut out).and_then(|()| out.flush());
+        // What it still holds after an error is dropped.
+        drop(out.into_parts());
+        match written {
+            Ok(()) => self.keep(),
+            Err(source) => Err(FileError::Io {
+                path: self.path,
+                source,
+            }),
+        }
     }
 
     /// Puts the written file into its place.
@@ -259,7 +265,11 @@ impl Draft {
 /// For data written in parts; [`Draft::keep`] ends it.
 impl Write for Draft {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.file().write(bytes)
+        match self.file().write(bytes) {
+            // The reader of a pipe has gone: as on standard output, the rest is dropped.
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(bytes.len()),
+            other => other,
+        }
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -308,13 +318,11 @@ fn without_path(error: io::Error) -> io::Error {
 }
 
 fn text(bytes: Vec<u8>) -> io::Result<String> {
-    String::from_utf8(bytes).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
-}
-
-fn fill(file: &File, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let mut out = BufWriter::new(file);
-    write(&mut out)?;
-    out.flush()
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let message = format!("not UTF-8 after {valid} bytes; save it as UTF-8");
+        io::Error::new(io::ErrorKind::InvalidData, message)
+    })
 }
 
 /// A path as it is printed: one line, with `/` on every system.
@@ -352,7 +360,11 @@ pub fn load(path: &Path) -> Result<Loaded, FileError> {
         path: path.to_owned(),
         source,
     };
-    let read_text = |path: &Path| fs::read_to_string(path).map_err(|source| io_error(path, source));
+    let read_text = |path: &Path| {
+        fs::read(path)
+            .and_then(text)
+            .map_err(|source| io_error(path, source))
+    };
     match form(path)? {
         Form::JsonLines => jsonl::read(&read_text(path)?).map_err(|source| text_error(path, source)),
         Form::Csv => {
