@@ -13,11 +13,26 @@ use super::onto::Way;
 use super::shadow::{FASTEST, leaves};
 use super::{Curve, OnCam, Rung, Shadow};
 use crate::{Approach, OnLimit, Scope};
-use standstill_planner::{DirectedLimits, Lead, Limits, Plan, Planner, Setpoint};
+use standstill_planner::{DirectedLimits, Excess, Lead, Limits, Plan, Planner, Setpoint};
 
 /// Velocities of a shadow whose limits are tried on the way to a corner, as shares of what is left of the highest one: the higher, the
 /// less acceleration is left.
 const SHARES: [f64; 4] = [0.01, 0.1, 0.3, 1.0];
+
+/// How often limits are looked for within which a shadow comes to rest that gets faster until its acceleration has faded out, and how
+/// much more than it gains is left to it: with the rates that a higher velocity leaves it gains more.
+const FADING: u32 = 3;
+const GAINED: f64 = 1.25;
+
+/// A shadow goes on to rest on a corner where that takes no longer than so many times what a stop takes.
+const NEAR: u32 = 4;
+
+/// How a shadow comes to rest: by this plan, so far on (u of the master), and so far back behind where it is now.
+struct Stop<Q> {
+    plan: Q,
+    on: f64,
+    back: f64,
+}
 
 /// A corner on the way of a shadow.
 #[derive(Clone, Copy)]
@@ -111,7 +126,7 @@ impl<P: Planner> Axis<P> {
     /// Limits within which a shadow that is at `next` at the end of this scan comes to rest before the next corner; none where that is
     /// far away. The corner, if there are no such limits.
     ///
-    /// Cost: a look at each row on that way, and at most six ramps where a corner is near.
+    /// Cost: a look at each row on that way, and at most ten ramps where a corner is near.
     fn stops_in_time(&self, curve: &Curve<'_>, next: &Shadow) -> Result<Option<Limits>, Corner> {
         let at = &next.at;
         let x = curve.unwound(next.place);
@@ -127,10 +142,14 @@ impl<P: Planner> Axis<P> {
         let Some(near) = found(self.longest_braking(curve, at)) else {
             return Ok(None);
         };
-        let mut within = self.limits_to_corner(curve, at);
+        let goes_up = forwards == (curve.law.master_scaling > 0.0);
+        let mut within = self.limits_to_stop(curve, at);
         let stops = within.find(|limits| {
-            self.stopping(at, limits)
-                .is_some_and(|(way, _)| found(way.abs()).is_none())
+            let stop = self.stopping(at, limits, goes_up);
+            stop.is_some_and(|stop| {
+                let behind = self.corner_from(curve, x, !forwards, stop.back * per);
+                found(stop.on).is_none() && behind.is_none()
+            })
         });
         stops.map(Some).ok_or(near)
     }
@@ -176,14 +195,42 @@ impl<P: Planner> Axis<P> {
         all.flatten()
     }
 
-    /// The way (u of the master) on which a shadow in this state comes to rest, and that as a plan; none where it is outside these limits
-    /// on it.
-    fn stopping(&self, at: &Setpoint, limits: &Limits) -> Option<(f64, P::Plan)> {
+    /// The same, and at last those of the velocity that it comes to before its acceleration has faded out.
+    fn limits_to_stop(&self, curve: &Curve<'_>, at: &Setpoint) -> impl Iterator<Item = Limits> {
+        let fastest = core::iter::once_with(|| self.limits_while_fading(curve, at));
+        self.limits_to_corner(curve, at).chain(fastest.flatten())
+    }
+
+    /// Limits of a shadow that comes to rest and is faster before that. Cost: at most three ramps.
+    fn limits_while_fading(&self, curve: &Curve<'_>, at: &Setpoint) -> Option<Limits> {
+        let start = Setpoint { position: 0.0, ..*at };
+        let speed = at.velocity.abs();
+        let mut limits = self.limits_of_shadow(curve, at, speed)?;
+        for _ in 0..FADING {
+            let ramp = self.planner.ramp_to(&start, 0.0, &limits, &limits).ok()?;
+            let gained = self.planner.peaks((&ramp, 0))?.velocity - speed;
+            limits = self.limits_of_shadow(curve, at, speed + GAINED * gained)?;
+        }
+        Some(limits)
+    }
+
+    /// How a shadow in this state comes to rest; none where it is outside these limits on that way.
+    fn stopping(&self, at: &Setpoint, limits: &Limits, goes_up: bool) -> Option<Stop<P::Plan>> {
         let start = Setpoint { position: 0.0, ..*at };
         let plan = self.planner.ramp_to(&start, 0.0, limits, limits).ok()?;
-        let way = plan.at(u64::from(plan.scans())).position;
-        let stays = !plan.excess().is_some_and(|excess| leaves(&excess, limits));
-        stays.then_some((way, plan))
+        let stays = plan.excess().is_none_or(|excess| {
+            let turns = Excess {
+                velocity: 0.0,
+                ..excess
+            };
+            let fastest = self.planner.peaks((&plan, 0)).map(|peaks| peaks.velocity);
+            // It may turn back before it rests.
+            let is_slow = fastest.is_some_and(|fastest| fastest <= limits.velocity * (1.0 + ROUNDING));
+            is_slow && !leaves(&turns, limits)
+        });
+        let (low, high) = self.planner.reach((&plan, 0));
+        let (on, back) = if goes_up { (high, -low) } else { (-low, high) };
+        stays.then_some(Stop { plan, on, back })
     }
 
     /// It is on its way to rest at a corner.
@@ -242,11 +289,15 @@ impl<P: Planner> Axis<P> {
         let numbers = (corner.x * curve.law.master_scaling).abs() + shadow.place.position.abs();
         let resolved = RESOLVED * 4.0 * (distance.abs() + numbers);
         let most = distance.abs() + resolved;
-        let mut within = self.limits_to_corner(curve, &shadow.at);
-        let (limits, ramp) = within.find_map(|limits| {
-            let (way, ramp) = self.stopping(&shadow.at, &limits)?;
-            (way.abs() <= most).then_some((limits, ramp))
+        let x = curve.unwound(shadow.place);
+        let per = 1.0 / curve.law.master_scaling.abs();
+        let mut within = self.limits_to_stop(curve, &shadow.at);
+        let (limits, stop) = within.find_map(|limits| {
+            let stop = self.stopping(&shadow.at, &limits, distance > 0.0)?;
+            let behind = self.corner_from(curve, x, corner.x < x, stop.back * per);
+            (stop.on <= most && behind.is_none()).then_some((limits, stop))
         })?;
+        let is_near = |plan: &P::Plan| plan.scans() <= stop.plan.scans().saturating_mul(NEAR);
         let move_there = |velocity: f64| {
             let both = DirectedLimits {
                 positive: velocity,
@@ -263,10 +314,11 @@ impl<P: Planner> Axis<P> {
             let stays = !plan.excess().is_some_and(|excess| leaves(&excess, &limits));
             on <= most && back <= resolved && stays
         };
-        // No faster than it is where that goes, so that it does not get ahead of its master. Where no move ends there, to rest first.
+        // No faster than it is where that goes, so that it does not get ahead of its master. Where no move ends there, or it is far, to
+        // rest first.
         let speeds = [shadow.at.velocity.abs(), limits.velocity];
         let there = speeds.into_iter().filter_map(move_there).find(goes_straight);
-        let plan = there.unwrap_or(ramp);
+        let plan = there.filter(is_near).unwrap_or(stop.plan);
         let scans = u64::from(plan.scans());
         Some(Way {
             exceeds: false,
