@@ -720,7 +720,14 @@ impl<P: Planner> Axis<P> {
         if self.modulo.is_some() {
             self.start_of_plan();
         }
-        let may_leave = self.may_leave_on_way(&way.rung);
+        // Beside a line that stands it comes to rest.
+        let from = match way.rung {
+            Rung::BesideLine {
+                start, velocity: 0.0, ..
+            } => Some(start.position),
+            _ => None,
+        };
+        let may_leave = self.may_leave_on_way(from);
         self.mover.watch(may_leave);
         let told = Some((way.name, way.velocity));
         let mut is_told = false;

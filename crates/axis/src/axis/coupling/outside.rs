@@ -3,7 +3,7 @@
 
 use super::super::{Axis, Motion};
 use super::view::{View, way_to_rest};
-use super::{Coupling, OnCam, Rung};
+use super::{Coupling, OnCam};
 use crate::{Event, Scope};
 use standstill_planner::{Leads, Plan, Planner};
 
@@ -25,21 +25,18 @@ impl Coupling {
 }
 
 impl<P: Planner> Axis<P> {
-    /// Whether it may leave its software limits on a way of this kind: on all but one that leads to rest inside and does not turn
-    /// outside.
-    pub(super) fn may_leave_on_way(&self, rung: &Rung) -> bool {
+    /// Whether it may leave its software limits on its way: on all but one that leads to rest inside, by a plan that counts from the
+    /// place `from`, and does not turn outside.
+    pub(super) fn may_leave_on_way(&self, from: Option<f64>) -> bool {
         let Some((min, max)) = self.parameters.software_limits else {
             return false;
         };
-        let (Rung::BesideLine { start, velocity, .. }, Motion::Closing { plan, scans, .. }) =
-            (rung, self.mover.motion())
-        else {
+        let (Some(from), Motion::Closing { plan, scans, .. }) = (from, self.mover.motion()) else {
             return true;
         };
-        // The plan counts from where the line begins.
-        let range = (min - start.position, max - start.position);
+        let range = (min - from, max - from);
         let end = plan.at(*scans).position;
-        *velocity != 0.0 || end < range.0 || end > range.1 || !self.turns_within((plan, 0), range)
+        end < range.0 || end > range.1 || !self.turns_within((plan, 0), range)
     }
 
     /// Records that the masters lead out of the software limits of this slave, once for each end place.

@@ -427,6 +427,7 @@ impl<P: Planner> Axis<P> {
         }
         self.bound_master_on_cam(&scope.cams);
         self.mover.gear();
+        self.mover.watch(self.parameters.software_limits.is_some());
         self.stir();
         self.record(Event::InSync, &mut self.owner_scope(scope));
         if !was_in_sync {

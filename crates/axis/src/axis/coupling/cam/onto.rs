@@ -556,8 +556,10 @@ impl<P: Planner> Axis<P> {
         self.mover.start(way.motion, limits);
         self.arrival = Default::default();
         self.replan_due = false;
-        self.mover
-            .watch(self.owner.is_some_and(|owner| self.needs_watching(&owner)));
+        // A move of its own comes to rest.
+        let from = matches!(way.rung, Rung::Moving { .. }).then_some(0.0);
+        let may_leave = self.may_leave_on_way(from);
+        self.mover.watch(may_leave);
         if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.rung = way.rung;
             on_cam.is_timed = false;
