@@ -515,6 +515,7 @@ impl<P: Planner> Axis<P> {
                 jerk: jerk * unit / (cycle * cycle * cycle),
                 snap: snap * unit / (cycle * cycle * cycle * cycle),
             },
+            unshifted: None,
             moved: self.coordinates_moved(scan),
             is_operating: self.fresh_position().is_ok(),
             keeps_bound: false,

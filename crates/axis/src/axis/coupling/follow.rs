@@ -245,7 +245,7 @@ impl<P: Planner> Axis<P> {
         });
         // A motion added to a law at rest was checked against the limits before.
         let is_held = added.is_some() && self.law_stands(view);
-        let rough = self.rough(view, &law).filter(|_| !is_held);
+        let rough = self.rough(view).filter(|_| !is_held);
         let reason = self.beyond(Some(place), &next, &limits, rough);
         if let Some(reason) = reason.or_else(|| self.beyond_on_the_way(&anchor, view, &limits)) {
             self.lose_gear(reason, scope);
@@ -546,16 +546,18 @@ impl<P: Planner> Axis<P> {
         let anchor = coupling.anchor.unwrap_or_default();
         let (place, law) = coupling.law(&anchor, &view.seen());
         let place = coupling.anchor.map(|_| place);
-        self.beyond(place, &law, &coupling.limits, self.rough(view, &law))
+        self.beyond(place, &law, &coupling.limits, self.rough(view))
     }
 
     /// `Some` if this step was not checked against the limits before. Causes: the slave stays in gear as
     /// long as it can, the master's motion ahead is not known, it was not known until now, or the master
     /// is at rest, perhaps after a plan of one scan. `Some(TRUE)` if the master's motion is less smooth
-    /// than the slave needs.
-    fn rough(&self, view: &View<'_, P::Plan>, law: &Setpoint) -> Option<bool> {
+    /// than the slave needs; a shift is as smooth as the slave.
+    fn rough(&self, view: &View<'_, P::Plan>) -> Option<bool> {
+        let gearing = &self.follower.coupling.as_ref()?.gearing;
         let degree = self.slowed(&self.parameters.limits).order().degree();
-        let is_rough = view.degree() < degree && law.acceleration != 0.0;
+        let own = view.seen().map(|seen| seen.own_rates()[1]);
+        let is_rough = view.degree() < degree && gearing.derivative(own) != 0.0;
         match view.future.kind() {
             // Their motion was planned for this slave, unless it does something else.
             _ if self.slows_master() && view.keeps_bound() && !self.adds_motion() => None,

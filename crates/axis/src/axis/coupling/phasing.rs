@@ -89,12 +89,18 @@ impl Seen {
     /// The same master, seen with a shift.
     pub(super) fn shifted(self, by: &Setpoint) -> Self {
         let mut seen = self;
+        seen.unshifted = Some(self.own_rates());
         seen.place.phase += by.position;
         seen.at.velocity += by.velocity;
         seen.at.acceleration += by.acceleration;
         seen.at.jerk += by.jerk;
         seen.at.snap += by.snap;
         seen
+    }
+
+    /// Its own velocity (u/s) and acceleration (u/s^2), without a shift.
+    pub(super) fn own_rates(&self) -> [f64; 2] {
+        self.unshifted.unwrap_or([self.at.velocity, self.at.acceleration])
     }
 
     /// How large the numbers are that tell where it is seen (u).

@@ -11,6 +11,8 @@ pub(crate) struct Seen {
     pub place: Place,
     /// Its derivatives; the position is that of `place`.
     pub at: Setpoint,
+    /// Its own velocity (u/s) and acceleration (u/s^2), where it is seen with a shift.
+    pub unshifted: Option<[f64; 2]>,
     /// The move of its coordinates in this scan (u).
     pub moved: f64,
     /// Its set-point is the result of a plan.

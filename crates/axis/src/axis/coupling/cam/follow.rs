@@ -185,15 +185,16 @@ impl<P: Planner> Axis<P> {
         self.beyond(Some(at.place), &at.state, &on_cam.limits, Some(is_rough))
     }
 
-    /// The master moves less smoothly than the slave may, where the cam passes that on.
+    /// The master moves less smoothly than the slave may, where the cam passes that on. A shift is as smooth as the slave.
     fn is_rough_on_cam(&self, view: &View<'_, P::Plan>, at: &CamAt) -> bool {
         let degree = self.slowed(&self.parameters.limits).order().degree();
         let was = self
             .follower
             .on_cam
             .as_ref()
-            .map_or(0.0, |on_cam| on_cam.was.at.velocity);
-        let accelerates = view.now.at.acceleration != 0.0 || view.now.at.velocity != was;
+            .map_or(0.0, |on_cam| on_cam.was.own_rates()[0]);
+        let [velocity, acceleration] = view.now.own_rates();
+        let accelerates = acceleration != 0.0 || velocity != was;
         view.degree() < degree && accelerates && at.state.velocity != 0.0
     }
 
