@@ -12,7 +12,7 @@ use super::Axis;
 use super::commands::{Entry, Place, REST, Run, Work};
 use crate::{AxisConfig, Direction, DrivePosition, ErrorId, ModuloTargets, Scaling, Turn};
 use standstill_planner::turns::{split, two_product};
-use standstill_planner::{Plan, Planner, Setpoint};
+use standstill_planner::{Passage, Plan, Planner, Setpoint};
 
 /// How far before the end of a stop a target may lie and still be met, relative to the way of the stop:
 /// this is rounding, and no visible way back.
@@ -177,9 +177,10 @@ impl<P: Planner> Axis<P> {
     #[inline(never)]
     pub(super) fn bring_back(&mut self) {
         let Some(modulo) = &mut self.modulo else { return };
-        // An owner that the override halts may have its end there.
+        // An owner that is held up may have its end there.
+        let is_held_up = |owner: &Entry| owner.halted || owner.paused;
         if !is_far(self.mover.setpoint().position, modulo.length)
-            || self.owner.as_ref().is_some_and(|owner| owner.halted)
+            || self.owner.as_ref().is_some_and(is_held_up)
         {
             return;
         }
@@ -323,6 +324,31 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    /// Whether `entry` passes its `target` from `here` without turning, with a `velocity` or with as much as the next command may begin with. To
+    /// slow down may take more way than a stop, where jerk and snap bind. A ramp takes whole scans, which a plan past a target need not: what
+    /// is slowing down for it already goes on so.
+    fn passes_onward(
+        &self,
+        entry: &Entry,
+        here: &Setpoint,
+        target: f64,
+        passage: &Passage,
+        velocity: f64,
+    ) -> bool {
+        let before = self.limits_before(&entry.limits);
+        let planned = if let Work::Through { .. } = entry.work {
+            self.planner
+                .pass(here, target, velocity, &entry.limits, &before)
+                .ok()
+        } else {
+            let most = passage.most * (1.0 + ROUNDING);
+            let blended = self.planner.blend(here, target, passage, &entry.limits, &before);
+            let is_slow = |plan: &P::Plan| plan.at(u64::from(plan.scans())).velocity.abs() <= most;
+            blended.ok().flatten().filter(is_slow)
+        };
+        planned.is_some_and(|plan| !self.turns(&plan, velocity > 0.0))
+    }
+
     /// `turns`, plus those that a motion from `start` needs to slow down if it must not turn back (B8).
     pub(super) fn never_back(
         &self,
@@ -336,8 +362,14 @@ impl<P: Planner> Axis<P> {
             .direction
             .and_then(|direction| self.heading(direction, self.mover.last_velocity() > 0.0));
         let Some(forward) = heading else { return turns };
-        if start.is_at_rest() || self.goes_on_to(entry.id) {
+        if self.goes_on_to(entry.id) {
             return turns;
+        }
+        if start.is_at_rest() {
+            // It may have come to rest behind its target.
+            let to_target = target - back_by(start.position, turns, length);
+            let missing = if forward { -to_target } else { to_target };
+            return with_further(turns, missing - ROUNDING * length, length, forward);
         }
         // One motion need not stop before its goal.
         let (target, passage) = if entry.run.count > 0 {
@@ -345,18 +377,21 @@ impl<P: Planner> Axis<P> {
         } else {
             (target, entry.passage)
         };
-        // A command that passes its target in the same direction need not stop before it. One that is blended may: where jerk and snap
-        // bind, that takes less way than to slow down.
-        let (velocity, is_blended) = match entry.work {
-            Work::Through { end_velocity, .. } if (end_velocity > 0.0) == forward => (end_velocity, false),
+        // A command that passes its target in the same direction need not stop before it.
+        let velocity = match entry.work {
+            Work::Through { end_velocity, .. } if (end_velocity > 0.0) == forward => end_velocity,
             Work::Position(_) | Work::Distance(_) if passage.wanted > 0.0 => {
                 let speed = passage.most.min(start.velocity.abs());
-                (if forward { speed } else { -speed }, true)
+                if forward { speed } else { -speed }
             }
-            _ => (0.0, false),
+            _ => 0.0,
         };
         let before = self.limits_before(&entry.limits);
-        let to_target = target - back_by(start.position, turns, length);
+        let here = Setpoint {
+            position: back_by(start.position, turns, length),
+            ..*start
+        };
+        let to_target = target - here.position;
         let missing_to = |velocity: f64| {
             let ramp = self
                 .planner
@@ -367,49 +402,32 @@ impl<P: Planner> Axis<P> {
             Some(missing - ROUNDING * way.abs())
         };
         // If the stop cannot be planned, the move cannot be planned either; planning it gives the reason.
-        let Some(mut missing) = missing_to(velocity) else {
+        let Some(missing) = missing_to(velocity) else {
             return turns;
         };
-        if is_blended && missing > 0.0 {
-            missing = missing_to(0.0).map_or(missing, |at_rest| at_rest.min(missing));
-        }
-        // A ramp takes whole scans, the plan past the target need not: what is slowing down for it already can go on so, if a little faster
-        // than is wanted by now.
-        if missing > 0.0 && velocity != 0.0 {
-            let here = Setpoint {
-                position: back_by(start.position, turns, length),
-                ..*start
-            };
-            let most = if self.owner.is_some_and(|owner| owner.id == entry.id) {
-                start.velocity.abs()
-            } else {
-                passage.most * (1.0 + ROUNDING)
-            };
-            let planned = if is_blended {
-                let blended = self
-                    .planner
-                    .blend(&here, target, &passage, &entry.limits, &before);
-                let ends_slowly = |plan: &P::Plan| plan.at(u64::from(plan.scans())).velocity.abs() <= most;
-                blended.ok().flatten().filter(ends_slowly)
-            } else {
-                self.planner
-                    .pass(&here, target, velocity, &entry.limits, &before)
-                    .ok()
-            };
-            if planned.is_some_and(|plan| !self.turns(&plan, forward)) {
-                return turns;
-            }
-        }
-        if missing <= 0.0 {
+        let passes = || velocity != 0.0 && self.passes_onward(entry, &here, target, &passage, velocity);
+        if missing <= 0.0 || passes() {
             return turns;
         }
-        let whole = (missing / length) as i64;
-        let further = whole.saturating_add(i64::from(whole as f64 * length < missing));
-        if forward {
-            turns.saturating_add(further)
-        } else {
-            turns.saturating_sub(further)
-        }
+        let missing = match entry.work {
+            Work::Through { .. } => missing,
+            _ => missing_to(0.0).map_or(missing, |at_rest| at_rest.min(missing)),
+        };
+        with_further(turns, missing, length, forward)
+    }
+}
+
+/// `turns`, and as many `forward` or not as cover what is `missing` of a way (u).
+fn with_further(turns: i64, missing: f64, length: f64, forward: bool) -> i64 {
+    if missing <= 0.0 {
+        return turns;
+    }
+    let whole = (missing / length) as i64;
+    let further = whole.saturating_add(i64::from(whole as f64 * length < missing));
+    if forward {
+        turns.saturating_add(further)
+    } else {
+        turns.saturating_sub(further)
     }
 }
 

@@ -154,7 +154,8 @@ impl<P: Planner> Axis<P> {
         else {
             return;
         };
-        if !owner.halted && !owner.passed && !owner.is_behind {
+        // Too late for another plan it goes on as planned.
+        if !owner.halted && !owner.passed && !owner.is_behind && !self.passes_as_planned(owner) {
             owner.turns = self.never_back(owner, here, end, 0, modulo.length);
         }
     }

@@ -150,13 +150,21 @@ impl<P: Planner> Axis<P> {
         // What passes it on a ramp was found with what comes next, which begins braking or lets go.
         let is_on_a_ramp = motion.goes_on();
         let is_too_fast = speed > owner.passage.most * (1.0 + ROUNDING) && is_faster && !is_on_a_ramp;
-        let is_same = |was: &Entry| was.id == owner.id && was.end == owner.end && !was.halted;
         (self.is_to_turn() || self.is_to_pass(owner) || (goes_on && owner.run.count == 0))
-            && !self.goal_reached()
-            && !owner.halted
-            && self.owner.as_ref().is_some_and(is_same)
+            && self.is_on_its_way(owner)
             && plan.turn().is_none()
             && (is_too_fast || self.turns(plan, end > self.mover.setpoint().position))
+    }
+
+    /// Whether `owner`, the present one with other values, is on its way to its end as planned.
+    fn is_on_its_way(&self, owner: &Entry) -> bool {
+        let is_same = |was: &Entry| was.id == owner.id && was.end == owner.end && !was.halted && !was.paused;
+        !self.goal_reached() && !owner.halted && self.owner.as_ref().is_some_and(is_same)
+    }
+
+    /// Whether `owner`, the present one with other values, passes its end at speed as planned.
+    pub(super) fn passes_as_planned(&self, owner: &Entry) -> bool {
+        self.is_on_its_way(owner) && self.is_to_pass(owner)
     }
 
     /// Whether the goal of the motion is an end that is passed at speed, and so it is of `owner`.
