@@ -335,8 +335,11 @@ impl<P: Planner> Axis<P> {
         if !(along > LEAST * limits.velocity) {
             return None;
         }
-        // Ahead of the line it lets it come, which is never against the master. Onto a master at rest it may go either way.
-        let against = if speed > 0.0 { speed } else { limits.velocity };
+        let against = if stretch.lets_come(shadow) {
+            speed
+        } else {
+            limits.velocity + speed
+        };
         let own = |limits: &Limits, along: f64, against: f64| {
             let (positive, negative) = if stretch.velocity < 0.0 {
                 (against, along)
@@ -444,6 +447,14 @@ impl<P: Planner> Axis<P> {
             slows: false,
             laps: 0.0,
         })
+    }
+}
+
+impl Stretch {
+    /// Ahead of the line a shadow lets it come, which is never against the master; one that goes to meet it already goes on. Onto a
+    /// master at rest it may go either way.
+    fn lets_come(&self, shadow: &Shadow) -> bool {
+        self.velocity != 0.0 && shadow.at.velocity * self.velocity >= 0.0
     }
 }
 
