@@ -42,6 +42,10 @@ pub(super) struct Measured {
     told: Option<Told>,
 }
 
+/// An encoder at rest that trembles by two increments either way seems to move by an increment in this many scans at most: the bound of
+/// the velocity above, with the filter of an axis that sets none.
+const TREMBLE: i128 = 4;
+
 /// A place and its derivatives, per scan.
 struct State {
     /// Distance (increments, or u) of the place ahead of `from`.
@@ -240,6 +244,11 @@ impl Counted {
     /// Whether the axis has not moved for as long as the filter remembers.
     fn is_still(&self) -> bool {
         self.still > 4 * self.length + OUTPUTS as u32
+    }
+
+    /// Whether it is no faster than an encoder at rest that trembles.
+    fn trembles(&self) -> bool {
+        i128::from(self.out[0]).abs() * TREMBLE <= self.scale()
     }
 
     /// The positions of this scan have new names: the last step counts as 0.
@@ -519,6 +528,7 @@ impl<P: Planner> Axis<P> {
             moved: self.coordinates_moved(scan),
             is_operating: self.fresh_position().is_ok(),
             keeps_bound: false,
+            trembles: self.measured.counted.as_ref().is_some_and(Counted::trembles),
             // Pieces of constant snap.
             degree: 4,
         }

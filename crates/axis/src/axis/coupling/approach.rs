@@ -591,18 +591,7 @@ impl<P: Planner> Axis<P> {
         if coupling.is_syncing() && difference.position * line > 0.0 {
             room.velocity = room.velocity.min(line.abs());
         }
-        let planned = if coupling.anchor.is_some() {
-            self.planner
-                .move_to(MoveProfile::Online, difference, 0.0, &room, &room)
-        } else {
-            self.planner.ramp_to(difference, 0.0, &room, &room)
-        };
-        let planned = planned.ok()?;
-        // Outside the room its motion between two scans would be unknown.
-        let leaves = |excess: Excess| excess.acceleration > 0.0 || excess.jerk > 0.0;
-        if planned.excess().is_some_and(leaves) {
-            return None;
-        }
+        let planned = self.within_room(difference, &room, coupling.anchor.is_some())?;
         Some(Way {
             motion: Motion::closing(planned),
             rung: Rung::BesideMeasured { anchor, room },
@@ -614,21 +603,29 @@ impl<P: Planner> Axis<P> {
         })
     }
 
+    /// A plan within this `room` that takes a difference to 0, or its velocity only.
+    pub(super) fn within_room(
+        &self,
+        difference: &Setpoint,
+        room: &Limits,
+        to_place: bool,
+    ) -> Option<P::Plan> {
+        let planned = if to_place {
+            self.planner
+                .move_to(MoveProfile::Online, difference, 0.0, room, room)
+        } else {
+            self.planner.ramp_to(difference, 0.0, room, room)
+        };
+        // Outside the room its motion between two scans would be unknown.
+        let leaves = |excess: Excess| excess.acceleration > 0.0 || excess.jerk > 0.0;
+        planned.ok().filter(|plan| !plan.excess().is_some_and(leaves))
+    }
+
     /// Half of the limits that the law leaves of `limits` in this scan; none if it leaves nothing.
     pub(in crate::axis) fn room_now(&self, view: &View<'_, P::Plan>, limits: &Limits) -> Option<Limits> {
         let coupling = self.follower.coupling.as_ref()?;
         let (_, law) = coupling.law(&coupling.anchor.unwrap_or_default(), &view.seen());
-        let half = |limit: f64, used: f64| 0.5 * (limit - used.abs());
-        let rate = half(limits.lower_acceleration(), law.acceleration);
-        let room = Limits {
-            velocity: half(limits.velocity, law.velocity),
-            acceleration: rate,
-            deceleration: rate,
-            jerk: half(limits.jerk, law.jerk),
-            snap: half(limits.snap, law.snap),
-        };
-        let least = room.velocity.min(rate).min(room.jerk).min(room.snap);
-        (least > LEAST * limits.velocity).then_some(room)
+        half_left(&law, limits)
     }
 
     /// The part of `limits` that the law leaves at any time; none if it leaves nothing.
@@ -824,4 +821,19 @@ impl<P: Planner> Axis<P> {
         told.into_iter()
             .find(|(_, value, limit)| *value > limit * (1.0 + ROUNDING))
     }
+}
+
+/// Half of the limits that a law in this state leaves of `limits`; none if it leaves nothing.
+pub(super) fn half_left(law: &Setpoint, limits: &Limits) -> Option<Limits> {
+    let half = |limit: f64, used: f64| 0.5 * (limit - used.abs());
+    let rate = half(limits.lower_acceleration(), law.acceleration);
+    let room = Limits {
+        velocity: half(limits.velocity, law.velocity),
+        acceleration: rate,
+        deceleration: rate,
+        jerk: half(limits.jerk, law.jerk),
+        snap: half(limits.snap, law.snap),
+    };
+    let least = room.velocity.min(rate).min(room.jerk).min(room.snap);
+    (least > LEAST * limits.velocity).then_some(room)
 }

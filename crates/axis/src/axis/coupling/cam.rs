@@ -88,6 +88,8 @@ enum Rung {
     BesideLine { start: Place, velocity: f64, begin: u64 },
     /// The same beside the master itself.
     BesideMaster,
+    /// The same beside a master whose motion ahead is not known, within this room.
+    BesideMeasured { room: Limits },
     /// On the curve, at a place of its own: to rest at a corner, or before it, by a plan from `start`.
     Corner { start: Place },
     /// A move in the slave's own coordinates, in its turn of this number, to where the curve is when the master is at this place; to

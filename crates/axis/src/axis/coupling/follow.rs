@@ -357,7 +357,10 @@ impl<P: Planner> Axis<P> {
                 ..frame_place
             };
             let in_force = self.mover.in_force();
-            let leaves_room = self.leaves_room(&anchor, view, &room, &next);
+            let law = |seen| coupling.law(&anchor, seen).1;
+            let ends = [law(&coupling.was), law(&view.seen())];
+            let speeds = [self.mover.setpoint().velocity, next.velocity];
+            let leaves_room = leaves_room(&ends, &room, speeds, in_force, cycle);
             if !leaves_room || self.beyond(Some(place), &next, in_force, Some(false)).is_some() {
                 self.approach(view, false, scope);
                 if self.is_coupled() {
@@ -508,25 +511,6 @@ impl<P: Planner> Axis<P> {
         ];
         told.into_iter()
             .find(|(_, value, limit)| !(*value <= limit * (1.0 + ROUNDING)))
-    }
-
-    /// Whether the law of measured values left a plan this `room` beside it during the whole scan. At the
-    /// end of the scan both together are at `next`.
-    fn leaves_room(&self, anchor: &Anchor, view: &View<'_, P::Plan>, room: &Limits, next: &Setpoint) -> bool {
-        let Some(coupling) = &self.follower.coupling else {
-            return false;
-        };
-        let (limits, cycle) = (self.mover.in_force(), self.planner.cycle());
-        let (_, from) = coupling.law(anchor, &coupling.was);
-        let (_, to) = coupling.law(anchor, &view.seen());
-        let peaks = Piece::between(&from, &to, cycle).peaks();
-        let rate = limits.lower_acceleration();
-        // Between two velocities one scan apart.
-        let fastest = 0.5 * (self.mover.setpoint().velocity + next.velocity).abs() + 0.5 * rate * cycle;
-        fastest <= limits.velocity
-            && peaks.acceleration + room.acceleration <= rate
-            && peaks.jerk + room.jerk <= limits.jerk
-            && peaks.snap + room.snap <= limits.snap
     }
 
     /// Whether measured places are fine enough that rounding causes no step of the slave. Only jumps lead
@@ -744,6 +728,26 @@ impl<P: Planner> Axis<P> {
             self.trip(ErrorId::DeviationTooLarge, 0, Reaction::Ramp, scope);
         }
     }
+}
+
+/// Whether a law of measured values, in these two states at the ends of a scan of this `cycle` (s), left a plan this `room` beside it
+/// during the whole scan. Both together had these two velocities at its ends.
+pub(super) fn leaves_room(
+    law: &[Setpoint; 2],
+    room: &Limits,
+    [from, to]: [f64; 2],
+    limits: &Limits,
+    cycle: f64,
+) -> bool {
+    let [before, now] = law;
+    let peaks = Piece::between(before, now, cycle).peaks();
+    let rate = limits.lower_acceleration();
+    // Between two velocities one scan apart.
+    let fastest = 0.5 * (from + to).abs() + 0.5 * rate * cycle;
+    fastest <= limits.velocity
+        && peaks.acceleration + room.acceleration <= rate
+        && peaks.jerk + room.jerk <= limits.jerk
+        && peaks.snap + room.snap <= limits.snap
 }
 
 /// The first derivative of a state that exceeds its limit.

@@ -95,6 +95,7 @@ impl Seen {
         seen.at.acceleration += by.acceleration;
         seen.at.jerk += by.jerk;
         seen.at.snap += by.snap;
+        seen.trembles &= by.velocity == 0.0;
         seen
     }
 

@@ -21,6 +21,8 @@ pub(crate) struct Seen {
     pub degree: usize,
     /// Its motion was planned within the limits that its slaves leave.
     pub keeps_bound: bool,
+    /// Its feedback may be that of an axis at rest whose encoder trembles.
+    pub trembles: bool,
 }
 
 /// The masters of a slave as it sees them; a second one only if it has two.

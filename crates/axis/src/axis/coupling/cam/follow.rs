@@ -4,11 +4,11 @@ use super::super::super::commands::ROUNDING;
 use super::super::super::power::Reaction;
 use super::super::super::{Axis, Motion};
 use super::super::FURTHEST;
-use super::super::follow::{Beyond, meet, off};
+use super::super::follow::{Beyond, leaves_room, meet, off};
 use super::super::view::{Kind, View};
 use super::{Curve, OnCam, Rung, Shadow};
 use crate::{ErrorId, Event, OnLimit, Scope};
-use standstill_planner::{CamAt, Lead, Place, Planner, Setpoint};
+use standstill_planner::{CamAt, Lead, Limits, Place, Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
     /// [`Axis::advance`] of an axis on a cam, with a look at its master.
@@ -113,6 +113,7 @@ impl<P: Planner> Axis<P> {
             Rung::Due
             | Rung::Locked
             | Rung::BesideMaster
+            | Rung::BesideMeasured { .. }
             | Rung::Moving { to: None, .. }
             | Rung::Waiting
             | Rung::Lost => {}
@@ -206,7 +207,12 @@ impl<P: Planner> Axis<P> {
             }
             (
                 Motion::Closing { .. },
-                Some(Rung::BesideLine { .. } | Rung::BesideMaster | Rung::Corner { .. }),
+                Some(
+                    Rung::BesideLine { .. }
+                    | Rung::BesideMaster
+                    | Rung::BesideMeasured { .. }
+                    | Rung::Corner { .. },
+                ),
             ) => self.step_along_cam(view, scope),
             _ => self.advance(scope),
         }
@@ -325,6 +331,15 @@ impl<P: Planner> Axis<P> {
             },
             at: next,
         };
+        if let Some(Rung::BesideMeasured { room }) = self.cam_rung()
+            && !self.keeps_room(&room, &shadow, view, scope)
+        {
+            self.decide_on_cam(view, false, scope);
+            if self.is_on_cam() {
+                self.step_on_cam(view, scope);
+            }
+            return;
+        }
         if let Some(corner) = self.corner_on_way(&shadow, scope) {
             return self.brake_for_corner(corner, view, scope);
         }
@@ -335,6 +350,21 @@ impl<P: Planner> Axis<P> {
             return self.fail(ErrorId::SetpointBroken, scope);
         };
         self.publish_on_cam(&at, shadow, scope);
+    }
+
+    /// Whether a master whose motion ahead is not known left the shadow this `room` beside it, and the slave keeps its limits at `next`.
+    fn keeps_room(&self, room: &Limits, next: &Shadow, view: &View<'_, P::Plan>, scope: &Scope<'_>) -> bool {
+        let (Some(on_cam), Some(at)) = (&self.follower.on_cam, self.on_curve(next.place, &next.at, scope))
+        else {
+            return false;
+        };
+        let last = on_cam.shadow.map_or(next.at, |shadow| shadow.at);
+        let ends = [on_cam.was.at, view.now.at];
+        let speeds = [last.velocity, next.at.velocity];
+        leaves_room(&ends, room, speeds, &on_cam.shadow_limits, self.planner.cycle())
+            && self
+                .beyond(Some(at.place), &at.state, &on_cam.limits, Some(false))
+                .is_none()
     }
 
     /// The shadow has come to its master: in sync from now on, if that keeps the limits. Returns whether it is.

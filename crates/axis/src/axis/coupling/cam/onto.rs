@@ -33,6 +33,8 @@ pub(super) struct Stretch {
     pub now: Place,
     /// That line is ahead of the master until it begins.
     pub is_ahead: bool,
+    /// What the master does next is not known: the line is a guess that is made again at its end.
+    pub is_guess: bool,
 }
 
 /// How a shadow sets off: by how much its master comes nearer meanwhile, without a sign, and its own way with one (u of the cam's
@@ -318,15 +320,18 @@ impl<P: Planner> Axis<P> {
                 velocity: 0.0,
                 now: at(step),
                 is_ahead: false,
+                is_guess: false,
             };
         }
         let scans = view.future.measured().unwrap_or(UNKNOWN);
+        let velocity = if now.trembles { 0.0 } else { now.at.velocity };
         let unknown = Stretch {
             begin: 0,
             end: scans,
-            velocity: now.at.velocity,
-            now: at(step - now.at.velocity * cycle),
+            velocity,
+            now: at(step - velocity * cycle),
             is_ahead: false,
+            is_guess: true,
         };
         let Some(lead) = self.lead_of_master(view) else {
             return unknown;
@@ -349,6 +354,7 @@ impl<P: Planner> Axis<P> {
             velocity: then.velocity,
             now: at(further),
             is_ahead: further * was.at.velocity > 0.0,
+            is_guess: false,
         }
     }
 

@@ -3,6 +3,7 @@
 
 use super::super::super::commands::ROUNDING;
 use super::super::super::{Axis, Motion};
+use super::super::approach::half_left;
 use super::super::follow::apart;
 use super::super::needs::RESOLVED;
 use super::super::view::{UNKNOWN, View};
@@ -92,6 +93,21 @@ impl<P: Planner> Axis<P> {
                 let way = self.beside_stretch_of_master(shadow, stretch, &limits, curve, period);
                 take(&mut best, way);
             }
+        }
+        if let Some(near) = stretch.near(view) {
+            // The line only leads near its master. A shadow that waits for that does so beside the line, as the master itself may jitter.
+            let line = best.as_ref().filter(|way| !way.exceeds);
+            let line = line.map_or(u64::MAX, |way| way.lock);
+            let waits = stretch.comes(shadow, difference) && line > near;
+            let soonest = if waits { 0 } else { line.saturating_add(near) };
+            let beside = all
+                .clone()
+                .filter_map(|limits| {
+                    self.beside_measured_master(view, shadow, difference, stretch, &limits, curve)
+                })
+                .min_by_key(|way| way.lock)
+                .filter(|way| way.lock < soonest);
+            best = beside.or(best);
         }
         let is_missing = |best: &Option<Way<P::Plan>>| {
             best.as_ref()
@@ -227,7 +243,12 @@ impl<P: Planner> Axis<P> {
     pub(super) fn shadow_limits_now(&self) -> Option<Limits> {
         let on_cam = self.follower.on_cam.as_ref()?;
         match on_cam.rung {
-            Rung::BesideLine { .. } | Rung::BesideMaster | Rung::Corner { .. } if !on_cam.slows => {
+            Rung::BesideLine { .. }
+            | Rung::BesideMaster
+            | Rung::BesideMeasured { .. }
+            | Rung::Corner { .. }
+                if !on_cam.slows =>
+            {
                 Some(on_cam.shadow_limits)
             }
             _ => None,
@@ -305,6 +326,42 @@ impl<P: Planner> Axis<P> {
         })
     }
 
+    /// The same beside a master whose motion ahead is not known, with half of the limits that it leaves the shadow now. Each step is
+    /// checked before it is made. There is none again if the half was not enough in this step.
+    fn beside_measured_master(
+        &self,
+        view: &View<'_, P::Plan>,
+        shadow: &Shadow,
+        difference: &Setpoint,
+        stretch: &Stretch,
+        limits: &Limits,
+        curve: &Curve<'_>,
+    ) -> Option<Way<P::Plan>> {
+        let was_beside = matches!(self.cam_rung(), Some(Rung::BesideMeasured { .. }));
+        let is_there = difference.is_at_rest() && difference.position == 0.0;
+        if was_beside || is_there || curve.is_long(difference.position) {
+            return None;
+        }
+        let mut room = half_left(&view.now.at, limits)?;
+        if stretch.comes(shadow, difference) {
+            room.velocity = room.velocity.min(stretch.velocity.abs());
+        }
+        let plan = self.within_room(difference, &room, true)?;
+        Some(Way {
+            exceeds: false,
+            ahead: false,
+            lock: u64::from(plan.scans()),
+            motion: Motion::closing(plan),
+            rung: Rung::BesideMeasured { room },
+            left: u64::MAX,
+            name: Approach::Difference,
+            velocity: difference.velocity,
+            shadow: *limits,
+            slows: false,
+            laps: 0.0,
+        })
+    }
+
     /// Whether the rest of this plan leads its master that way at all: up (1) or down (-1).
     fn goes(&self, lead: &Lead<'_, P::Plan>, side: f64) -> bool {
         let (up, down) = self.planner.ways((lead.plan, lead.elapsed));
@@ -364,7 +421,7 @@ impl<P: Planner> Axis<P> {
             .ok()?;
         let scans = u64::from(plan.scans());
         let arrives = scans.max(stretch.begin);
-        let is_in_time = arrives <= stretch.end;
+        let is_in_time = stretch.is_guess || arrives <= stretch.end;
         // One that still moves against the stretch is faster beside it than it will be, and yet within its limits.
         let exceeds = plan.excess().is_some_and(|excess| leaves(&excess, limits))
             && !self.keeps_beside_line(&shadow.at, stretch.velocity, &plan, limits);
@@ -455,6 +512,20 @@ impl Stretch {
     /// master at rest it may go either way.
     fn lets_come(&self, shadow: &Shadow) -> bool {
         self.velocity != 0.0 && shadow.at.velocity * self.velocity >= 0.0
+    }
+
+    /// The shadow is ahead of its master, and lets it come.
+    fn comes(&self, shadow: &Shadow, difference: &Setpoint) -> bool {
+        difference.position * self.velocity > 0.0 && self.lets_come(shadow)
+    }
+
+    /// So many scans before it comes onto this line a way gives way to one beside the master itself; none where that is known to come onto
+    /// the line. A master that is even now may be on it.
+    fn near<Q: Plan>(&self, view: &View<'_, Q>) -> Option<u64> {
+        let now = &view.now.at;
+        let is_on_line = now.velocity == self.velocity && now.acceleration == 0.0 && now.jerk == 0.0;
+        let scans = view.future.unforeseen()?;
+        Some(if is_on_line { 0 } else { 2 * scans })
     }
 }
 
