@@ -263,10 +263,13 @@ impl<P: Plan> Mover<P> {
         }
     }
 
-    /// The shaper for other modes, of an axis that rests. Past set-points are kept where they were.
+    /// The shaper for other modes, of an axis that rests and has nothing left in its shaper.
     pub fn set_shapers(&mut self, shapers: Shapers) {
+        let position = self.setpoint.position;
         if let Some(shaping) = &mut self.shaping {
             shaping.shapers = shapers;
+            // A longer shaper would reach back to the motion before.
+            shaping.rest(position);
         }
     }
 
