@@ -11,7 +11,7 @@ use standstill_planner::{Excess, Limits, Planner, Setpoint};
 pub(super) const LAST_SCAN: f64 = 1.0 / 2048.0;
 
 /// The largest error of a position, relative to the largest position in its computation.
-const RESOLVED: f64 = 8.0 * f64::EPSILON;
+pub(super) const RESOLVED: f64 = 8.0 * f64::EPSILON;
 
 impl<P: Planner> Axis<P> {
     /// Whether `next` may follow the set-point last published.

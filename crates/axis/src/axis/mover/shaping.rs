@@ -10,6 +10,7 @@
 
 use super::{Motion, Mover};
 use crate::ConfigError;
+use crate::axis::guard::RESOLVED;
 use standstill_planner::shaper::{LONGEST_PERIOD, MODES};
 use standstill_planner::{Plan, Setpoint, Shaper, Shapers, VibrationMode};
 
@@ -27,7 +28,7 @@ pub(super) struct Shaping {
     seen: f64,
     /// By how much coordinates have moved since the last set-point was kept (u).
     moved: f64,
-    /// Scans in a row in which the motion had the velocity of the scan before, and nothing above it.
+    /// The motion was even for so many scans; see [`even_scans`].
     even: u32,
     /// Where the axis stood before the first set-point that is kept (u).
     origin: f64,
@@ -64,6 +65,20 @@ impl Ring {
         let back = self.newest.checked_sub(scans);
         let place = back.or_else(|| (self.newest + self.places).checked_sub(scans))?;
         history.get(self.first.checked_add(place)?).copied()
+    }
+}
+
+/// Scans in a row in which a motion had the velocity of the scan before, and nothing above it; at rest also the place. They were
+/// `before`, and the motion goes from `here` to `next`. Its positions were as large as `coarsest` (u).
+fn even_scans(before: u32, here: &Setpoint, next: &Setpoint, coarsest: f64) -> u32 {
+    let has_more = next.acceleration != 0.0 || next.jerk != 0.0 || next.snap != 0.0;
+    // A short motion begins and ends within a scan.
+    let resolved = RESOLVED * (here.position.abs() + next.position.abs() + coarsest);
+    let has_moved = next.velocity == 0.0 && (next.position - here.position).abs() > resolved;
+    if next.velocity != here.velocity || has_more || has_moved {
+        0
+    } else {
+        before.saturating_add(1)
     }
 }
 
@@ -123,15 +138,10 @@ impl Shaping {
     }
 
     /// The motion goes from `here` to `next`. A `here` that was not seen before is another name of that place.
-    fn step(&mut self, here: &Setpoint, next: &Setpoint) {
+    fn step(&mut self, here: &Setpoint, next: &Setpoint, coarsest: f64) {
         self.moved += here.position - self.seen;
         self.seen = next.position;
-        let has_more = next.acceleration != 0.0 || next.jerk != 0.0 || next.snap != 0.0;
-        self.even = if next.velocity != here.velocity || has_more {
-            0
-        } else {
-            self.even.saturating_add(1)
-        };
+        self.even = even_scans(self.even, here, next, coarsest);
     }
 
     /// At rest at `position` (u), with nothing left of what was.
@@ -203,7 +213,9 @@ impl<P: Plan> Mover<P> {
     #[cold]
     #[inline(never)]
     fn has_come_out(&self) -> bool {
-        self.shaping.as_ref().is_none_or(Shaping::is_through)
+        // What follows the feedback is not shaped.
+        let follows = matches!(self.motion, Motion::Follow);
+        follows || self.shaping.as_ref().is_none_or(Shaping::is_through)
     }
 
     /// Scans after which a set-point of the motion has come out whole.
@@ -238,7 +250,7 @@ impl<P: Plan> Mover<P> {
     #[inline(never)]
     pub(super) fn pass_to_shaper(&mut self, next: &Setpoint) {
         if let Some(shaping) = &mut self.shaping {
-            shaping.step(&self.setpoint, next);
+            shaping.step(&self.setpoint, next, self.coarsest);
         }
     }
 
