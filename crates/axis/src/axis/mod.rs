@@ -589,11 +589,11 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A motion at its goal has come to it for whoever waits: it has come out of the shaper, or hands over in
+    /// A motion at its goal has come to it for whoever waits: its own part has come out of the shaper, or it hands over in
     /// motion.
     #[inline(always)]
     fn is_goal_published(&self) -> bool {
-        self.mover.is_through() || self.passes_in_motion()
+        self.mover.is_base_through() || self.passes_in_motion()
     }
 
     /// The running plan has reached its goal; a motion without a plan has.

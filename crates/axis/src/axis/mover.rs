@@ -12,6 +12,7 @@ use crate::{AxisConfig, ConfigError};
 use core::mem::offset_of;
 pub(super) use motion::{Motion, scans_to_goal};
 use shaping::Shaping;
+pub(super) use shaping::even_scans;
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
 
 /// The set-point of an axis and what determines the next one. What every scan looks at comes first.
@@ -274,6 +275,9 @@ impl<P: Plan> Mover<P> {
                 plan.next(*elapsed)
             }
         };
+        if self.is_shaped {
+            layer.count_even(&base, self.coarsest);
+        }
         Some(layer.step(base))
     }
 

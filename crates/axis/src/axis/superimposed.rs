@@ -15,6 +15,7 @@ mod update;
 
 use self::soonest::Search;
 use super::commands::{Entry, REST, Work, WorkKind};
+use super::mover::{Mover, even_scans};
 use super::{Axis, Motion};
 use crate::{AxisEvent, AxisState, CommandId, ErrorId, Event, Fate, InstanceId, Scope, Superimpose};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
@@ -92,6 +93,8 @@ impl Added {
 pub(super) struct Layer<Plan> {
     /// Set-point of the owner alone.
     base: Setpoint,
+    /// The owner's motion was even for so many scans; see [`even_scans`]. Counted on an axis with a shaper.
+    even: u32,
     /// The added motion; its position counts from the start of the layer.
     added: Setpoint,
     /// The part of `added.position` that the positions of `base` already contain (u).
@@ -110,9 +113,10 @@ pub(super) struct Layer<Plan> {
 }
 
 impl<P: Plan> Layer<P> {
-    fn on(base: Setpoint, limits: &Limits) -> Self {
+    fn on(mover: &Mover<P>, limits: &Limits) -> Self {
         Self {
-            base,
+            base: *mover.setpoint(),
+            even: mover.even(),
             added: Setpoint::default(),
             taken: 0.0,
             motion: Motion::Hold,
@@ -137,6 +141,16 @@ impl<P: Plan> Layer<P> {
     /// What the added motion comes from.
     pub fn motion(&self) -> &Motion<P> {
         &self.motion
+    }
+
+    /// Scans in which the owner's motion was even.
+    pub fn even(&self) -> u32 {
+        self.even
+    }
+
+    /// The owner is about to be at `base`.
+    pub fn count_even(&mut self, base: &Setpoint, coarsest: f64) {
+        self.even = even_scans(self.even, &self.base, base, coarsest);
     }
 
     /// The owner is at `base` at the end of this scan, and the added motion goes on. Returns their sum.
@@ -288,7 +302,7 @@ impl<P: Planner> Axis<P> {
             .mover
             .layer()
             .copied()
-            .unwrap_or_else(|| Layer::on(*self.mover.setpoint(), &self.config.limits));
+            .unwrap_or_else(|| Layer::on(&self.mover, &self.config.limits));
         let id = self.new_id();
         let command = self.added(id, layer.added.position, &layer, request, scope)?;
         let refuse = |error| self.refuse("Distance", request.distance, f64::NAN, error, scope);
@@ -347,7 +361,7 @@ impl<P: Planner> Axis<P> {
             .mover
             .layer()
             .copied()
-            .unwrap_or_else(|| Layer::on(*self.mover.setpoint(), &limits));
+            .unwrap_or_else(|| Layer::on(&self.mover, &limits));
         let command = Added {
             id: self.new_id(),
             instance: scope.instance,

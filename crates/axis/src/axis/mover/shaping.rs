@@ -70,7 +70,7 @@ impl Ring {
 
 /// Scans in a row in which a motion had the velocity of the scan before, and nothing above it; at rest also the place. They were
 /// `before`, and the motion goes from `here` to `next`. Its positions were as large as `coarsest` (u).
-fn even_scans(before: u32, here: &Setpoint, next: &Setpoint, coarsest: f64) -> u32 {
+pub(in crate::axis) fn even_scans(before: u32, here: &Setpoint, next: &Setpoint, coarsest: f64) -> u32 {
     let has_more = next.acceleration != 0.0 || next.jerk != 0.0 || next.snap != 0.0;
     // A short motion begins and ends within a scan.
     let resolved = RESOLVED * (here.position.abs() + next.position.abs() + coarsest);
@@ -216,6 +216,26 @@ impl<P: Plan> Mover<P> {
         // What follows the feedback is not shaped.
         let follows = matches!(self.motion, Motion::Follow);
         follows || self.shaping.as_ref().is_none_or(Shaping::is_through)
+    }
+
+    /// The same of the motion without what is superimposed.
+    #[inline(always)]
+    pub fn is_base_through(&self) -> bool {
+        !self.is_shaped || self.base_has_come_out()
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn base_has_come_out(&self) -> bool {
+        match &self.layer {
+            Some(layer) => u64::from(layer.even()) >= self.shaping_delay(),
+            None => self.has_come_out(),
+        }
+    }
+
+    /// For so many scans the motion was even; see [`even_scans`].
+    pub fn even(&self) -> u32 {
+        self.shaping.as_ref().map_or(u32::MAX, |shaping| shaping.even)
     }
 
     /// Scans after which a set-point of the motion has come out whole.
