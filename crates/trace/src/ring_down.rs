@@ -31,7 +31,13 @@ pub const DAMPING_MAX: f64 = 0.5;
 pub const GROWTH_MAX: f64 = 0.1;
 
 /// Rates of decay on the grid, in one window.
-const DECAYS: [f64; 3] = [0.0, 4.0, 24.0];
+const DECAYS: [f64; 5] = [0.0, 4.0, 24.0, 96.0, 400.0];
+
+/// The part of the sum of squares that is known in one sample: what the fit leaves of it may be rounding.
+const RESOLVED: f64 = 4.0 * f64::EPSILON;
+
+/// A fit whose decay is this near to a bound, as a part of the turn, is on it.
+const ON_BOUND: f64 = 1e-6;
 
 /// Halvings of the steps around the best of the grid.
 const HALVINGS: u32 = 40;
@@ -74,6 +80,10 @@ pub enum NoRingDown {
     Unexplained(f64),
     /// The best fit has no more periods than this.
     Slow(f64),
+    /// The best fit has this damping ratio, the largest or the least that is looked for: there is a better one beyond it.
+    Bound(f64),
+    /// The samples do not tell the frequency and the damping of the best fit.
+    Vague,
 }
 
 impl fmt::Display for NoRingDown {
@@ -97,6 +107,15 @@ impl fmt::Display for NoRingDown {
                 out,
                 "the best fit has {periods:.1} periods, and it takes {PERIODS_MIN}: take a longer window"
             ),
+            Self::Bound(damping) => write!(
+                out,
+                "it {} too fast: the best fit has a damping ratio of {damping:.4}, and no other is looked for beyond that",
+                if *damping < 0.0 { "grows" } else { "decays" }
+            ),
+            Self::Vague => write!(
+                out,
+                "frequency and damping of the best fit are not determined: take more samples of the swing"
+            ),
         }
     }
 }
@@ -107,7 +126,7 @@ impl fmt::Display for NoRingDown {
 /// Samples without an oscillation; see [`NoRingDown`].
 ///
 /// # Cost
-/// About 6,000 fits of at most [`SAMPLES`] samples for every factor of 4 that the window is longer than that.
+/// About 10,000 fits of at most [`SAMPLES`] samples for every factor of 4 that the window is longer than that.
 pub fn identify(samples: &[f64], step: f64) -> Result<RingDown, NoRingDown> {
     if samples.len() < SAMPLES_MIN {
         return Err(NoRingDown::Short(samples.len()));
@@ -187,7 +206,9 @@ fn in_window(samples: &[f64], step: f64) -> Result<(f64, RingDown), NoRingDown> 
             best = (left, at);
         }
     }
-    let (left, at) = refined(&scaled, best, width, 1.0 / count);
+    // A fast decay is looked for in larger steps, as its grid is coarser and its peak is wider.
+    let decay = (0.25 * best.1.decay).max(1.0 / count);
+    let (left, at) = refined(&scaled, best, width * decay * count, decay);
     let explained = 1.0 - left / line;
     if explained < EXPLAINED_MIN {
         return Err(NoRingDown::Unexplained(explained.max(0.0)));
@@ -195,6 +216,10 @@ fn in_window(samples: &[f64], step: f64) -> Result<(f64, RingDown), NoRingDown> 
     let periods = at.turn * count / (2.0 * PI);
     if periods < PERIODS_MIN {
         return Err(NoRingDown::Slow(periods));
+    }
+    let natural = (at.turn * at.turn + at.decay * at.decay).sqrt();
+    if at.is_on_bound() {
+        return Err(NoRingDown::Bound(at.decay / natural));
     }
 
     // Means over blocks are lower than their samples.
@@ -207,8 +232,8 @@ fn in_window(samples: &[f64], step: f64) -> Result<(f64, RingDown), NoRingDown> 
             decay: at.decay / blocks,
         }),
     );
-    let (turn_within, decay_within) = within(&scaled, at, left);
-    let natural = (at.turn * at.turn + at.decay * at.decay).sqrt();
+    let (turn_within, decay_within) =
+        within(&scaled, at, left.max(RESOLVED * line * count)).ok_or(NoRingDown::Vague)?;
     let found = RingDown {
         frequency: natural / (2.0 * PI * step),
         frequency_within: (at.turn * turn_within + at.decay.abs() * decay_within)
@@ -235,6 +260,11 @@ impl Try {
         let is_slow = -GROWTH_MAX * self.turn <= self.decay && self.decay <= DAMPING_MAX * self.turn;
         self.turn > 0.0 && self.turn < PI && is_slow
     }
+
+    fn is_on_bound(&self) -> bool {
+        let ratio = self.decay / self.turn;
+        ratio >= DAMPING_MAX - ON_BOUND || ratio <= ON_BOUND - GROWTH_MAX
+    }
 }
 
 /// The best of a few neighbours at a time, with steps that halve.
@@ -242,9 +272,20 @@ fn refined(samples: &[f64], (mut left, mut at): (f64, Try), turn: f64, decay: f6
     let (mut turn, mut decay) = (turn, decay);
     for _ in 0..HALVINGS {
         for _ in 0..MOVES {
-            let neighbours = [(turn, 0.0), (-turn, 0.0), (0.0, decay), (0.0, -decay)].map(|(by, more)| Try {
-                turn: at.turn + by,
-                decay: at.decay + more,
+            // Diagonals, too: of a swing that decays fast, turn and decay change the fit together.
+            let neighbours = [
+                (1.0, 0.0),
+                (-1.0, 0.0),
+                (0.0, 1.0),
+                (0.0, -1.0),
+                (1.0, 1.0),
+                (-1.0, -1.0),
+                (1.0, -1.0),
+                (-1.0, 1.0),
+            ]
+            .map(|(by, more)| Try {
+                turn: at.turn + by * turn,
+                decay: at.decay + more * decay,
             });
             let before = left;
             for neighbour in neighbours {
@@ -264,8 +305,9 @@ fn refined(samples: &[f64], (mut left, mut at): (f64, Try), turn: f64, decay: f6
     (left, at)
 }
 
-/// The uncertainty of turn and decay, 95 %: from the growth of the sum of squares around the best.
-fn within(samples: &[f64], at: Try, left: f64) -> (f64, f64) {
+/// The uncertainty of turn and decay, 95 %: from the growth of the sum of squares around the best; `None` if it does not grow to
+/// every side.
+fn within(samples: &[f64], at: Try, left: f64) -> Option<(f64, f64)> {
     let count = samples.len() as f64;
     let (turn, decay) = (0.01 / count, 0.01 / count);
     let sum = |by: f64, more: f64| {
@@ -281,8 +323,11 @@ fn within(samples: &[f64], at: Try, left: f64) -> (f64, f64) {
     let of_both = (sum(1.0, 1.0) + sum(-1.0, -1.0) - sum(1.0, -1.0) - sum(-1.0, 1.0)) / (4.0 * turn * decay);
     let spread = 2.0 * left / (count - 6.0);
     let whole = of_turn * of_decay - of_both * of_both;
-    let bound = |curvature: f64| 1.96 * (spread * curvature / whole).max(0.0).sqrt();
-    (bound(of_decay), bound(of_turn))
+    if !(whole > 0.0 && of_turn > 0.0) {
+        return None;
+    }
+    let bound = |curvature: f64| 1.96 * (spread * curvature / whole).sqrt();
+    Some((bound(of_decay), bound(of_turn)))
 }
 
 /// The best oscillation with given turn and decay, beside a straight line.

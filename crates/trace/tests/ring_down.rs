@@ -37,6 +37,40 @@ fn frequency_and_damping_are_those_it_was_made_with() {
 }
 
 #[test]
+fn a_swing_that_is_over_soon_is_found_in_a_window_of_any_length() {
+    let mut random = Random(4);
+    for case in 0..60 {
+        let damping = random.between(0.1, 0.44);
+        let samples_each = random.log(6.0, 60.0);
+        let periods = random.log(3.0, 300.0);
+        let step = 1e-3;
+        let frequency = 1.0 / (samples_each * step);
+        let count = ((samples_each * periods) as usize).max(32);
+        let found = identify(&made(count, step, frequency, damping, 1.0), step);
+        let about = format!("case {case}: {frequency} Hz, {damping}, {count} samples: {found:?}");
+        let found = found.unwrap_or_else(|_| panic!("{about}"));
+        assert!(is_near(found.frequency, frequency, 1e-3 * frequency), "{about}");
+        assert!(is_near(found.damping, damping, 1e-3), "{about}");
+    }
+}
+
+#[test]
+fn a_swing_that_decays_too_fast_is_not_taken_for_another() {
+    for damping in [0.46, 0.5, 0.6] {
+        let found = identify(&made(200, 2e-3, 10.0, damping, 1.0), 2e-3);
+        assert!(
+            matches!(found, Err(NoRingDown::Bound(at)) if is_near(at, 0.4472, 1e-4)),
+            "{damping}: {found:?}"
+        );
+    }
+    let found = identify(&made(1000, 1e-3, 10.0, -0.11, 1.0), 1e-3);
+    assert!(
+        matches!(found, Err(NoRingDown::Bound(at)) if is_near(at, -0.0995, 1e-4)),
+        "{found:?}"
+    );
+}
+
+#[test]
 fn what_is_said_of_the_error_holds_in_noise() {
     let mut random = Random(2);
     let (mut frequencies, mut dampings) = (0, 0);
