@@ -78,9 +78,11 @@ impl<P: Planner> Axis<P> {
         let was_locked = coupling.rung.is_locked();
         let here = anchor_at(&coupling.was, self.place());
         let anchor = coupling.anchor.unwrap_or(here);
-        let (_, law) = coupling.law(&anchor, &coupling.was);
+        let (law_place, law) = coupling.law(&anchor, &coupling.was);
         let difference = self.difference(coupling, &anchor);
-        if difference.is_at_rest() && difference.position == 0.0 {
+        // A turn may have changed the name of its masters' places by a rounding.
+        let is_kept = was_locked && difference.position.abs() <= self.resolved_of(coupling, law_place);
+        if difference.is_at_rest() && (difference.position == 0.0 || is_kept) {
             // A step off the law may not have been checked against a plan of the master that is over now.
             let was_on_law = coupling.anchor.is_some();
             let is_seen = match view.future.kind() {
@@ -121,6 +123,13 @@ impl<P: Planner> Axis<P> {
             }
             Err(error) => self.stay_back(error, view, scope),
         }
+    }
+
+    /// How exactly (u) the slave can be told to be on its law, which is at `law` now.
+    fn resolved_of(&self, coupling: &Coupling, law: Place) -> f64 {
+        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let masters = coupling.size_of_masters(&coupling.was);
+        RESOLVED * 4.0 * (self.place().position.abs() + law.position.abs() + masters + length)
     }
 
     /// The difference of the slave from the law through `anchor` at the end of the last scan.

@@ -35,7 +35,7 @@ impl Coupling {
     }
 
     /// How large (u of the slave) the places of its masters are that the law is made of, with what shifts them.
-    fn size_of_masters(&self, seen: &SeenBoth) -> f64 {
+    pub(super) fn size_of_masters(&self, seen: &SeenBoth) -> f64 {
         let [first, second] = seen;
         let part = |leg, seen: &Seen| self.gearing.factor(leg, seen.size()).abs();
         part(0, first) + part(1, second)
