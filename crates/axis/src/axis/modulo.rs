@@ -12,7 +12,7 @@ use super::Axis;
 use super::commands::{Entry, Place, REST, Run, Work};
 use crate::{AxisConfig, Direction, DrivePosition, ErrorId, ModuloTargets, Scaling, Turn};
 use standstill_planner::turns::{split, two_product};
-use standstill_planner::{Passage, Plan, Planner, Setpoint};
+use standstill_planner::{Limits, Passage, Plan, Planner, Setpoint};
 
 /// How far before the end of a stop a target may lie and still be met, relative to the way of the stop:
 /// this is rounding, and no visible way back.
@@ -393,10 +393,12 @@ impl<P: Planner> Axis<P> {
         };
         let to_target = target - here.position;
         let missing_to = |velocity: f64| {
-            let ramp = self
-                .planner
-                .ramp_to(start, velocity, &entry.limits, &before)
-                .ok()?;
+            // The speed it is passed with may be above its own limit.
+            let limits = Limits {
+                velocity: entry.limits.velocity.max(velocity.abs()),
+                ..entry.limits
+            };
+            let ramp = self.planner.ramp_to(start, velocity, &limits, &before).ok()?;
             let way = ramp.at(u64::from(ramp.scans())).position - start.position;
             let missing = if forward { way - to_target } else { to_target - way };
             Some(missing - ROUNDING * way.abs())
