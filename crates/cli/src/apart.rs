@@ -3,7 +3,7 @@
 use crate::exit::Failure;
 use standstill_script::suite::shown;
 use standstill_trace::csv::meta_path;
-use standstill_trace::file::is_csv;
+use standstill_trace::file::{folder_of, is_csv, is_special};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -35,8 +35,6 @@ pub fn trace(path: Option<&Path>) -> Vec<Written> {
 /// Refuses two files in one place, by whatever paths they are named, and one in the place of a file that is read. To be
 /// asked before anything is written.
 pub fn checked<'a>(writes: &[Written], reads: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
-    // A device or a pipe takes what comes.
-    let is_special = |path: &Path| fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
     let placed: Vec<_> = writes
         .iter()
         .filter(|file| !is_special(&file.path))
@@ -70,9 +68,7 @@ pub fn checked<'a>(writes: &[Written], reads: impl IntoIterator<Item = &'a Path>
 /// The place of a file, whether it is there or not: its own name in the system's own path of its folder. A link at this
 /// place is replaced, so it is not followed.
 fn place(path: &Path) -> PathBuf {
-    let folder = path.parent().filter(|folder| *folder != Path::new(""));
-    let folder = fs::canonicalize(folder.unwrap_or(Path::new(".")));
-    match (folder, path.file_name()) {
+    match (fs::canonicalize(folder_of(path)), path.file_name()) {
         (Ok(folder), Some(name)) => folder.join(name),
         // It cannot be written at all.
         _ => path.to_owned(),

@@ -1,5 +1,6 @@
 //! The times and lengths of a folder's files when last saved.
 
+use standstill_trace::file::folder_of;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,10 +22,9 @@ impl Saved {
     pub fn below(paths: &[PathBuf], except: Option<&Path>) -> Self {
         let mut folders: Vec<PathBuf> = paths
             .iter()
-            .map(|path| match path.parent() {
-                _ if path.is_dir() => path.clone(),
-                Some(folder) if folder != Path::new("") => folder.to_owned(),
-                _ => PathBuf::from("."),
+            .map(|path| match path.is_dir() {
+                true => path.clone(),
+                false => folder_of(path).to_owned(),
             })
             .collect();
         let except = except.and_then(|path| path.canonicalize().ok());

@@ -197,9 +197,7 @@ impl Draft {
     /// # Errors
     /// What the system says.
     pub fn begin(path: &Path) -> Result<Self, FileError> {
-        // Also through a link: `/dev/stdout` is one.
-        let special = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
-        if !special {
+        if !is_special(path) {
             return Self::beside(path);
         }
         let open = File::options().write(true).open(path);
@@ -277,8 +275,15 @@ impl Write for Draft {
     }
 }
 
-/// The folder that `path` is in.
-fn folder_of(path: &Path) -> &Path {
+/// Whether there is a pipe or a device at `path`, also through a link: `/dev/stdout` is one. It takes what is written to it.
+#[must_use]
+pub fn is_special(path: &Path) -> bool {
+    fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
+}
+
+/// The folder that `path` is in: `.` for a bare name.
+#[must_use]
+pub fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),

@@ -1,6 +1,6 @@
 //! A trace that is written during its run.
 
-use super::{Draft, FileError, Form, folder_of, form, replace_beside};
+use super::{Draft, FileError, Form, folder_of, form, is_special, replace_beside};
 use crate::csv::{self, Dialect};
 use crate::jsonl::{self, END_KEY};
 use crate::trace::Trace;
@@ -39,7 +39,7 @@ impl Streaming {
                 path: path.to_owned(),
             });
         }
-        let special = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
+        let special = is_special(path);
         // Beside the trace, where there is room for it; a device has none beside it.
         let folder = match special {
             true => std::env::temp_dir(),
