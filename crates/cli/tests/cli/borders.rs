@@ -1,7 +1,7 @@
 //! Files of strangers: their texts cannot forge the output, nothing is written outside the allowed
 //! places, and work and memory stay in proportion.
 
-use crate::support::{SCRIPT, command, ended, read, scratch, standstill, with_script, write};
+use crate::support::{LONG, SCRIPT, command, ended, read, scratch, standstill, with_script, write};
 use std::fs;
 use std::time::{Duration, Instant};
 
@@ -408,9 +408,7 @@ fn claims_times_scans_have_a_bound() {
 #[test]
 fn a_time_limit_ends_any_command_with_what_it_was_at() {
     let folder = scratch("borders_time");
-    let script = r#"{"standstill":1,"cycle":"T#1us","scans":10000000,"axes":{"X":{"limits":{"velocity":1,"acceleration":1}}},
-        "blocks":[],"expect":[{"always":{"X.Position":0}}]}"#;
-    write(&folder, "long.scan.json", script);
+    write(&folder, "long.scan.json", LONG);
     for (arguments, at) in [
         (
             &["--time-limit", "300ms", "run", "-q", "long.scan.json"][..],

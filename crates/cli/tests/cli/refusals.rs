@@ -1,7 +1,7 @@
 //! What a command says and leaves behind where it cannot do its work.
 
 use crate::support::{
-    Ended, SCRIPT, command, ended, is_an_outcome, read, scratch, standstill, with_script, write,
+    Ended, LONG, SCRIPT, command, ended, is_an_outcome, read, scratch, standstill, with_script, write,
 };
 use serde_json::Value;
 use std::fs;
@@ -81,9 +81,7 @@ fn with_json_every_answer_is_an_object() {
 #[test]
 fn with_json_a_time_limit_is_an_answer() {
     let folder = scratch("refusals_time");
-    let script = r#"{"standstill":1,"cycle":"T#1us","scans":10000000,"axes":{"X":{"limits":{"velocity":1,"acceleration":1}}},
-        "blocks":[],"expect":[{"always":{"X.Position":0}}]}"#;
-    write(&folder, "long.scan.json", script);
+    write(&folder, "long.scan.json", LONG);
     for name in ["run", "test"] {
         let arguments = ["--time-limit", "300ms", name, "--json", "long.scan.json"];
         let ended = standstill(&folder, &arguments);

@@ -6,6 +6,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread;
 
+/// A script that takes longer than any time limit of a test.
+pub const LONG: &str = r#"{"standstill":1,"cycle":"T#1us","scans":10000000,"axes":{"X":{"limits":{"velocity":1,"acceleration":1}}},
+    "blocks":[],"expect":[{"always":{"X.Position":0}}]}"#;
+
 /// A move of 20 scans with a parameter; every claim holds.
 pub const SCRIPT: &str = r#"{
   "standstill": 1,
