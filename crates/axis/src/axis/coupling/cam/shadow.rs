@@ -304,7 +304,6 @@ impl<P: Planner> Axis<P> {
             Some(plan) => plan,
             None => attempt(&self.room_beside(&leads, limits)?)?,
         };
-        let lock = u64::from(plan.scans());
         // It comes from behind and stays there.
         let forwards = 1.0_f64.copysign(lead.plan.at(lead.elapsed.saturating_add(1)).velocity * lead.factor);
         let (lowest, highest) = self.planner.reach((&plan, 0));
@@ -312,17 +311,8 @@ impl<P: Planner> Axis<P> {
         let resolved = RESOLVED * 4.0 * (difference.position.abs() + on_cam.was.place.position.abs());
         let ahead = difference.position * forwards <= 0.0 && furthest * forwards > resolved;
         Some(Way {
-            exceeds: false,
             ahead,
-            motion: Motion::closing(plan),
-            rung: Rung::BesideMaster,
-            lock,
-            left: u64::MAX,
-            name: Approach::Difference,
-            velocity: difference.velocity,
-            shadow: *limits,
-            slows: false,
-            laps: 0.0,
+            ..beside(plan, Rung::BesideMaster, difference, limits)
         })
     }
 
@@ -347,19 +337,7 @@ impl<P: Planner> Axis<P> {
             room.velocity = room.velocity.min(stretch.velocity.abs());
         }
         let plan = self.within_room(difference, &room, true)?;
-        Some(Way {
-            exceeds: false,
-            ahead: false,
-            lock: u64::from(plan.scans()),
-            motion: Motion::closing(plan),
-            rung: Rung::BesideMeasured { room },
-            left: u64::MAX,
-            name: Approach::Difference,
-            velocity: difference.velocity,
-            shadow: *limits,
-            slows: false,
-            laps: 0.0,
-        })
+        Some(beside(plan, Rung::BesideMeasured { room }, difference, limits))
     }
 
     /// Whether the rest of this plan leads its master that way at all: up (1) or down (-1).
@@ -504,6 +482,23 @@ impl<P: Planner> Axis<P> {
             slows: false,
             laps: 0.0,
         })
+    }
+}
+
+/// The way by a `plan` of the `difference` from what a shadow goes beside, within these `limits` of the shadow.
+fn beside<Q: Plan>(plan: Q, rung: Rung, difference: &Setpoint, limits: &Limits) -> Way<Q> {
+    Way {
+        exceeds: false,
+        ahead: false,
+        lock: u64::from(plan.scans()),
+        motion: Motion::closing(plan),
+        rung,
+        left: u64::MAX,
+        name: Approach::Difference,
+        velocity: difference.velocity,
+        shadow: *limits,
+        slows: false,
+        laps: 0.0,
     }
 }
 
