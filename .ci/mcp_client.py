@@ -1,4 +1,4 @@
-"""Asks `standstill mcp` for everything it offers, by the client of the Python package `mcp`."""
+"""Asks `standstill mcp` for everything it offers, with the client of the Python package `mcp`."""
 
 import asyncio
 import json

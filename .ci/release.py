@@ -1,4 +1,4 @@
-"""Parts of `.ci/release` that need no shell: archives whose bytes follow from their files alone, and what licences ask for."""
+"""Parts of `.ci/release` that need no shell: archives whose bytes depend on their files only, and the texts of licences."""
 
 import gzip
 import hashlib

@@ -4,8 +4,9 @@ import { setFlagsFromString } from 'node:v8';
 import { WASI } from 'node:wasi';
 import { argv, cwd, exit } from 'node:process';
 
-// Node 20 ends with a segmentation fault where V8 ends an incremental marking while WebAssembly runs (seen in 9 of 12 runs of
-// `test --strict scan-tests/cams`, in none without it). The program needs a heap of a few megabytes here, so nothing is lost.
+// Node 20 crashes with a segmentation fault if V8 ends an incremental marking while WebAssembly runs: in 9 of 12 runs of
+// `test --strict scan-tests/cams`, in none without incremental marking. The program needs a heap of a few megabytes, so that is
+// no loss.
 setFlagsFromString('--no-incremental-marking');
 
 const [, , file, ...args] = argv;
