@@ -183,8 +183,8 @@ pub fn pages() -> Vec<Generated> {
         "{NOTICE}# What a smoother profile does for a machine\n\n\
          Three moves of 1 rad in {} scans of 1 ms, one with steps of acceleration, one with limited jerk, one with limited\n\
          snap. They turn the same mechanism: a motor (0.02) and a load (0.05) on a spring, damped by 1 %, under the default\n\
-         loops of a `plant` drive with full feed-forward. The experiment is in the manner of García-Martínez et al. (2018),\n\
-         who compare profiles of one duration on one axis; the numbers are those of the simulation. Written by\n\
+         loops of a `plant` drive with full feed-forward. The experiment follows García-Martínez et al. (2018), who\n\
+         compare profiles of one duration on one axis; the numbers are those of the simulation. Written by\n\
          `cargo run -p standstill-xtask --example gen`; a test keeps them fresh.\n\n\
          | profile | v | a | j | s |\n| --- | ---: | ---: | ---: | ---: |\n",
         run(&MOVES[0].1, SHOWN).scans
@@ -208,8 +208,8 @@ pub fn pages() -> Vec<Generated> {
     }
     text.push_str(
         "\n## Residual vibration, torque and tracking error\n\n\
-         By the frequency of the load on its spring, the motor held; the worst of 24 frequencies in each band, because at a\n\
-         single one chance decides: a ramp that lasts whole periods leaves nothing. *Swing* is the largest distance of the load\n\
+         The bands are frequencies of the load on its spring, with the motor held. Each row is the worst of 24 frequencies in\n\
+         its band, because a single one depends on chance: a ramp that lasts whole periods leaves nothing. *Swing* is the largest distance of the load\n\
          from the target after the last set-point (mrad), *torque* the largest of the motor, *lag* the largest distance of the\n\
          motor from its set-point (mrad).\n\n\
          | Hz | profile | swing | torque | lag |\n| ---: | --- | ---: | ---: | ---: |\n",
@@ -242,14 +242,14 @@ pub fn pages() -> Vec<Generated> {
         "\nHow far the load is from the set-point at {} Hz, in one scale; the moves end at scan 400:\n\n\
          ![Load minus set-point of the three moves](pictures/vibration.svg)\n\n\
          ## What it says\n\n\
-         - At equal duration a smoother profile needs a higher acceleration, because part of the time goes into its ramps, and\n  \
-           so more torque where the load swings slowly.\n\
-         - A load that swings less than some three times in a ramp of the velocity, here up to 25 Hz, sees little but the\n  \
-           acceleration: the profile with the lowest one swings least. Limited jerk or snap is no help there; a lower\n  \
-           acceleration, or ramps that last whole periods, are.\n\
-         - For faster ones, here from 25 Hz, limited jerk leaves a fraction of the swing and the lag, because the loops can\n  \
-           follow a torque without steps; where even the ramps of the jerk are slow for the load, here from 50 Hz, limited\n  \
-           snap leaves the least.\n\
+         - At equal duration a smoother profile needs a higher acceleration, because its ramps take part of the time. So it\n  \
+           needs more torque if the load swings slowly.\n\
+         - A load that swings less than about three times during a ramp of the velocity, here up to 25 Hz, reacts mainly to the\n  \
+           acceleration: the profile with the lowest acceleration swings least. Limited jerk or snap does not help there. A\n  \
+           lower acceleration helps, and so do ramps that last whole periods.\n\
+         - For faster loads, here from 25 Hz, limited jerk leaves a fraction of the swing and the lag, because the loops can\n  \
+           follow a torque without steps. If even the ramps of the jerk are slow for the load, here from 50 Hz, limited snap\n  \
+           leaves the least.\n\
          - So limits that are good for a machine follow from its lowest frequency: [choosing limits](choosing-limits.md).\n",
         SHOWN
     );
@@ -315,9 +315,10 @@ fn shaped() -> String {
 const SHAPED: &str = "
 ## Moves without swing
 
-An axis with the key `vibration` publishes a mean of its motion and of what that was some scans before, chosen so that what one part of the
-mean lets swing the others take away. It keeps every limit and ends exactly on the target, by a half or a whole period later.
-Frequency and damping are found by `standstill identify` in a recording of how the machine swings
+An axis with the key `vibration` publishes a weighted mean of its motion now and some scans before. Weights and delays
+are chosen so that the vibrations excited by the parts cancel. The axis keeps every limit and ends exactly on the
+target, half a period or a whole one later. `standstill identify` finds frequency and damping in a recording of the
+vibrating machine
 ([command-line.md](command-line.md#identify-trace---signal-name---from-time---to-time---time-name---unit-unit---json)).
 
 ```text
@@ -326,22 +327,23 @@ Frequency and damping are found by `standstill identify` in a recording of how t
 
 | shaper | takes | for |
 | --- | --- | --- |
-| `zv` | half a period | a frequency that is known: the least time |
-| `zvd` | a period | one that is known to some 10 % |
-| `ei`, the default | a period | one that is known to some 15 %, for 3 % of the swing where it is right |
-| `period` | a period | a frequency without damping and its multiples; nothing is left where the period is a whole number of scans |
+| `zv` | half a period | a frequency that is known exactly: the least time |
+| `zvd` | a period | one that is known to about 10 % |
+| `ei`, the default | a period | one that is known to about 15 %; leaves 3 % of the swing at the exact frequency |
+| `period` | a period | a frequency without damping and its multiples; leaves nothing if the period is a whole number of scans |
 
-Two modes may stand in the list; their delays add up. Damping is 0 if it is left out. What follows is the mechanism above with a load that swings with
-12 Hz, damped by 1 %, and moves of 2 rad in 1000 scans: one with limited jerk, the others shaped, with an acceleration *a* such that all take the
-same time. The columns say by how much the load's frequency is off the one that the shapers were made for, and what swing is left (mrad): at 0 % what
-comes of a motor that gives way a little.
+The list may have two modes; their delays add up. Damping is 0 if absent. The example is the mechanism above with a
+load that swings at 12 Hz, damped by 1 %, and moves of 2 rad in 1000 scans. One move has limited jerk, the others are
+shaped, with an acceleration *a* for which all take the same time. Each column is a deviation of the load's frequency
+from that of the shapers, with the swing that is left (mrad). The swing at 0 % is there because the motor gives way a
+little.
 
 ";
 
 const AFTER_SHAPED: &str = "
 ![Load minus set-point of the five moves at 12 Hz: after scan 1000 the jerk-limited one swings on, the shaped ones rest](pictures/vibration-shaped.svg)
 
-What is published, by lines of `standstill plan`: the move before it is shaped, and through three shapers of 12 Hz.
+Lines of `standstill plan`: the move before it is shaped, and through three shapers of 12 Hz.
 
 ```jsonl
 {\"id\": \"plain\", \"Ts\": 0.001, \"target\": 2, \"limits\": {\"velocity\": 4, \"acceleration\": 20, \"jerk\": 400}}
@@ -354,23 +356,28 @@ What is published, by lines of `standstill plan`: the move before it is shaped, 
 
 ## What a shaped axis does
 
-- **Done is exact.** A command is Done when nothing of it is left in the shaper: position on the target, velocity 0. InVelocity comes when the
-  velocity is published. A buffered command starts then; a blended one where the motion passes the end, which is before it shows.
-- **Whatever takes over**, a stop and a fault too, acts on the motion at once and shows at once, but what was in the shaper comes out first: the axis
-  stands later than without, by the delay of the shapers, and goes that much further. Think of it where a switch has to be met.
-- **Override, blending, superimposed moves, MC_Jog, homing, MC_SetPosition, profiles, modulo axes** work as on any axis. Distances count
-  from where the motion is, which is ahead of what is published.
-- **Switched off** with `on_power_off` `ramp` the power stays on until what is published stands. With `coast` and `drive`, and after faults of
-  power or drive, the set-point follows the axis at once and the shaper is empty.
+- **Done is exact.** A command is Done when nothing of it is left in the shaper: position on the target, velocity 0.
+  InVelocity comes when the velocity is published. A buffered command starts then. A blended command starts when the
+  motion passes the end, which is before the published position does.
+- **A command that takes over**, also a stop or a fault, acts on the motion at once and shows at once, but the
+  contents of the shaper are published first. So the axis comes to rest later, by the delay of the shapers, and
+  further on. Consider this if the axis must stop at a switch.
+- **Override, blending, superimposed moves, MC_Jog, homing, MC_SetPosition, profiles, modulo axes** work as on any
+  axis. Distances count from the position of the motion before the shaper, which is ahead of the published one.
+- **Switched off** with `on_power_off` `ramp`, the power stays on until the published set-point is at rest. With
+  `coast` and `drive`, and after faults of power or drive, the set-point follows the axis at once, and the shaper is
+  empty.
 - **Refused** with ErrorID 222: MC_GearIn, MC_GearInPos, MC_CamIn and MC_CombineAxes of a shaped slave, or of a shaped master's set
   values (its actual values may be followed), and MC_TorqueControl.
-- **One rate.** `limits.deceleration` must be `limits.acceleration`: in a mean of two directions neither of two rates would be kept. Commands may have
-  two. A `stop.deceleration` above it may show while the speed still grows, if the stop comes within a delay after a reversal.
-- **Software limits** hold for the motion before it is shaped, and so for what is published. If one is written in motion, what is in the
-  shaper still comes out, even beyond it. The same where a motion begins outside: what is published may go out once more, never further than
-  it was, until the shaper holds no place outside.
-- **By number** ([parameters.md](parameters.md)) modes are read, and written while the axis rests: a frequency down to half of that of the
-  set-up, as its memory is made for that.
-- A period has from 4 to 4096 cycles. A shaped axis costs each scan one set-point for each part of its shapers: 2 or 4, of `period` as
-  many as it has scans ([how it works](planner.md#15-moves-without-swing), [why so](decisions/0018-a-filter-behind-the-motion.md)).
-";
+- **One rate.** `limits.deceleration` must equal `limits.acceleration`: a mean of motions in two directions would keep
+  neither of two rates. Commands may have two. A higher `stop.deceleration` may appear while the speed still grows, if
+  the stop comes within one delay after a reversal.
+- **Software limits** hold for the motion before it is shaped, and so for the published positions. If a limit is
+  written in motion, the contents of the shaper are still published, even beyond it. After a motion that begins
+  outside, the published position may go out once more, never further than it was, until the shaper holds no position
+  outside.
+- **Parameters.** Modes are read by number ([parameters.md](parameters.md)), and written while the axis is at rest. A
+  frequency may be as low as half of the configured one, because the memory is sized for that.
+- A period has 4 to 4096 cycles. In each scan a shaped axis computes one set-point for each part of its shapers: 2 or
+  4, and for `period` as many as the period has scans ([how it works](planner.md#15-moves-without-swing), [why
+  so](decisions/0018-a-filter-behind-the-motion.md)). ";
