@@ -63,8 +63,8 @@ error_ids! {
 
     AxisUnknown = 100, "The Axis, Master, Slave, Input or Output pin names no axis of this runtime.",
         "Wire it to a configured axis.";
-    PositionInvalid = 101, "Position or Distance is NaN or infinite, the target is not representable, or MC_SetPosition or MC_Home would call a place by a number so large that two set-points have the same.",
-        "Give a finite number; for a new name of a place at most 2^52 times the way in a scan at the velocity limit.";
+    PositionInvalid = 101, "Position or Distance is NaN or infinite, the target is not representable, or the Position of MC_SetPosition or MC_Home is so large that two set-points would be the same number.",
+        "Give a finite number; at MC_SetPosition and MC_Home at most 2^52 times the travel in a scan at the velocity limit.";
     VelocityInvalid = 102, "Velocity is NaN or infinite, or zero or negative where a positive value is needed.",
         "Positioning moves and MC_Jog need a Velocity above 0; give the direction by the target or the button.";
     AccelerationInvalid = 103, "Acceleration is NaN, infinite or negative.",
@@ -107,8 +107,8 @@ error_ids! {
         "Lower EndVelocity, raise the limit, or set above_limit to clamp.";
     ExecutionModeInvalid = 122, "ExecutionMode is not a number of MC_EXECUTION_MODE.",
         "Use mcImmediately (0) or mcQueued (1).";
-    OutwardFromSoftwareLimit = 123, "The axis stands at or beyond a software limit and the endless motion would lead further out.",
-        "Move back inside: the other way, or to a target inside.";
+    OutwardFromSoftwareLimit = 123, "The axis is at or beyond a software limit and the endless motion would lead further out.",
+        "Move back inside: in the other direction, or to a target inside.";
     FactorInvalid = 124, "An override factor is NaN, negative, 0 where only VelFactor may be 0, or above the largest one of the axis.",
         "Give VelFactor from 0, AccFactor and JerkFactor from above 0, each at most 1 or the override_max of the axis.";
     JogDistanceInvalid = 125, "Distance of MC_Jog is NaN, infinite or negative.",
@@ -117,21 +117,21 @@ error_ids! {
         "Give a number from 0 to 31.";
     TriggerInvalid = 131, "TriggerInput is not a number of MC_TRIGGER_REF.",
         "Use a value from mcProbe1Rising (0) to mcProbe2Falling (3).";
-    WindowInvalid = 132, "LastPosition is below FirstPosition on an axis without turns, so the window is empty.",
-        "Give the window in positive direction; only on a modulo axis it may go on behind the end of the turn.";
+    WindowInvalid = 132, "LastPosition is below FirstPosition on an axis without modulo, so the window is empty.",
+        "Give the window in positive direction; only on a modulo axis it may pass the end of the turn.";
     CamSwitchInvalid = 133, "A record of Switches has a position that is not finite or not in the first turn, an empty cam, or a direction, mode or duration out of range.",
-        "Give positions of the axis, FirstOnPosition not above LastOnPosition but on modulo axes, AxisDirection 0 to 2, CamSwitchMode 0 or 1, in time mode a Duration above 0.";
+        "Give positions of the axis, FirstOnPosition not above LastOnPosition (except on modulo axes), AxisDirection 0 to 2, CamSwitchMode 0 or 1, in time mode a Duration above 0.";
     CamTrackInvalid = 134, "A TrackNumber is not from 1 to 32, or the Hysteresis of a track is NaN, infinite or negative.",
         "Number tracks from 1 to 32, and give a Hysteresis of 0 or above.";
-    TableUnknown = 135, "The table at a pin does not stand among the tables of this runtime, or has too many records.",
-        "Take the reference from Machine::add_table; the page of the block says how many records it takes.";
+    TableUnknown = 135, "The reference at the pin is no table of this runtime, or the table has too many records.",
+        "Take the reference from Machine::add_table; the page of the block has the largest number of records.";
     ParameterNumberInvalid = 140, "ParameterNumber is not the number of a parameter.",
         "Give a number from 1 to 17, or 1000 or 1001 to read.";
     ParameterKindInvalid = 141, "The parameter is a BOOL and the block one for REAL, or the other way round.",
         "Use MC_ReadBoolParameter and MC_WriteBoolParameter for the numbers 4 to 6, MC_ReadParameter and MC_WriteParameter for all others.";
     ParameterReadOnly = 142, "The parameter can only be read.",
-        "Write the limit of the application (9, 13, 15, 17) instead of that of the system; the others say what the axis does.";
-    ParameterValueInvalid = 143, "Value is NaN, or infinite, zero or negative where the parameter cannot be, or no number of a shaper, or a frequency or damping that can't be shaped.",
+        "Write the limit of the application (9, 13, 15, 17) instead of that of the system; the others only show what the axis does.";
+    ParameterValueInvalid = 143, "Value is NaN, or infinite, zero or negative where the parameter does not allow that, or not the number of a shaper, or a frequency or damping outside the range of shapers.",
         "Give a finite position, or a limit above 0; a frequency of at least half that of the set-up with a period from 4 to 4096 cycles, a damping from 0 to 0.9, a shaper from 1 to 4.";
     ParameterAboveSystem = 144, "Value is above the limit of the axis.",
         "Give at most what MC_ReadParameter shows for MaxVelocitySystem (8), MaxAccelerationSystem (12), MaxDecelerationSystem (14) or MaxJerkSystem (16).";
@@ -139,29 +139,29 @@ error_ids! {
         "Write SWLimitPos (2), SWLimitNeg (3) or MaxPositionLag (7) first.";
     SoftwareLimitsCrossed = 146, "The lower software limit would not be below the upper one.",
         "Move the other limit first, or switch one of them off.";
-    ParameterOnModulo = 147, "Software limits do not exist on a modulo axis: its positions come round.",
+    ParameterOnModulo = 147, "A modulo axis has no software limits: its positions wrap.",
         "Leave the parameters 2 to 5 alone on this axis.";
     VibrationMissing = 148, "The axis was set up without this mode of vibration, so it has no memory for a shaper.",
-        "Give the axis the mode in its set-up (its key vibration); then it can be changed while the axis rests.";
+        "Give the axis the mode in its set-up (its key vibration); then it can be changed while the axis is at rest.";
     RatioInvalid = 150, "RatioDenominator is 0.",
         "Give a denominator from 1; a RatioNumerator of 0 brings the slave to rest.";
     CouplingRing = 151, "Master is the slave itself, or an axis that follows it.",
         "Wire another axis to Master, or end the coupling that closes the ring first.";
     SyncModeInvalid = 152, "SyncMode, CombineMode or StartMode is a number that is not defined.",
         "Use mcShortest (0), mcCatchUp (1) or mcSlowDown (2).";
-    CamTableInvalid = 153, "The rows of a cam are no cam: fewer than 2 or more than 512, a Master that is not above the one before, a number that is NaN or infinite, or a Law that is not defined; or the store of cams has no room for it.",
-        "The record in the log names the row and the field, or what the store lacks; the size of the store is set up with the machine (cams).";
-    CamNotSmooth = 154, "A derivative of the cam jumps that the slave can't let jump: its limits, or its cam_continuity, ask for as many continuous ones.",
-        "The record in the log names the row, the derivative and the jump. Use mcCamRest7 or mcCamThrough for slaves with a snap limit, mcCamRest5 for those with a jerk limit; without periods begin and end at rest. With a lower coupling.cam_continuity the slave stops at such rows.";
-    CamUnknown = 155, "CamTableID is no cam: it was never selected, is not complete yet, or was selected anew since.",
+    CamTableInvalid = 153, "The rows do not form a cam: fewer than 2 or more than 512, a Master that is not above the one before, a number that is NaN or infinite, or a Law that is not defined; or the store of cams has no room.",
+        "The record in the log names the row and the field, or what is missing in the store; the size of the store is set up with the machine (cams).";
+    CamNotSmooth = 154, "A derivative of the cam jumps that must be continuous for the limits of the slave, or by its cam_continuity.",
+        "The record in the log names the row, the derivative and the jump. Use mcCamRest7 or mcCamThrough for slaves with a snap limit, mcCamRest5 for those with a jerk limit; without periods begin and end level. With a lower coupling.cam_continuity the slave stops at such rows.";
+    CamUnknown = 155, "CamTableID is no cam: it was never selected, is not complete yet, or was selected again since.",
         "Wire CamTableID of MC_CamTableSelect and wait for its Done.";
     SyncPositionInvalid = 156, "MasterSyncPosition, SlaveSyncPosition, MasterStartDistance or SwitchAt is NaN or further from 0 than 1e15, on a modulo axis not in its first turn, or not in the cam.",
         "Give finite positions; on a modulo axis at least 0 and less than the length of a turn, on a cam between its first and its last row, and a distance shorter than a turn, or than the period of a cam.";
     CamScalingInvalid = 157, "MasterScaling or SlaveScaling is 0, NaN or infinite, or an offset is NaN or beyond 1e15.",
         "Give finite numbers, and scalings other than 0; a negative SlaveScaling mirrors the cam.";
-    CouplingRatioTooFine = 158, "Master and slave both have turns, and a turn of the one is no ratio of integers below 2^63 turns of the other.",
+    CouplingRatioTooFine = 158, "Master and slave are both modulo axes, and the ratio of their turns is not one of integers below 2^63.",
         "Give lengths of turns that have a common measure, such as 360 and 400, or a ratio within the limit that the record in the log names.";
-    MasterSourceInvalid = 159, "MasterValueSource is mcCommandedValue, which is no motion that could be followed, or mcActualValue of a master that counts no increments, which the filter of actual values needs.",
+    MasterSourceInvalid = 159, "MasterValueSource is mcCommandedValue, which is not a motion to follow, or mcActualValue of a master without increments, which the filter of actual values needs.",
         "Use mcSetValue (1); for actual values give the master a scaling, or 0 as its coupling.actual_filter.";
     ProfileTableInvalid = 160, "A profile's table has no point after the start, more than 40, a DeltaTime that is not above 0 (the first may be 0) or that TimeScale makes less than 1e-9 of a cycle, or a value that is NaN or infinite.",
         "Give 1 to 40 points, each later than the one before; the record in the log names the point.";
@@ -186,16 +186,16 @@ error_ids! {
         "Wait for MC_Home.Done, or interrupt it with MC_Stop.";
     InMotion = 205, "The command needs an axis at standstill.",
         "Wait until the axis is in Standstill, or command it buffered behind a move that ends.";
-    PoweringOff = 206, "The axis is on its way to Disabled.",
+    PoweringOff = 206, "The axis is being switched off and is not Disabled yet.",
         "Wait for Disabled, then switch it on again with MC_Power.";
     NotHomed = 207, "The axis is set to need homing before absolute moves.",
         "Call MC_Home first.";
     PositiveBarred = 208, "The motion needs the positive direction, and EnablePositive of MC_Power is FALSE.",
-        "Set EnablePositive to TRUE at the MC_Power instance called last, or move the other way.";
+        "Set EnablePositive to TRUE at the MC_Power instance called last, or move in the other direction.";
     NegativeBarred = 209, "The motion needs the negative direction, and EnableNegative of MC_Power is FALSE.",
-        "Set EnableNegative to TRUE at the MC_Power instance called last, or move the other way.";
-    OutwardFromLimitSwitch = 210, "The axis stands on a hardware limit switch and the motion would lead further out.",
-        "Move back from the switch: the other way, or to a target on that side.";
+        "Set EnableNegative to TRUE at the MC_Power instance called last, or move in the other direction.";
+    OutwardFromLimitSwitch = 210, "The axis is on a hardware limit switch and the motion would lead further out.",
+        "Move back from the switch: in the other direction, or to a target on that side.";
     ProfileInterrupted = 212, "A profile was stopped because MC_Power barred a direction it needs; its times have passed.",
         "Start it again when the direction is permitted.";
     TorqueControls = 213, "MC_TorqueControl owns the axis, so there is no set position to add a motion to.",
@@ -204,25 +204,25 @@ error_ids! {
         "Wait for it, or abort it with MC_AbortTrigger; each probe serves one instance at a time.";
 
     NotCoupled = 216, "MC_GearOut finds no slave of MC_GearIn or MC_GearInPos, MC_CamOut none of MC_CamIn, or MC_PhasingAbsolute or MC_PhasingRelative none of its Master.",
-        "Call it while MC_GearIn, MC_GearInPos or MC_CamIn is Active; what moves an axis by itself is ended by MC_Halt or MC_Stop.";
+        "Call it while MC_GearIn, MC_GearInPos or MC_CamIn is Active; end other motions with MC_Halt or MC_Stop.";
 
     MasterTooFast = 218, "The slave of MC_GearInPos is behind a master that is at least as fast as its Velocity, so it can't catch up.",
         "Raise Velocity, or slow the master down until InSync.";
-    SyncNotReachable = 219, "The slave can't be in sync when its master, on its present plan, comes to MasterSyncPosition, or comes past the last row of a cam without periods.",
-        "Give a longer MasterStartDistance or higher dynamics, or bring the slave nearer to its place before.";
-    CamBeyondLimits = 220, "The slave can't follow the cam at the velocity limit of its master, and is set to stop with an error where it can't (on_limit error).",
+    SyncNotReachable = 219, "On the present plan of its master the slave can't be in sync when the master reaches MasterSyncPosition, or passes the last row of a cam without periods.",
+        "Give a longer MasterStartDistance or higher dynamics, or move the slave nearer to its sync position first.";
+    CamBeyondLimits = 220, "The slave can't follow the cam at the velocity limit of its master, and its on_limit is error.",
         "Lower the velocity limit of the master to MaxMasterVelocity, raise the limits of the slave, or make the cam wider.";
-    BufferModeNotHere = 221, "MC_GearInPos or MC_CamIn with a MasterStartDistance has a BufferMode other than mcAborting: where its start point is when the motion before it ends is not known. Or MC_CamIn with SwitchAt has mcAborting.",
+    BufferModeNotHere = 221, "MC_GearInPos or MC_CamIn with a MasterStartDistance has a BufferMode other than mcAborting, but the position of its start point at the end of the motion before is not known. Or MC_CamIn with SwitchAt has mcAborting.",
         "Use mcAborting, or a MasterStartDistance of 0; with SwitchAt use mcBuffered.";
 
-    Shaped = 222, "The axis has a shaper (its key vibration), between its motion and its drive: it can't follow a master, lead slaves by its set values, or be under a torque.",
+    Shaped = 222, "The axis has a shaper (its key vibration) between motion and drive, so it can't follow a master, lead slaves by its set values, or be under a torque.",
         "Set it up without vibration, or let slaves follow its actual values (mcActualValue).";
 
     BufferFull = 301, "All places of the command buffer are taken.",
         "Wait for a buffered command to become active, or enlarge the queue of the axis.";
 
     RemovedFromBuffer = 302, "The queued command was removed from the buffer before its turn.",
-        "Give it again, or behind commands that nothing interrupts.";
+        "Command it again, or behind commands that are not interrupted.";
 
     AxisFault = 401, "The axis reported a fault.",
         "Remove its cause, then call MC_Reset.";
@@ -230,40 +230,40 @@ error_ids! {
         "Call MC_Reset, then move away from the limit.";
     CauseStillPresent = 403, "MC_Reset found the cause of the axis error still present.",
         "Remove the cause, then give MC_Reset a new rising edge.";
-    FollowingErrorTooLarge = 404, "The actual position was further from the set position than the largest following error.",
+    FollowingErrorTooLarge = 404, "The following error, from actual to set position, was above its limit.",
         "Free the axis or raise MaxPositionLag (7); while it lags, switch it off with MC_Power, then call MC_Reset.";
     LimitSwitchReached = 410, "The axis moved onto a hardware limit switch; it was stopped.",
         "Call MC_Reset, then move back from the switch.";
     HomingTimedOut = 411, "The homing took longer than its time limit.",
-        "Look why the reference was not found; raise the time_limit of the homing if it only needs longer.";
+        "Find out why the reference was not found; raise the time_limit of the homing if it only needs longer.";
     HomingTooFar = 412, "The homing went further than its distance limit.",
-        "Look why the reference was not found; raise the distance_limit of the homing if it only lies further away.";
+        "Find out why the reference was not found; raise the distance_limit of the homing if it is only further away.";
     HomingSwitchNotFound = 413, "Between both limit switches the home switch did not show the edge that is the reference.",
         "Check the home switch, its wiring and the edge in the homing of the axis.";
     DeviationTooLarge = 420, "The slave could not stay within its limits on the law of its master, or was further from it than the max_deviation of its coupling.",
         "Slow the master down or raise the limits of the slave; coupling.on_limit \"lag\" lets it catch up. Then call MC_Reset.";
-    MasterLost = 421, "The set-point of the master is not the result of a plan: it is switched off, has a fault of its power or drive, or is under a torque; or actual values are followed and the drive of the master tells none.",
+    MasterLost = 421, "The set-point of the master is not the result of a plan: it is switched off, has a fault of its power or drive, or is under a torque; or actual values are followed and the drive of the master reports none.",
         "Bring the master into operation before the slave is coupled, and stop the slave before the master is switched off; then call MC_Reset.";
 
     DriveFault = 501, "The drive reported a fault.",
         "Read the drive's own code, parameter 1000, remove the cause, then call MC_Reset.";
-    PowerLost = 502, "The power stage went off without being asked to.",
+    PowerLost = 502, "The power stage went off without a request.",
         "Restore the power, then call MC_Reset.";
     PowerNotConfirmed = 503, "The drive did not confirm its power within the power_timeout of the axis.",
-        "Look why the drive does not switch on, then give Enable of MC_Power a new rising edge, or call MC_Reset.";
+        "Find out why the drive does not switch on, then give Enable of MC_Power a new rising edge, or call MC_Reset.";
     HomingSignalMissing = 510, "The homing of the axis needs a switch, a reference pulse or a mode that its drive does not have.",
         "Choose a homing the drive has the signals for, or give the drive what is missing.";
-    DriveHomingFailed = 511, "The drive gave up its homing.",
+    DriveHomingFailed = 511, "The drive aborted its homing.",
         "Read the drive's own code, parameter 1000, and check its homing method and switches, then call MC_Reset.";
-    TorqueUnknown = 520, "The drive of the axis does not tell its torque.",
+    TorqueUnknown = 520, "The drive of the axis does not report its torque.",
         "Use a drive that measures it.";
     TorqueNotHeld = 521, "The drive of the axis cannot hold a torque.",
         "Use a drive that can; its motion is as before.";
 
     CommunicationLost = 601, "The communication with the drive was lost.",
         "Restore it, then call MC_Reset.";
-    FeedbackInvalid = 602, "The drive told a position or torque that is NaN or infinite, or a position that means an infinite velocity.",
-        "Mend what makes such numbers, an encoder or a scaling in the drive's own code, then call MC_Reset.";
+    FeedbackInvalid = 602, "The drive reported a position or torque that is NaN or infinite, or a position that means an infinite velocity.",
+        "Correct the source of such numbers, an encoder or a scaling in the drive's own code, then call MC_Reset.";
 
     SetpointBroken = 901, "A plan gave a set-point that is not finite.",
         "This is a defect of standstill: please report the trace.";
