@@ -246,7 +246,7 @@ pub static CIA402: Object<Cia402Setup> = Object::new(
             quick_stop,
             &["coast", "ramp", "stay"],
             "`ramp`",
-            "605Ah: `coast`, `ramp`, or `stay`: a ramp, and torque until something else is asked for"
+            "605Ah: `coast`, `ramp`, or `stay`: a ramp, then torque until the next request"
         ),
         reaction!(
             "on_disable",
@@ -267,14 +267,14 @@ pub static CIA402: Object<Cia402Setup> = Object::new(
             "`homing` of a drive",
             NODE_HOMING,
             "it has no homing mode",
-            "what it does in homing mode: it goes to where its home switch goes on; a limit switch in the way is its error (8612h)"
+            "homing mode: it moves to the point at which its home switch goes on; a limit switch on the way is its error (8612h)"
         ),
         object!(
             "motor",
             "the motor of a drive",
             MOTOR,
             "it has no torque mode and measures no torque",
-            "what it turns under a torque, in a unit of torque of your choice. In position mode it follows its target whatever that takes, and reports the torque"
+            "its load under a torque, in a unit of torque of your choice. In position mode it follows its target with any torque that this needs, and reports the torque"
         ),
         limit_switches!(),
         home_switch!(),
@@ -410,8 +410,8 @@ pub static PLANT: Object<PlantSetup> = Object::new(
             "load",
             "the load of a plant",
             LOAD,
-            "all is rigid",
-            "what hangs on a spring"
+            "the mechanism is rigid",
+            "load on a spring"
         ),
         object!(
             "gains",

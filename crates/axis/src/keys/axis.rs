@@ -99,28 +99,28 @@ pub static AXIS: Object<AxisConfig> = Object::new(
     &[
         Key {
             path: "limits",
-            doc: "what no set-point exceeds",
+            doc: "limits of all set-points",
             absent: None,
             null: None,
             holds: Holds::Object(Object::new("`limits`", LIMITS)),
         },
         Key {
             path: "application_limits",
-            doc: "what commands get at most, each at most that of `limits`; MC_WriteParameter changes them, see parameters.md",
+            doc: "upper limits of commands, each at most that of `limits`; MC_WriteParameter changes them, see parameters.md",
             absent: Some("`limits`"),
             null: None,
             holds: Holds::Object(Object::new("`application_limits`", APPLICATION_LIMITS)),
         },
         Key {
             path: "defaults",
-            doc: "what a 0 at the pins Acceleration, Deceleration, Jerk, Snap stands for; not above the limits",
+            doc: "values for a 0 at the pins Acceleration, Deceleration, Jerk, Snap; not above the limits",
             absent: Some("the limits"),
             null: None,
             holds: Holds::Object(Object::new("`defaults`", DEFAULTS)),
         },
         Key {
             path: "position",
-            doc: "position at the start (u); of an axis with `modulo` in its first turn",
+            doc: "position at the start (u); with `modulo` in the first turn",
             absent: Some("0"),
             null: None,
             holds: Holds::Number {
@@ -142,13 +142,13 @@ pub static AXIS: Object<AxisConfig> = Object::new(
         Key {
             path: "scaling",
             doc: "the drive counts increments",
-            absent: Some("the drive speaks user units"),
+            absent: Some("the drive uses user units"),
             null: None,
             holds: Holds::Object(Object::new("`scaling`", SCALING)),
         },
         Key {
             path: "modulo",
-            doc: "length of a turn (u), above 0: positions come round and are shown in [0, length), see modulo.md",
+            doc: "length of a turn (u), above 0: positions wrap and are shown in [0, length), see modulo.md",
             absent: Some("the axis is linear"),
             null: None,
             holds: Holds::Number {
@@ -162,7 +162,7 @@ pub static AXIS: Object<AxisConfig> = Object::new(
         },
         Key {
             path: "software_limits",
-            doc: "where a move may end, at least one of them; see below",
+            doc: "range in which moves may end, at least one of its limits; see below",
             absent: Some("none"),
             null: None,
             holds: Holds::Object(Object {
@@ -207,7 +207,7 @@ pub static AXIS: Object<AxisConfig> = Object::new(
             "stop_deceleration",
             stop_deceleration,
             "the limit",
-            "deceleration (u/s^2) of ramps nobody commanded: after power-off and after faults; not above the limit"
+            "deceleration (u/s^2) of ramps without a command: after power-off and after faults; not above the limit"
         ),
         optional!(
             "stop_jerk",
@@ -217,7 +217,7 @@ pub static AXIS: Object<AxisConfig> = Object::new(
         ),
         Key {
             path: "stop",
-            doc: "dynamics of stops alone, which may be above `limits`: of MC_Stop (where 0 at a pin stands for them, and they are the most), of ramps nobody commanded, of limit switches, software limits and barred directions; at least one of them, and not beside `stop_deceleration` and `stop_jerk`",
+            doc: "dynamics of stops only, which may be above `limits`: of MC_Stop (they are its values for 0 at a pin and its upper limits), of ramps without a command, of limit switches, software limits and barred directions; at least one of them, and not beside `stop_deceleration` and `stop_jerk`",
             absent: Some("MC_Stop has those of a command"),
             null: None,
             holds: Holds::Object(Object {
@@ -245,7 +245,7 @@ pub static AXIS: Object<AxisConfig> = Object::new(
         Key {
             path: "homing",
             doc: "what MC_Home does, see homing.md",
-            absent: Some("the position is taken over where the axis stands"),
+            absent: Some("the present position becomes the reference"),
             null: None,
             holds: Holds::Object(Object::new("`homing`", HOMING)),
         },
@@ -257,7 +257,7 @@ pub static AXIS: Object<AxisConfig> = Object::new(
         ),
         Key {
             path: "override_max",
-            doc: "the largest factor MC_SetOverride takes, from 1; the limits hold all the same",
+            doc: "the largest factor that MC_SetOverride accepts, from 1; the limits still apply",
             absent: Some("1"),
             null: None,
             holds: Holds::Number {
@@ -268,8 +268,8 @@ pub static AXIS: Object<AxisConfig> = Object::new(
         },
         Key {
             path: "power_timeout",
-            doc: "time (scans, or TIME, above 0) in which the drive has to confirm power that MC_Power asks for; later MC_Power shows Error 503, the axis stays Disabled, and power is asked for again by a new Enable or by MC_Reset",
-            absent: Some("it may take for ever"),
+            doc: "time (scans, or TIME, above 0) in which the drive has to confirm the power that MC_Power requests; after it MC_Power shows Error 503, the axis stays Disabled, and a new Enable or MC_Reset requests power again",
+            absent: Some("no time limit"),
             null: None,
             holds: Holds::Scans {
                 range: (1, SCANS),
@@ -292,7 +292,7 @@ pub static AXIS: Object<AxisConfig> = Object::new(
         ),
         Key {
             path: "coupling",
-            doc: "what the axis does as a slave, and how slaves of its actual values see it, see coupling.md",
+            doc: "behaviour of the axis as a slave, and for slaves that follow its actual values, see coupling.md",
             absent: Some("as without its keys"),
             null: None,
             holds: Holds::Object(Object::new("`coupling`", COUPLING)),
@@ -323,7 +323,7 @@ pub static AXIS: Object<AxisConfig> = Object::new(
         ),
         Key {
             path: "vibration",
-            doc: "the one or two modes in which its load swings, a list of objects: what is published is shaped so that moves end without swing, see vibration.md",
+            doc: "list of the one or two modes in which its load swings: set-points are shaped so that moves end without swing, see vibration.md",
             absent: Some("none, nothing is shaped"),
             null: None,
             holds: Holds::List(&[
@@ -734,24 +734,24 @@ const COUPLING: &[Key<AxisConfig>] = &[
             ("slow_master", OnLimit::SlowMaster)
         ],
         Some("`lag`"),
-        "where it cannot follow, it lags (`lag`), stops with error 420 (`error`), or has its master move no faster than it can follow (`slow_master`)"
+        "if it cannot follow: it lags (`lag`), stops with error 420 (`error`), or limits its master to what it can follow (`slow_master`)"
     ),
     optional!(
         "coupling.max_deviation",
         following.max_deviation,
         "any",
-        "how far it may be off the law (u) once it was on it; further is error 420"
+        "largest distance from the law (u) once it was on it; more is error 420"
     ),
     word!(
         "coupling.on_master_lost",
         following.on_master_lost,
         [("error", OnMasterLost::Error), ("hold", OnMasterLost::Hold)],
         Some("`error`"),
-        "where its master goes out of operation it stops with error 421 (`error`), or comes to rest and stays coupled (`hold`)"
+        "if its master goes out of operation: it stops with error 421 (`error`), or comes to rest and stays coupled (`hold`)"
     ),
     Key {
         path: "coupling.actual_filter",
-        doc: "each of the four averages through which slaves see its actual values (scans, at most 64, or TIME; 0 for none)",
+        doc: "length of each of the four averages through which slaves see its actual values (scans, at most 64, or TIME; 0 for none)",
         absent: Some("16 scans"),
         null: None,
         holds: Holds::Scans {
@@ -768,7 +768,7 @@ const COUPLING: &[Key<AxisConfig>] = &[
     ),
     Key {
         path: "coupling.cam_continuity",
-        doc: "how many derivatives of a cam must go on without a jump (0 to 3); where its limits ask for more, it stops at the rows at which one jumps",
+        doc: "number of derivatives of a cam that must be continuous (0 to 3); if its limits require more, it stops at the rows at which one jumps",
         absent: Some("3 with a snap limit, 2 with a jerk limit, 1 without"),
         null: None,
         holds: Holds::Whole {
@@ -861,7 +861,7 @@ const HOMING: &[Key<AxisConfig>] = &[
     ),
     Key {
         path: "homing.block",
-        doc: "when the axis stands at a mechanical stop",
+        doc: "condition for a mechanical stop",
         absent: Some("needed for `block`"),
         null: None,
         holds: Holds::Object(Object::new("`block` of a homing", BLOCK)),
@@ -881,7 +881,7 @@ const HOMING: &[Key<AxisConfig>] = &[
         "homing.distance_limit",
         homing.distance_limit,
         "none",
-        "way of the search (u)"
+        "travel of the search (u)"
     ),
 ];
 
