@@ -1,6 +1,7 @@
 //! Commands as the axis stores them: what each does, when it starts, and how it ends. These are values
 //! only; nothing here knows an axis.
 
+use super::dynamics::as_given;
 use crate::{
     AxisEvent, AxisId, BufferMode, CamId, Command, CommandId, Direction, ErrorId, InstanceId, Parameter,
     ParameterValue, SyncMode, ValueSource,
@@ -542,8 +543,7 @@ pub(super) struct Asked {
 }
 
 impl Asked {
-    /// Those of `work` within `limits`; what of `command` is above those stays as it was given, because the override finds the limits of
-    /// its time.
+    /// Those of `work` within `limits`, or [as given](as_given) by `command`.
     pub fn by(command: &Command, work: &Work, limits: Limits) -> Self {
         let velocity = work.manner().velocity;
         let (dynamics, given) = match command {
@@ -573,15 +573,8 @@ impl Asked {
             | Command::CamIn(_)
             | Command::CamOut => return Self { limits, velocity },
         };
-        let pins = Limits {
-            velocity: dynamics.velocity.abs(),
-            acceleration: dynamics.acceleration,
-            deceleration: dynamics.deceleration,
-            jerk: dynamics.jerk,
-            snap: limits.snap,
-        };
         Self {
-            limits: limits.or_larger(&pins),
+            limits: as_given(dynamics, &limits),
             velocity: if velocity == 0.0 {
                 0.0
             } else {

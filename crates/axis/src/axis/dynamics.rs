@@ -26,6 +26,18 @@ struct Magnitude {
     above: ErrorId,
 }
 
+/// `limits` of a motion; what the pins ask for above those stays as it was given, because the override finds the limits of its time. Snap
+/// has no factor.
+pub(super) fn as_given(pins: &Dynamics, limits: &Limits) -> Limits {
+    limits.or_larger(&Limits {
+        velocity: pins.velocity.abs(),
+        acceleration: pins.acceleration,
+        deceleration: pins.deceleration,
+        jerk: pins.jerk,
+        snap: limits.snap,
+    })
+}
+
 impl<P: Planner> Axis<P> {
     /// Limits of a motion. The velocity is that of the axis; positioning moves lower it.
     pub(super) fn resolve(&self, dynamics: &Dynamics, scope: &mut Scope<'_>) -> Result<Limits, ErrorId> {

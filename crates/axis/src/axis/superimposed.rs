@@ -42,7 +42,7 @@ pub(super) struct Added {
     pub id: CommandId,
     instance: InstanceId,
     adds: Adds,
-    /// As the override scales them.
+    /// As the limits of the application lower them and the override scales them.
     limits: Limits,
     /// As commanded.
     asked: Limits,

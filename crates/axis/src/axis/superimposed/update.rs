@@ -3,6 +3,7 @@
 use super::soonest::Search;
 use super::{Added, Adds, Layer, Progress};
 use crate::axis::Axis;
+use crate::axis::dynamics::as_given;
 use crate::{CommandId, ErrorId, Scope, Superimpose};
 use standstill_planner::Planner;
 
@@ -58,7 +59,10 @@ impl<P: Planner> Axis<P> {
         request: &Superimpose,
         scope: &mut Scope<'_>,
     ) -> Result<Added, ErrorId> {
-        let asked = self.superimposed_limits(&request.dynamics, scope)?;
+        let asked = as_given(
+            &request.dynamics,
+            &self.superimposed_limits(&request.dynamics, scope)?,
+        );
         let distance = request.distance;
         let target = origin + distance;
         let end = self.base_end(layer) + (target - layer.taken);
