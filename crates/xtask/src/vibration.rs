@@ -376,8 +376,9 @@ Lines of `standstill plan`: the move before it is shaped, and through three shap
   written in motion, the contents of the shaper are still published, even beyond it. After a motion that begins
   outside, the published position may go out once more, never further than it was, until the shaper holds no position
   outside.
-- **Parameters.** Modes are read by number ([parameters.md](parameters.md)), and written while the axis is at rest. A
-  frequency may be as low as half of the configured one, because the memory is sized for that.
+- **Parameters.** Modes are read by number ([parameters.md](parameters.md)), and written while the axis is at rest,
+  or queued behind a move that ends. A frequency may be as low as half of the configured one, because the memory is
+  sized for that.
 - A period has 4 to 4096 cycles. In each scan a shaped axis computes one set-point for each part of its shapers: 2 or
   4, and for `period` as many as the period has scans ([how it works](planner.md#15-moves-without-swing), [why
   so](decisions/0018-a-filter-behind-the-motion.md)). ";

@@ -251,32 +251,43 @@ impl<P: Planner> Axis<P> {
         let queued = self.is_queued(mode, scope)?;
         let parameter = Parameter::of(number)
             .map_err(|error| self.refuse("ParameterNumber", number.into(), f64::NAN, error, scope))?;
-        let parameters = self
-            .written(parameter, value)
-            .map_err(|why| self.refuse_write(parameter, value, why, scope))?;
         if queued {
+            self.written(parameter, value)
+                .map_err(|why| self.refuse_write(parameter, value, why, scope))?;
             let write = Write::Parameter { parameter, value };
             return self.enqueue(Work::Write(write), scope);
         }
-        self.set_parameters(parameters, scope);
+        self.write_now(parameter, value, scope)?;
         let id = self.new_id();
         self.decide(id, Fate::Done);
         Ok(id)
     }
 
-    /// A parameter that waited is written now.
-    pub(super) fn write_queued_parameter(
+    /// Parameter `parameter` gets `value`, given in this scan or before.
+    ///
+    /// # Errors
+    /// As [`Axis::write_parameter`].
+    pub(super) fn write_now(
         &mut self,
         parameter: Parameter,
         value: ParameterValue,
         scope: &mut Scope<'_>,
-    ) -> Fate {
-        match self.written(parameter, value) {
-            Ok(parameters) => {
-                self.set_parameters(parameters, scope);
-                Fate::Done
-            }
-            Err(why) => Fate::Failed(self.refuse_write(parameter, value, why, scope)),
+    ) -> Result<(), ErrorId> {
+        let parameters = self
+            .written(parameter, value)
+            .and_then(|new| self.admit_modes(new))
+            .map_err(|why| self.refuse_write(parameter, value, why, scope))?;
+        self.set_parameters(parameters, scope);
+        Ok(())
+    }
+
+    /// `new`, unless that changes the shaper of a motion.
+    fn admit_modes(&self, new: Parameters) -> Result<Parameters, Unwritten> {
+        let rests = self.mover.setpoint().is_at_rest() && self.mover.is_through();
+        if new.modes == self.parameters.modes || rests {
+            Ok(new)
+        } else {
+            Err(Unwritten::value(f64::NAN, ErrorId::InMotion))
         }
     }
 
@@ -386,8 +397,7 @@ impl<P: Planner> Axis<P> {
         numbers(mode).get(part).copied().unwrap_or_default()
     }
 
-    /// The modes with one of their numbers changed: at rest, of a mode that the axis was set up with, and as far as its memory
-    /// reaches.
+    /// The modes with one of their numbers changed: of a mode that the axis was set up with, and as far as its memory reaches.
     fn modes_with(
         &self,
         parameter: Parameter,
@@ -427,9 +437,6 @@ impl<P: Planner> Axis<P> {
         }
         if !self.mover.has_history_for(&shapers) {
             return Err(Unwritten::value(f64::NAN, ErrorId::ParameterValueInvalid));
-        }
-        if !(self.mover.setpoint().is_at_rest() && self.mover.is_through()) {
-            return Err(Unwritten::value(f64::NAN, ErrorId::InMotion));
         }
         Ok(modes)
     }

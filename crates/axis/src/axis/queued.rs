@@ -53,7 +53,10 @@ impl<P: Planner> Axis<P> {
                 Fate::Done
             }
             Write::Parameter { parameter, value } => {
-                self.write_queued_parameter(parameter, value, &mut scope.with(instance))
+                match self.write_now(parameter, value, &mut scope.with(instance)) {
+                    Ok(()) => Fate::Done,
+                    Err(error) => Fate::Failed(error),
+                }
             }
         };
         self.decide(id, fate);
