@@ -2,8 +2,8 @@
 
 use crate::model::Span;
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Origin, Renderer, Snippet};
+use standstill_st::without_joiners;
 use standstill_trace::{printable, printable_lines};
-use std::borrow::Cow;
 use std::fmt;
 
 macro_rules! codes {
@@ -353,16 +353,6 @@ pub(crate) fn rendered(
     }
     // A fixed width, so that long lines are cut in the same way everywhere.
     Renderer::plain().term_width(140).render(&[group])
-}
-
-/// The renderer drops a joiner, as if it were not there. Both have three bytes, so places stay.
-fn without_joiners(text: &str) -> Cow<'_, str> {
-    const JOINER: char = '\u{200d}';
-    if text.contains(JOINER) {
-        Cow::Owned(text.replace(JOINER, "\u{fffd}"))
-    } else {
-        Cow::Borrowed(text)
-    }
 }
 
 /// The file a place is in.

@@ -2,6 +2,7 @@
 
 use crate::source::{Position, Sources, Span};
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet, normalize_untrusted_str};
+use std::borrow::Cow;
 use std::fmt;
 
 macro_rules! codes {
@@ -348,9 +349,16 @@ fn in_one_line(name: &str) -> String {
     visible(name).replace('\n', "\u{240a}")
 }
 
-/// The renderer drops a joiner, as if it were not there. Both have three bytes, so places stay.
-fn without_joiners(text: &str) -> String {
-    text.replace('\u{200d}', "\u{fffd}")
+/// `text` for the renderer of errors, which drops a joiner as if it were not there: a replacement character stands for it. Both have three
+/// bytes, so places stay.
+#[must_use]
+pub fn without_joiners(text: &str) -> Cow<'_, str> {
+    const JOINER: char = '\u{200d}';
+    if text.contains(JOINER) {
+        Cow::Owned(text.replace(JOINER, "\u{fffd}"))
+    } else {
+        Cow::Borrowed(text)
+    }
 }
 
 /// A piece of the source inside a sentence: in backticks, cut if long.

@@ -32,7 +32,7 @@ mod types;
 pub use coverage::Counter;
 pub use dialect::Dialect;
 pub use emit::FaultKind;
-pub use error::{Code, DIAGNOSTICS_MOST, Diagnostic, Report, Severity};
+pub use error::{Code, DIAGNOSTICS_MOST, Diagnostic, Report, Severity, without_joiners};
 pub use format::format;
 pub use formula::{Reference, references};
 pub use layout::{FAULT_SITE, FAULT_VALUE, LOOP_SITE};
