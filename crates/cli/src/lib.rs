@@ -58,8 +58,10 @@ pub use run::verdict;
 
 #[cfg(feature = "soak")]
 use args::Soak;
-use args::{Arguments, Cam, Command, Schema, St};
-use clap::Parser;
+#[cfg(feature = "st")]
+use args::St;
+use args::{Arguments, Cam, Command, Schema};
+use clap::{ArgMatches, CommandFactory, FromArgMatches};
 use exit::{Exit, Failure};
 use out::Out;
 use standstill_script::suite::shown;
@@ -93,24 +95,25 @@ pub fn status_of(arguments: impl IntoIterator<Item = OsString>) -> Exit {
 
 fn program(arguments: &[OsString]) -> Exit {
     let given = arguments;
-    let arguments = match Arguments::try_parse_from(given) {
-        Ok(arguments) => arguments,
+    let parsed = Arguments::command().try_get_matches_from(given);
+    let parsed = parsed.and_then(|matches| Ok((as_json(&matches), Arguments::from_arg_matches(&matches)?)));
+    let (as_json, arguments) = match parsed {
+        Ok(parsed) => parsed,
         Err(error) => return explained(&error, given),
     };
-    let as_json = as_json(&arguments.command);
     let limit = arguments.time_limit;
-    if let Some(Err(failure)) = limit.map(|limit| limit::start(limit, as_json)) {
+    if let Some(Err(failure)) = limit.map(|limit| limit::start(limit, as_json.clone())) {
         return failure.report();
     }
     limit::doing("reading the arguments");
-    let mut out = if is_data(&arguments.command) {
+    let mut out = if as_json.is_some() || is_data(&arguments.command) {
         Out::data()
     } else {
         Out::text()
     };
     let mut result = dispatch(&arguments.command, &mut out);
     if let (Some(command), Err(Failure::Told(exit, text))) = (as_json, &result)
-        && let Err(error) = writeln!(out, "{}", outcome::refused(command, *exit, text))
+        && let Err(error) = writeln!(out, "{}", outcome::refused(&command, *exit, text))
     {
         result = Err(error.into());
     }
@@ -122,60 +125,37 @@ fn program(arguments: &[OsString]) -> Exit {
     }
 }
 
-/// The name of a command that answers with JSON, in its answer.
-fn as_json(command: &Command) -> Option<&'static str> {
-    let (wanted, name) = match command {
-        Command::Run(arguments) => (arguments.json, "run"),
-        Command::Test { json, .. } => (*json, "test"),
-        Command::Explain { json, .. } => (*json, "explain"),
-        Command::Identify(arguments) => (arguments.json, "identify"),
-        Command::Blocks { json, .. } => (*json, "blocks"),
-        Command::Cam {
-            what: Cam::Check(arguments),
-        } => (arguments.json, "cam check"),
-        Command::St {
-            what: St::Check { json, .. },
-        } => (*json, "st check"),
-        Command::St {
-            what: St::Lint { json, .. },
-        } => (*json, "st lint"),
-        _ => (false, ""),
-    };
-    wanted.then_some(name)
+/// The name of the command given, if it answers with JSON.
+fn as_json(arguments: &ArgMatches) -> Option<String> {
+    let (mut names, mut given) = (Vec::new(), arguments);
+    while let Some((name, below)) = given.subcommand() {
+        names.push(name);
+        given = below;
+    }
+    // Of a command without --json that is an error.
+    let is_wanted = given.try_get_one("json").ok().flatten() == Some(&true);
+    is_wanted.then(|| names.join(" "))
 }
 
 /// The same for arguments that do not parse.
-fn json_of(arguments: &[OsString]) -> Option<&'static str> {
-    const COMMANDS: [&str; 8] = [
-        "run",
-        "test",
-        "explain",
-        "identify",
-        "blocks",
-        "cam check",
-        "st check",
-        "st lint",
-    ];
-    let words: Vec<&str> = arguments
-        .iter()
-        .skip(1)
-        .filter_map(|word| word.to_str())
-        .collect();
-    let place = |name: &&'static str| {
-        let name: Vec<&str> = name.split(' ').collect();
-        let place = words.windows(name.len()).position(|words| words == name);
-        place.unwrap_or(usize::MAX)
-    };
-    let first = COMMANDS.into_iter().min_by_key(place)?;
-    (words.contains(&"--json") && place(&first) < words.len()).then_some(first)
+fn json_of(arguments: &[OsString]) -> Option<String> {
+    let all = Arguments::command();
+    let (mut names, mut command) = (Vec::new(), &all);
+    for word in arguments.iter().skip(1) {
+        if let Some(below) = command.find_subcommand(word) {
+            names.push(below.get_name());
+            command = below;
+        }
+    }
+    let has_json = command
+        .get_arguments()
+        .any(|argument| argument.get_long() == Some("json"));
+    let is_wanted = has_json && arguments.iter().any(|word| word == "--json");
+    is_wanted.then(|| names.join(" "))
 }
 
-/// Whether the output of a command is for programs.
+/// Whether the output of a command is for programs, also without --json.
 fn is_data(command: &Command) -> bool {
-    as_json(command).is_some() || is_always_data(command)
-}
-
-fn is_always_data(command: &Command) -> bool {
     match command {
         Command::Plan { .. }
         | Command::ComparePlanners { .. }
@@ -212,7 +192,7 @@ fn explained(error: &clap::Error, arguments: &[OsString]) -> Exit {
     {
         let text = error.render().to_string();
         // Its reader may have gone, and the status is that of the mistake.
-        let _ = writeln!(io::stdout(), "{}", outcome::refused(command, Exit::Usage, &text));
+        let _ = writeln!(io::stdout(), "{}", outcome::refused(&command, Exit::Usage, &text));
     }
     match error.print() {
         // An error remains an error even if its message has no reader.

@@ -32,7 +32,7 @@ pub fn before_end(first: fn()) {
 
 /// Ends the program after this time, unless it has ended by itself. A command that answers with JSON, and so has not
 /// answered yet, then says why.
-pub fn start(limit_ns: u64, as_json: Option<&'static str>) -> Result<(), Failure> {
+pub fn start(limit_ns: u64, as_json: Option<String>) -> Result<(), Failure> {
     let watch = move || {
         thread::sleep(Duration::from_nanos(limit_ns));
         let at = locked(&DOING).clone();
@@ -40,7 +40,9 @@ pub fn start(limit_ns: u64, as_json: Option<&'static str>) -> Result<(), Failure
             "error: --time-limit {}: the time is up; it was at {at}",
             time_literal(limit_ns)
         );
-        let answer = as_json.map(|command| outcome::refused(command, Exit::Failed, &text) + "\n");
+        let answer = as_json
+            .as_deref()
+            .map(|command| outcome::refused(command, Exit::Failed, &text) + "\n");
         out::end_if_free(&answer.unwrap_or_default());
         if let Some(first) = *locked(&FIRST) {
             first();

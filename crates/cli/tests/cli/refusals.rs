@@ -73,6 +73,9 @@ fn with_json_every_answer_is_an_object() {
         assert_eq!(answer["scripts"][1]["verdict"], "broken", "{answer}");
         assert!(answer["scripts"][1]["error"].is_string(), "{answer}");
     }
+    // The name of another command is a word like any other.
+    let ended = standstill(&folder, &["report", "run", "--json"]);
+    assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{}", ended.err);
     let checked = standstill(&folder, &["st", "check", "--json", "p.st"]);
     assert_eq!(checked.status, 3);
     assert_eq!(answer(&checked)["diagnostics"][0]["code"], "unknown_name");
