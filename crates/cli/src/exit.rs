@@ -77,7 +77,8 @@ impl Failure {
     )))]
     pub fn left_out(feature: &str) -> Self {
         Self::usage(&format!(
-            "this build of standstill has no `{feature}`: build it with the feature `{feature}`"
+            "this build of standstill has no `{feature}`: build it with the feature `{feature}`, as \
+             `cargo build --release -p standstill-cli` without `--no-default-features` does"
         ))
     }
 

@@ -6,7 +6,10 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LoadError {
     /// There is no interpreter in this build.
-    #[error("this build of standstill runs no guest programs: build it with the feature `guest`")]
+    #[error(
+        "this build of standstill runs no programs and no expressions: build it with the feature `guest`, as \
+         `cargo build --release -p standstill-cli` without `--no-default-features` does"
+    )]
     NotBuilt,
     /// WebAssembly as text, which this build does not read.
     #[error(
