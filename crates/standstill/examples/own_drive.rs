@@ -1,13 +1,12 @@
-//! A host with its own drive, and its own block beside those of the standard, all in its own structs.
+//! A host with its own drive and its own block beside the standard ones, all in its own structs.
 //!
-//! The drive represents a drive on a fieldbus: in every scan it takes a position in increments and
-//! reports the position of the shaft. The program moves to and fro and counts the turns with a block that
-//! is no motion block.
+//! The drive represents a drive on a fieldbus: in every scan it takes a position in increments and reports
+//! the position of the shaft. The program moves to and fro. A block that is no motion block counts the turns.
 
 use standstill::axis::{Comms, DriveSignals, Scaling};
 use standstill::prelude::*;
 
-/// What the bus has of a servo: here a shaft that follows one scan later.
+/// The bus data of a servo. Here it is a shaft that follows one scan later.
 #[derive(Debug, Default)]
 struct Servo {
     shaft: i64,
@@ -27,7 +26,7 @@ impl Drive for Servo {
     }
 
     fn write(&mut self, _now_ns: i64, command: &DriveCommand) {
-        // Only an enabled drive follows: what is asked for while it is off is no set-point.
+        // Only an enabled drive follows its command.
         if let (true, DrivePosition::Increments(position)) = (self.enabled, command.position) {
             self.shaft = position;
         }
@@ -49,7 +48,7 @@ impl Counter {
     }
 }
 
-/// The program: its blocks are fields, so their pins are, too.
+/// The program. Its blocks are fields, so their pins are fields, too.
 #[derive(Debug)]
 struct ToAndFro {
     numbers: [InstanceId; 3],
@@ -64,7 +63,7 @@ impl Program<Servo> for ToAndFro {
         let [power, there, back] = self.numbers;
         context.scope.instance = power;
         self.power.call(context);
-        // The first move stays done, and so keeps the second one going, until that is done, too.
+        // The first move stays done until the second one is done. This keeps the second one running.
         self.there.inputs.execute = self.power.outputs.status && !self.back.outputs.done;
         context.scope.instance = there;
         self.there.call(context);
@@ -84,7 +83,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         jerk: 1e4,
         snap: 1e6,
     };
-    // 4096 increments are a turn of 360 degrees of the motor, behind a gear of 10.
+    // 4096 increments are one turn of the motor, 360 degrees, behind a gear of 10.
     let scaling = Scaling::new(40_960, 360, false, 0.0)?;
     let config = AxisConfig {
         scaling: Some(scaling),
@@ -109,7 +108,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         (block.inputs.axis, block.inputs.position, block.inputs.velocity) = (x, position, 20.0);
     }
     let mut runtime = builder.ready()?.start(program);
-    // Here the bus is served: its inputs were read, the scan computes, its outputs go out.
+    // A real host serves its bus here: it reads the inputs, computes the scan, and sends the outputs.
     for now_ns in (0..10_000_000_000).step_by(1_000_000) {
         runtime.scan(now_ns)?;
         if runtime.program().turns.count == 3 {

@@ -26,7 +26,7 @@ impl Program for Line {
     ) -> Result<u64, ProgramFault> {
         blocks.call(self.power, context);
         blocks.call(self.go, context);
-        // The next move begins where this one is done.
+        // The next move begins where this one ends.
         if blocks.is(self.go, "Done")
             && let Some(Value::Lreal(target)) = blocks.value(self.go, "Position")
         {
@@ -98,7 +98,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// What was recorded is to the bit what happened, with the scans before the fault and those after it.
+/// The recording is equal to the run, bit for bit. It has the scans before the fault and those after it.
 #[test]
 fn the_recording_shows_what_led_to_the_fault() {
     use standstill_trace::{Cell, events_text};

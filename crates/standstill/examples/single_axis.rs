@@ -16,7 +16,7 @@ impl Program for Turn {
     ) -> Result<u64, ProgramFault> {
         blocks.call(self.power, context);
         let powered = blocks.is(self.power, "Status");
-        // A pin that is misspelt is a fault of the program, not a move that never comes.
+        // A misspelt pin is a fault of the program, not a move that never happens.
         let set = blocks.set(self.go, "Execute", Value::Bool(powered));
         set.map_err(|_| ProgramFault {
             reason: "MC_MoveAbsolute has no Execute",

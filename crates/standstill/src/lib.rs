@@ -98,7 +98,7 @@ mod guide {}
 #[doc = include_str!("../../../README.md")]
 mod readme {}
 
-// So are those of the guide for hosts.
+// So are the examples of the guide for hosts.
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/how-to/embed.md")]
 mod embed {}

@@ -70,7 +70,7 @@ impl Blocks {
         instance.get(index)
     }
 
-    /// Whether a BOOL pin is TRUE; FALSE if there is no such pin.
+    /// Whether a BOOL pin is TRUE. FALSE if there is no such pin.
     pub fn is(&self, id: BlockId, pin: &str) -> bool {
         self.value(id, pin) == Some(Value::Bool(true))
     }

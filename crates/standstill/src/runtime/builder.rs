@@ -139,8 +139,8 @@ impl<D: Drive> Builder<D> {
             .ok_or(BuildError::TooManyBlocks)
     }
 
-    /// Declares an instance that the host keeps in its own struct, so that records and the recorder know
-    /// it. The host sets `context.scope.instance` to the returned number before each call.
+    /// Declares an instance that the host keeps in its own struct, so that records and the recorder know it.
+    /// The host sets `context.scope.instance` to the returned number before each call.
     ///
     /// # Errors
     /// [`BuildError::Name`], [`BuildError::TooManyBlocks`].
@@ -151,7 +151,7 @@ impl<D: Drive> Builder<D> {
         Ok(number)
     }
 
-    /// Adds a table for the pins of blocks that take one.
+    /// Adds a table for a block pin that refers to one.
     ///
     /// # Errors
     /// [`BuildError::TableTooLong`].
@@ -175,8 +175,8 @@ impl<D: Drive> Builder<D> {
         self
     }
 
-    /// Records the last scans around a trigger. Memory: 8 bytes a signal and scan; a signal is a pin, or one of the seven
-    /// of an axis.
+    /// Records the last scans around a trigger. Memory: 8 bytes for each signal and scan. Each pin is a
+    /// signal, and each axis has seven.
     pub fn record(&mut self, setup: Setup) -> &mut Self {
         self.recorder = Some(setup);
         self

@@ -1,10 +1,10 @@
 //! A machine with its programs, built step by step: [`Builder`], [`Ready`], [`Running`].
 //!
-//! All memory is allocated while building; [`Running::scan`] allocates none, so a host can set up
-//! everything at power-up and run for years. Axes and drives belong to the runtime. Block instances may
-//! belong to it too, and are then called by their [`BlockId`]. Or they are fields of the host's own
-//! structs, where the compiler knows their types. A host that also wants its axes in its own structs
-//! needs no runtime: the loop in the README is enough.
+//! All memory is allocated while building. [`Running::scan`] allocates none, so a host can set up everything
+//! at power-up and run for years. Axes and drives belong to the runtime. Block instances may belong to it,
+//! too; a program then calls them by their [`BlockId`]. Or they are fields of the host's own structs, where
+//! the compiler knows their types. A host that also wants its axes in its own structs needs no runtime: the
+//! loop in the README is enough.
 
 mod blocks;
 mod builder;
@@ -33,8 +33,8 @@ pub trait Program<D: Drive = IdealDrive> {
         false
     }
 
-    /// Runs a program instance to its end. Returns the time it took by a deterministic measure (ns), or
-    /// 0. `blocks` are the runtime's own. Before a call of a block of the host's own, set
+    /// Runs a program instance to its end. Returns the time it took (ns) by a deterministic measure, or 0.
+    /// `blocks` are the runtime's own instances. Before a call of one of the host's own instances, set
     /// `context.scope.instance` to the number that [`Builder::own_block`] returned.
     ///
     /// # Errors
@@ -50,7 +50,7 @@ pub trait Program<D: Drive = IdealDrive> {
     /// [`Builder::own_block`] declared them.
     fn pins(&self, _pins: &mut Pins<'_>) {}
 
-    /// The scan is over: set-points are those the drives were given.
+    /// The scan is over. The set-points are those that the drives received.
     fn published(&mut self, _time: ScanTime, _machine: &Machine<Standard, D>) {}
 }
 
@@ -92,7 +92,7 @@ pub struct Running<P, D: Drive = IdealDrive> {
     host: Host<P>,
 }
 
-/// What runs in a scan beside axes and drives.
+/// The part of a scan outside axes and drives.
 #[derive(Debug)]
 struct Host<P> {
     program: P,
@@ -112,8 +112,8 @@ impl<P: Program<D>, D: Drive> Running<P, D> {
         self.executor.scan(now_ns, &mut self.host, &mut self.machine)
     }
 
-    /// Stops all programs. Every axis stops and switches off as it is configured, which takes further
-    /// scans; [`Running::is_off`] says when this is done.
+    /// Stops all programs. Every axis stops and switches off as its configuration says. This takes further
+    /// scans; [`Running::is_off`] reports when it is done.
     pub fn stop(&mut self) {
         self.executor.stop(&mut self.host, &mut self.machine);
     }
