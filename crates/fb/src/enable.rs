@@ -5,7 +5,7 @@
 use crate::Context;
 use standstill_axis::{Axis, AxisId, ErrorId, Planner, Scope};
 
-/// What an Enable-type block shows. Outputs are derived from it, so Valid and Error at once cannot be written
+/// What an Enable-type block shows. Outputs are derived from it, so Valid and Error cannot be TRUE at once
 /// (R53).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reading<T> {

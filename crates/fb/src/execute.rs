@@ -6,8 +6,8 @@
 use crate::Context;
 use standstill_axis::{AxisId, AxisState, CommandId, EdgeWhileBusy, ErrorId, Fate, Planner};
 
-/// What an Execute-type block shows: the fate of its command, or nothing. Outputs are derived from it, so two terminal
-/// outputs at once cannot be written (R21).
+/// What an Execute-type block shows: the fate of its command, or nothing. Outputs are derived from it, so two
+/// terminal outputs cannot be TRUE at once (R21).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Phase(Option<Fate>);
 

@@ -1,8 +1,8 @@
 //! Pins as bytes: the one layout in which hosts in other languages hand over the inputs of a block and
 //! read its outputs. The C library, WebAssembly guests and the generated headers all use it.
 //!
-//! A block of pins is a C structure. It begins with its own size, a `u32`; then come its pins in table order, each at
-//! the next multiple of its own size:
+//! A block of pins is a C structure. It begins with its own size, a `u32`. Then come its pins in table order,
+//! each at the next multiple of its own size:
 //!
 //! | pin | bytes |
 //! | --- | --- |
@@ -22,7 +22,7 @@ use crate::{BlockInfo, Direction, Pin, PinType};
 /// Bytes of the size in front of the pins.
 pub const SIZE_FIELD: usize = 4;
 
-/// What every size is rounded up to.
+/// The unit to which every size is rounded up.
 pub const ALIGN: usize = 8;
 
 /// The largest number of inputs or outputs of a block, and of fields of a record.

@@ -1,4 +1,4 @@
-//! Pins that several blocks have: written here once, with what comes of them, and named in a block's table as `..name;`.
+//! Pins that several blocks have, with the methods for them. A block's table names a group as `..name;`.
 //!
 //! | group | section | pins |
 //! | --- | --- | --- |
@@ -7,13 +7,13 @@
 //! | `motion` | `outputs` | Busy, Active, CommandAborted, Error, ErrorID |
 //! | `reading` | `outputs` | Valid, Busy, Error, ErrorID |
 
-/// Puts the pins of a group in front of the rows that are left of its section, for [`pins!`](crate::pins).
+/// Puts the pins of a group in front of the remaining rows of its section, for [`pins!`](crate::pins).
 #[doc(hidden)]
 #[macro_export]
 macro_rules! pin_group {
     (rates $done:tt $rows:tt { $($left:tt)* } $($later:tt)*) => {
         impl Inputs {
-            /// The dynamics asked for, with the largest velocity `velocity` (u/s).
+            /// The requested dynamics, with the largest velocity `velocity` (u/s).
             #[inline]
             fn dynamics(&self, velocity: f64) -> $crate::Dynamics {
                 $crate::Dynamics {

@@ -370,7 +370,7 @@ pub struct Pin {
     pub ty: PinType,
     /// Unit, empty if none; `u` is the axis's unit.
     pub unit: &'static str,
-    /// Not in the standard.
+    /// The pin is not in the standard.
     pub extension: bool,
     /// One sentence.
     pub doc: &'static str,
@@ -449,8 +449,9 @@ macro_rules! pins {
     (in_outs $in_outs:tt inputs $inputs:tt vendor_inputs $vendor_inputs:tt outputs $outputs:tt vendor_outputs $vendor_outputs:tt) => {
         $crate::pins!(@rows () () $in_outs $inputs $vendor_inputs $outputs $vendor_outputs);
     };
-    // Row after row of section after section, until groups are rows too: the sections that are done, the rows of the present
-    // one, what is left of it, the sections behind it.
+    // Takes row after row of section after section, until all groups are replaced by their rows. The
+    // parameters are the finished sections, the finished rows of the present section, its remaining rows, and
+    // the sections behind it.
     (@rows $done:tt $rows:tt { ..$group:ident; $($left:tt)* } $($later:tt)*) => {
         $crate::pin_group!($group $done $rows { $($left)* } $($later)*);
     };
@@ -572,7 +573,7 @@ macro_rules! pins {
                 };
                 let mut place = 0_usize;
                 $(
-                    // Of an array only the records matter, and whoever reads them sets the pin.
+                    // Of an array only the records matter. The reader of the records sets the pin.
                     if <$ty as $crate::PinValue>::TYPE.scalar().is_some() {
                         let number = <$ty as $crate::PinValue>::Flat::read(flat, layout.offset(place));
                         self.$field = <$ty as $crate::PinValue>::from_flat(number);

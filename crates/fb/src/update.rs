@@ -70,7 +70,7 @@ impl<V> Default for UpdateCore<V> {
 }
 
 impl UpdateCore<Command> {
-    /// As [`UpdateCore::scan`], for a command that the axis takes with this buffer mode.
+    /// The same as [`UpdateCore::scan`], for a command that the axis takes with this buffer mode.
     #[inline]
     pub fn command<P: Planner>(
         &mut self,
