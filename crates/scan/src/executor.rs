@@ -237,9 +237,10 @@ impl Executor {
         })
     }
 
-    /// At most `scans` further scans, a base tick apart, in which no program runs, because none of them would do anything
-    /// but what it did in the scan before. That is the host's to know, which is asked after each ([`Programs::idled`]). Axes
-    /// and drives are served as in every scan. Returns how many scans were done: none unless all tasks are due in every tick.
+    /// Runs at most `scans` further scans, a base tick apart, without programs. Use it where every program
+    /// would repeat exactly what it did in the scan before. The host must know this: it is asked after each
+    /// scan ([`Programs::idled`]). Axes and drives are served as in every scan. Returns the number of scans
+    /// done. It is 0 unless all tasks are due in every tick.
     pub fn coast<P: Planner, D: Drive>(
         &mut self,
         scans: u64,
@@ -268,8 +269,9 @@ impl Executor {
         done
     }
 
-    /// The same where axes and drives rest, too, so that no scan changes anything: nothing is called, and time passes. Or they
-    /// are for the host to bring along ([`Machine::along`]). Returns how many scans have passed.
+    /// Lets time pass for `scans` scans and calls nothing. Use it where axes and drives are at rest too, so
+    /// that no scan changes anything, or where the host advances the axes itself ([`Machine::along`]).
+    /// Returns the number of scans that have passed.
     pub fn stand(&mut self, scans: u64) -> u64 {
         let is_even = self.previous_ns.is_some_and(|now_ns| self.is_even(now_ns));
         let scans = if is_even { scans } else { 0 };
@@ -287,7 +289,7 @@ impl Executor {
         is_on_tick && are_even && self.mode == Mode::Running && self.free_from <= tick
     }
 
-    /// So many scans were done, a base tick apart.
+    /// Counts this many scans, a base tick apart.
     fn pass(&mut self, scans: u64) {
         let ns = self.base_tick_ns.get().saturating_mul(scans);
         self.next_scan = self.next_scan.saturating_add(scans);

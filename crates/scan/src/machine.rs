@@ -168,7 +168,8 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         );
     }
 
-    /// The motion step, which advances every axis by one nominal tick; then writes every drive once. Both in axis order.
+    /// The motion step: advances every axis by one nominal tick, then writes every drive once. Both are in
+    /// axis order.
     pub(crate) fn advance(&mut self, time: ScanTime) {
         let mut scope = runtime_scope(time.scan, &mut self.log);
         scope.cams = Cams::new(&mut self.cams.0, &mut self.cams.1);
@@ -176,10 +177,13 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         steps::advance_and_publish(&mut self.axes, &mut self.drives, time.now_ns, &mut scope);
     }
 
-    /// So many motion steps of an axis, without its drive; `take` gets the number of each, from 0, and its set-point.
-    /// Only as long as it goes on ([`Axis::goes_on_for`]); time is passed by [`Executor::stand`](crate::Executor::stand), and
-    /// actual positions are for the host to mend.
-    // An iterator would hand each set-point over in memory, and wait for it to get there; so would a copy of it.
+    /// Advances an axis by `steps` motion steps, without its drive. `take` receives the number of each step,
+    /// from 0, and its set-point.
+    ///
+    /// Use it only for as many steps as the axis continues its present motion ([`Axis::goes_on_for`]).
+    /// [`Executor::stand`](crate::Executor::stand) advances the time. The host must correct the actual
+    /// positions.
+    // An iterator would pass each set-point through memory and wait for it. So would a copy.
     #[inline]
     pub fn along(
         &mut self,

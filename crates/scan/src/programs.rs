@@ -37,7 +37,7 @@ pub struct ProgramFault {
     pub reason: &'static str,
 }
 
-/// A start was refused because an axis is switched on or still moves. Neither may continue over a start.
+/// A start was refused because an axis is switched on or still moves. Neither power nor motion may continue over a start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotOff {
     /// The first such axis.
@@ -97,13 +97,15 @@ pub trait Programs<P: Planner, D: Drive> {
     /// once.
     fn stopped(&mut self, _fault: Option<&Fault>) {}
 
-    /// The scan is over; set-points are those the drives were given.
+    /// The scan is over. The set-points are those that the drives received.
     fn published(&mut self, _time: ScanTime, _machine: &Machine<P, D>) {}
 
-    /// In a scan of [`crate::Executor::coast`], instead of all that is called between feedback and the motion step.
+    /// Called in each scan of [`crate::Executor::coast`], instead of all hooks between feedback and the
+    /// motion step.
     fn idle(&mut self, _time: ScanTime, _machine: &mut Machine<P, D>) {}
 
-    /// The same after the scan. Returns whether programs may be left out of the next scan, too.
+    /// Called at the end of each scan of [`crate::Executor::coast`]. Returns whether the next scan may run
+    /// without programs, too.
     fn idled(&mut self, _time: ScanTime, _machine: &Machine<P, D>) -> bool {
         false
     }

@@ -115,14 +115,14 @@ impl Task {
         }
     }
 
-    /// It is due in every tick, `tick` was the last one, and its execution is not waited for.
+    /// Whether the task is due in every tick, `tick` was the last one, and no execution is waiting.
     pub(crate) fn is_even(&self, tick: u64) -> bool {
         let is_due = self.interval.is_some_and(|interval| interval.get() == 1);
         let was_due = self.state.next_due == tick.saturating_add(1) && self.state.waiting_since.is_none();
         is_due && was_due && !self.has_single
     }
 
-    /// The same after it was executed in each of the next `ticks`, in no time.
+    /// Counts one execution, which took no time, in each of the next `ticks`.
     pub(crate) fn go_on(&mut self, ticks: u64) {
         self.state.next_due = self.state.next_due.saturating_add(ticks);
         self.state.counts.executions = self.state.counts.executions.saturating_add(ticks);

@@ -1,4 +1,5 @@
-//! A gear of 3/7 through executor, axes and drives, scan after scan: every place of the slave against integers.
+//! A gear of 3/7 through executor, axes and drives. Every position of the slave is compared with integers in
+//! every scan.
 //!
 //! Both axes have turns of 360, and the master makes 1.8 a scan. 10^6 scans in a plain run, more with
 //! `STANDSTILL_SOAK=100000000`.
@@ -26,7 +27,7 @@ const DENOMINATOR: u128 = 7;
 /// All positions here are whole numbers of 2^-80.
 const BITS: u32 = 80;
 
-/// In the first call the slave is coupled and the master set off.
+/// In the first call the slave is coupled and the master starts.
 struct Program {
     is_new: bool,
 }
@@ -113,7 +114,7 @@ fn every_scan_of_the_runtime_at_three_sevenths_is_the_exact_place_rounded_once()
     let mut program = Program { is_new: true };
     let turn = TURN << BITS;
     let (mut turns, mut was) = (0_u128, 0);
-    // Where the master first had its velocity: its scan, turns and place.
+    // The scan, turns and position at which the master first had its velocity.
     let mut cruise = None;
     let mut farthest = 0;
     for scan in 0..scans {
@@ -126,7 +127,7 @@ fn every_scan_of_the_runtime_at_three_sevenths_is_the_exact_place_rounded_once()
         let now = units(master.setpoint().position);
         turns += u128::from(now < was);
         was = now;
-        // The law through 0 and 0; what 7 turns of the master add is 3 whole turns.
+        // The law goes through 0 and 0. 7 turns of the master add 3 whole turns.
         let place = NUMERATOR * (turns % DENOMINATOR * turn + now) % (DENOMINATOR * turn);
         let exact = rounded(place, DENOMINATOR);
         let exact = if exact == TURN as f64 { 0.0 } else { exact };
@@ -136,7 +137,7 @@ fn every_scan_of_the_runtime_at_three_sevenths_is_the_exact_place_rounded_once()
             exact.to_bits(),
             "scan {scan}: {found:?}, exact {exact:?}"
         );
-        // And the master itself makes 1800 cycles' worth a scan; a cycle is the f64 next to 1 ms.
+        // The master itself moves 1800 times the cycle in a scan; a cycle is the f64 next to 1 ms.
         if master.setpoint().velocity != 1800.0 {
             continue;
         }

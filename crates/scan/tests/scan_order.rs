@@ -91,7 +91,7 @@ fn programs_see_the_latched_image_only() {
     assert_eq!(io.published, [false, true, true]);
 }
 
-/// TM-1, TM-2: the only time there is, is the one given, and it is the same for all programs of a scan.
+/// TM-1, TM-2: the time given is the only one, and it is the same for all programs of a scan.
 #[test]
 fn time_is_the_argument_and_constant_in_a_scan() {
     let mut rig = two_axes();
@@ -275,8 +275,8 @@ fn a_program_fault_ends_the_scan() {
     assert_eq!(rig.executor.mode(), Mode::Faulted(fault));
 }
 
-/// ST-1, ST-2, ST-6 as far as an executor owns them: the host is told which start it is, tasks begin at
-/// phase 0 again, counts and fault are gone, scan numbers go on.
+/// ST-1, ST-2, ST-6, as far as an executor owns them: the host learns which start it is, tasks begin at phase
+/// 0 again, counts and fault are cleared, and scan numbers continue.
 #[test]
 fn a_start_begins_anew() {
     for start in [Start::Cold, Start::Warm] {

@@ -52,7 +52,7 @@ struct Moving {
 }
 
 impl Moving {
-    /// An axis at a constant 20 u/s since some scans.
+    /// An axis that has moved at a constant 20 u/s for some scans.
     fn new() -> Self {
         let mut rig = Rig::new(&[task("main", 1, 0)], &[ProgramConfig::with("p", "main")], &["X"]);
         rig.host.act = |scan, context| match scan {
@@ -90,7 +90,7 @@ impl Moving {
             .start(Start::Cold, &mut self.rig.host, &self.rig.machine)
     }
 
-    /// Scans until the axis is Disabled: it slows down to rest without ever turning, and is switched off.
+    /// Scans until the axis is Disabled. It slows down to rest without turning round, and is switched off.
     fn comes_to_rest(&mut self) {
         let mut velocity = 20.0;
         for _ in 0..2000 {
@@ -146,8 +146,8 @@ fn late_scans_do_not_change_the_profile() {
     assert_eq!(written(0), written(7_300_000));
 }
 
-/// OV-3, OV-6: the axis ramps down and is switched off, although no program runs; the command given in the
-/// scan of the fault never shows; the state can be read all the time.
+/// OV-3, OV-6: the axis ramps down and is switched off, although no program runs. The command given in the
+/// scan of the fault never shows. The state can be read all the time.
 #[test]
 fn a_fault_stops_every_axis() {
     let mut moving = Moving::new();
@@ -237,7 +237,7 @@ fn a_stop_after_a_fault_keeps_the_fault() {
     assert_eq!(moving.rig.host.failed.len(), 1);
 }
 
-/// Y behind X, 1/1.
+/// Y follows X, 1/1.
 fn gear<P: Planner>(context: &mut Context<'_, P>) {
     let gear = Command::GearIn {
         followed: Followed {

@@ -189,7 +189,7 @@ fn executions_of_one_scan_add_up() {
     assert_eq!(counts(&rig, 1), (1, 1, 1));
 }
 
-/// OV-1, OV-2, TM-5: a host that comes late finds one execution, the rest counted, the phase kept.
+/// OV-1, OV-2, TM-5: a late host finds one execution; the other periods are counted, and the phase is kept.
 #[test]
 fn ticks_without_a_scan_are_skipped_periods() {
     let mut rig = Rig::of_tasks(&[task("t", 2, 0)]);
@@ -209,7 +209,7 @@ fn jitter_does_not_move_a_task() {
     }
 }
 
-/// Times at the end of the range end nothing else.
+/// Extreme times are counted without overflow.
 #[test]
 fn extreme_instants_and_durations_are_counted_without_overflow() {
     let mut rig = Rig::of_tasks(&[task("t", 1, 0)]);

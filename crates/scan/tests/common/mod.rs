@@ -185,7 +185,7 @@ impl Rig {
             .unwrap()
     }
 
-    /// Scans at `ticks` (ms) and tells for each which programs ran.
+    /// Scans at `ticks` (ms) and returns which programs ran in each.
     pub fn runs(&mut self, ticks: impl IntoIterator<Item = i64>) -> Vec<String> {
         ticks
             .into_iter()
