@@ -115,8 +115,8 @@ macro_rules! registry {
 
 for_every_block!(registry);
 
-/// The code of all blocks, for axes with the planner that all use, is made here. In builds that are optimised little, crates that
-/// call blocks take it instead of each making a copy.
+/// Compiles the code of all blocks for axes with the common planner here. In builds with little optimisation,
+/// crates that call blocks use it instead of compiling a copy each.
 #[cfg(all(debug_assertions, not(test)))]
 #[used]
 static CALL: fn(&mut BlockInstance, &mut Context<'_>) = BlockInstance::call::<standstill_axis::Standard>;
@@ -182,7 +182,7 @@ mod tests {
         for info in REGISTRY.iter().filter(|info| info.name.starts_with("MC_")) {
             let mut in_outs = info.pins_of(standstill_fb::Direction::InOut);
             let first = in_outs.next().map(|pin| (pin.name, pin.ty.iec_name()));
-            // What reads and writes inputs and outputs has a reference to those instead.
+            // Blocks that read and write inputs and outputs have a reference to those instead.
             let expected = match info.name {
                 "MC_ReadDigitalInput" => ("Input", "MC_INPUT_REF"),
                 "MC_ReadDigitalOutput" | "MC_WriteDigitalOutput" => ("Output", "MC_OUTPUT_REF"),

@@ -11,7 +11,8 @@ use standstill_fb::{AnyInstance, Context, PinType, TableRef, Value};
 /// Sample time (s).
 const CYCLE: f64 = 0.001;
 
-/// A table with one point for the profile blocks: in 4 s (DeltaTime in ns) to 1, not level. Behind it two rows of a cam.
+/// A table with one point for the profile blocks: after 4 s (DeltaTime in ns) at 1, not level. Behind it are two
+/// rows of a cam.
 const POINTS: [f64; 15] = [
     4e9, 1.0, 0.0, // the point
     0.0, 0.0, 0.0, 0.0, 0.0, 4.0, // from rest
@@ -42,7 +43,7 @@ impl Bench {
         Self::started(StartState::Standstill)
     }
 
-    /// Two axes at rest in the state the block is for: a phasing block needs its slave in gear.
+    /// Two axes at rest in the state that the block needs: a phasing block needs its slave in gear.
     pub fn ready_for(name: &str) -> Self {
         let mut bench = Self::new();
         if name.starts_with("MC_Phasing") {
@@ -144,7 +145,7 @@ impl Bench {
         block
     }
 
-    /// Wires every reference of the block to this axis, but that to a master to the other one.
+    /// Wires every reference of the block to this axis, and a reference to a master to the other one.
     pub fn wire(&self, block: &mut BlockInstance, axis: AxisId) {
         for (index, pin) in block.info().pins().enumerate() {
             if let PinType::Axis(_) = pin.ty {
@@ -213,7 +214,7 @@ impl Bench {
         });
     }
 
-    /// Both axes move on, and stay finite.
+    /// Advances both axes and checks that they stay finite.
     pub fn advance(&mut self) {
         let scope = &mut Scope {
             cams: Cams::new(&mut self.slots, &mut self.pieces),
@@ -223,7 +224,7 @@ impl Bench {
         steps::advance(&mut self.axes, scope);
         for (axis, drive) in self.axes.iter_mut().zip(&mut self.drives) {
             assert!(axis.setpoint().is_finite(), "scan {}", self.scan);
-            // It is there at once, in the coordinates of the command.
+            // The drive follows at once, in the coordinates of the command.
             *drive = axis.drive_command();
         }
         self.scan += 1;

@@ -52,7 +52,7 @@ struct Judge {
     on: f64,
     off: f64,
     turns: core::ops::RangeInclusive<i64>,
-    /// Too near to an edge to tell.
+    /// Too near to an edge to decide.
     close: f64,
 }
 
@@ -176,7 +176,7 @@ fn cams_switch_in_the_right_scan_at_every_speed() {
         let (first, last) = if modulo {
             (TURN * random.unit(), TURN * random.unit())
         } else {
-            // Somewhere on the way of the run.
+            // Somewhere on the path of the run.
             let (one, other) = (random.unit() * 100.0, random.unit() * 100.0);
             let way = velocity * CYCLE;
             ((one * way).min(other * way), (one * way).max(other * way))
@@ -262,7 +262,7 @@ fn cams_switch_in_the_right_scan_at_every_speed() {
             });
             assert!(block.outputs.in_operation);
             let outputs = axes[0].order().outputs;
-            // The look ahead counts with the velocity of now, so only from the second steady scan on.
+            // Looking ahead uses the present velocity, so it is exact from the second steady scan on.
             if steady && scan > 5 {
                 let what = format!("case {case}, scan {scan}: {velocity} u/s, cam {first} to {last}");
                 match judge.position_mode(position) {
@@ -276,7 +276,7 @@ fn cams_switch_in_the_right_scan_at_every_speed() {
                         judged += 1;
                     }
                 }
-                // What was met before the steady part is not judged.
+                // Edges before the steady part are not judged.
                 let length = seconds(duration) - seconds(on) + seconds(off);
                 if let Some(since) = judge
                     .since_met(position)
@@ -295,7 +295,7 @@ fn cams_switch_in_the_right_scan_at_every_speed() {
             steps::advance(slice::from_mut(&mut axes[0]), &mut Scope::new(scan, &mut log));
             let after = axes[0].setpoint();
             let shown = after.position - before.position;
-            // Of the ways that fit what is shown the one nearest to what the velocities say.
+            // Of the distances that fit the positions, the one nearest to the prediction from the velocities.
             let expected = 0.5 * (before.velocity + after.velocity) * CYCLE;
             let turns = if modulo {
                 ((expected - shown) / TURN).round()

@@ -1,8 +1,8 @@
 //! Cams: which tracks are on at a position.
 //!
-//! Positions are sampled once per scan. With a compensation time t, an edge at E is reached when
-//! `position - velocity * t` equals E, so a negative t looks ahead. The way between two samples is known,
-//! so no edge is missed, however fast the axis goes.
+//! Positions are sampled once per scan. With a compensation time t, an edge at E is reached when `position -
+//! velocity * t` equals E, so a negative t looks ahead. The path between two samples is known, so no edge is missed
+//! at any speed.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_DigitalCamSwitch; T39 h.
 
@@ -22,8 +22,8 @@ record! {
     pub struct CamSwitch = "MC_CAMSWITCH_REF" {
         /// The track, from 1 to 32; the cams of one track are ORed.
         TrackNumber => track_number: Int, "";
-        /// Lower end of the cam, included. On a modulo axis it may be above the upper one: the cam then lies over the
-        /// end of the turn. In time mode the position that switches on.
+        /// Lower end of the cam, included. On a modulo axis it may be above the upper end: the cam then passes the
+        /// end of the modulo range. In time mode it is the position that switches on.
         FirstOnPosition => first_on: f64, "u";
         /// Upper end of the cam, included; not used in time mode.
         LastOnPosition => last_on: f64, "u";
@@ -43,7 +43,7 @@ record! {
         OnCompensation => on_compensation: Time, "";
         /// Time by which the track switches off later; negative: earlier.
         OffCompensation => off_compensation: Time, "";
-        /// Distance from the last switching point below which the track does not switch again.
+        /// Distance from the last switching point within which the track does not switch again.
         Hysteresis => hysteresis: f64, "u";
     }
 }
@@ -128,7 +128,7 @@ impl Sample {
         }
     }
 
-    /// Distance (u) between two places, the shorter way round.
+    /// Distance (u) between two positions; on a modulo axis the shorter one.
     fn distance(&self, one: f64, other: f64) -> f64 {
         let ahead = self.ahead(one, other);
         match self.turn {
@@ -137,21 +137,21 @@ impl Sample {
         }
     }
 
-    /// The signed way (u) since `before`. On a modulo axis several ways fit the positions; this is the
-    /// one nearest to what the velocities predict.
+    /// The signed distance (u) since `before`. On a modulo axis several distances fit the positions; this is the
+    /// one nearest to the prediction from the velocities.
     fn way_since(&self, before: &Self) -> f64 {
         let way = self.position - before.position;
         let Some(turn) = self.turn else { return way };
         let time = (self.now_ns.saturating_sub(before.now_ns)) as f64 * NS;
         let expected = 0.5 * (self.velocity + before.velocity) * time;
         let turns = (expected - way) / turn;
-        // Whole turns are added to what the positions say, so that no rounding is left that would be a motion at rest.
+        // Whole turns are added to the difference of the positions. So an axis at rest shows no motion by rounding.
         let whole = (if turns < 0.0 { turns - 0.5 } else { turns + 0.5 }) as i64;
         way + whole as f64 * turn
     }
 }
 
-/// What an instance remembers of its tracks.
+/// The memory of an instance for its tracks.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cams {
     before: Option<Sample>,
@@ -255,7 +255,7 @@ impl Motion<'_> {
         let time = compensation.0 as f64 * NS;
         let from = self.before.position - self.before.velocity * time;
         let way = self.way - (self.now.velocity - self.before.velocity) * time;
-        // While the axis slows down, the position looked at ahead may go back. That is no crossing.
+        // While the axis slows down, the position ahead may move back. That is no crossing.
         if self.forward != Some(way > 0.0) {
             return false;
         }
@@ -295,7 +295,7 @@ impl Motion<'_> {
         } else {
             (first, last, switch.first_on)
         };
-        // A cam that lies wholly within the way of this scan is on for this scan.
+        // A cam that lies wholly within the distance of this scan is on for this scan.
         let passed = || length >= 0.0 && self.meets(edge, on);
         Cam {
             on: self.works(switch) && (inside || passed()),
@@ -304,8 +304,8 @@ impl Motion<'_> {
         }
     }
 
-    /// Whether the position that switched the track on by time is left, so that it may switch the track
-    /// on again.
+    /// Whether the axis has left the position that switched the track on by time, so that the track may switch on
+    /// again.
     fn lets_go(&self, option: &TrackOption, track: &mut CamTrack) {
         let near = |at: &f64| self.now.distance(self.now.position, *at) < option.hysteresis;
         track.held_at = track.held_at.filter(near);
@@ -333,8 +333,7 @@ fn follow(track: &mut CamTrack, wanted: Option<(usize, Cam)>, hysteresis: f64, m
         return;
     }
     let edge = wanted.map_or(track.leave, |(_, cam)| cam.enter);
-    // If no edge was passed in this scan, the axis turned round inside a cam, and the edge is not the
-    // switching point.
+    // If no edge was passed in this scan, the axis reversed inside a cam, and the edge is not the switching point.
     let passed = now.distance(now.position, edge) <= motion.way.abs();
     track.point = Some(if passed { edge } else { now.position });
     track.on = wanted.is_some();

@@ -9,7 +9,7 @@ pins! {
     in_outs {
         /// The axis.
         Axis => axis: AxisId;
-        /// The probe of its drive, whichever the edge; mcProbe1Rising if it is left out.
+        /// The probe of its drive, for either edge; mcProbe1Rising if it is left out.
         TriggerInput => trigger_input: Raw<Trigger>;
     }
     inputs {
@@ -18,7 +18,7 @@ pins! {
     }
     vendor_inputs {}
     outputs {
-        /// Nobody waits for the probe any more.
+        /// No block waits for the probe any more.
         Done => done: bool, "";
         /// Never TRUE: it is done in the call.
         Busy => busy: bool, "";

@@ -18,15 +18,15 @@ pins! {
         Switches => switches: TableOf<CamSwitch, SWITCHES>;
         /// The axis whose drive has the outputs: track 1 is output 0, track 32 output 31.
         Outputs => outputs: OutputRef;
-        /// Compensation and hysteresis of track 1, of track 2 and so on; of those left out 0.
+        /// Compensation and hysteresis of track 1, of track 2 and so on; 0 for those left out.
         TrackOptions => track_options: TableOf<TrackOption, TRACKS>;
     }
     inputs {
-        /// The tracks switch while TRUE; when it falls they are off.
+        /// The tracks switch while TRUE; they are off when it falls.
         Enable => enable: bool = false, "";
-        /// A bit for each track, the least significant one for track 1; other outputs are left alone.
+        /// A bit for each track, the least significant one for track 1; other outputs are not changed.
         EnableMask => enable_mask: u32 = 0, "";
-        /// mcSetValue or mcActualValue, as they stand at the beginning of the scan.
+        /// mcSetValue or mcActualValue, as of the beginning of the scan.
         ValueSource => value_source: Raw<ValueSource> = Raw::new(1), "";
     }
     vendor_inputs {}
@@ -35,7 +35,7 @@ pins! {
         InOperation => in_operation: bool, "";
         /// Enabled, and not ended by an error.
         Busy => busy: bool, "";
-        /// A value at a pin or in a table is no good; the tracks are off.
+        /// A value at a pin or in a table is invalid; the tracks are off.
         Error => error: bool, "";
         /// Why; 0 without an error.
         ErrorID => error_id: ErrorId, "";

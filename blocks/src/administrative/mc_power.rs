@@ -12,10 +12,10 @@ pins! {
         Axis => axis: AxisId;
     }
     inputs {
-        /// Power is wanted as long as TRUE.
+        /// Power is requested while TRUE.
         Enable => enable: bool = false, "";
-        /// Motion in positive direction is permitted. With FALSE a command that needs it is refused, and a motion that
-        /// needs it brakes with the stop dynamics, stays Busy and goes on when it is permitted again.
+        /// Motion in positive direction is permitted. With FALSE a command that needs it is refused. A motion that
+        /// needs it brakes with the stop dynamics, stays Busy, and continues when it is permitted again.
         EnablePositive => enable_positive: bool = true, "";
         /// The same for the negative direction.
         EnableNegative => enable_negative: bool = true, "";
@@ -26,7 +26,8 @@ pins! {
         Status => status: bool, "";
         /// Status can be relied on.
         Valid => valid: bool, "";
-        /// The block cannot do what its inputs ask, or the drive has not done it in time; power is then not asked for.
+        /// The block cannot do what its inputs ask, or the drive has not done it in time; power is then not
+        /// requested.
         Error => error: bool, "";
         /// Why; 0 without an error.
         ErrorID => error_id: ErrorId, "";

@@ -19,7 +19,7 @@ pins! {
     vendor_inputs {}
     outputs {
         ..reading;
-        /// What the drive shows there, as latched in this scan: what was written in the scan before.
+        /// The level that the drive shows, as latched in this scan: it was written in the scan before.
         Value => value: bool, "";
     }
     vendor_outputs {}

@@ -13,21 +13,22 @@ pins! {
     inputs {
         /// Read in every call while TRUE.
         Enable => enable: bool = false, "";
-        /// The values to judge by; may change while Enable is TRUE.
+        /// The values to evaluate; may change while Enable is TRUE.
         Source => source: Raw<ValueSource> = ValueSource::Set.into(), "";
     }
     vendor_inputs {}
     outputs {
         ..reading;
-        /// The velocity is constant, 0 too; commanded values change in jumps only; a window applies to actual ones.
+        /// The velocity is constant, 0 included. Set values may change only in steps; actual ones must stay within
+        /// a window.
         ConstantVelocity => constant_velocity: bool, "";
         /// The magnitude of the velocity grows.
         Accelerating => accelerating: bool, "";
         /// The magnitude of the velocity shrinks.
         Decelerating => decelerating: bool, "";
-        /// The position grows; for commanded values: shall grow.
+        /// The position increases. For set values: it is commanded to increase.
         DirectionPositive => direction_positive: bool, "";
-        /// The position shrinks; for commanded values: shall shrink.
+        /// The position decreases. For set values: it is commanded to decrease.
         DirectionNegative => direction_negative: bool, "";
     }
     vendor_outputs {}

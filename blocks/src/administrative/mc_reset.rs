@@ -20,7 +20,7 @@ pins! {
         Done => done: bool, "";
         /// Not finished: the axis still brakes, or the drive has not answered.
         Busy => busy: bool, "";
-        /// The cause is still there, or the block is not usable.
+        /// The cause is still present, or the block is not usable.
         Error => error: bool, "";
         /// Why; 0 without an error.
         ErrorID => error_id: ErrorId, "";

@@ -11,10 +11,10 @@ pins! {
         Axis => axis: AxisId;
     }
     inputs {
-        /// The factors are written in every call while TRUE; what was written last stays.
+        /// The factors are written in every call while TRUE; the last written ones stay.
         Enable => enable: bool = false, "";
-        /// Factor of velocities, from 0 to 1 or the `override_max` of the axis; 0 brings it to rest and leaves the
-        /// state as it is.
+        /// Factor of velocities, from 0 to 1 or the `override_max` of the axis; 0 brings it to rest and keeps its
+        /// state.
         VelFactor => vel_factor: f64 = 1.0, "";
         /// Factor of accelerations and decelerations, above 0.
         AccFactor => acc_factor: f64 = 1.0, "";
@@ -27,7 +27,7 @@ pins! {
         Enabled => enabled: bool, "";
         /// Enabled, and not ended by an error.
         Busy => busy: bool, "";
-        /// The factors at the pins are not taken; those before them stay in force.
+        /// The factors at the pins are refused; the previous ones stay in force.
         Error => error: bool, "";
         /// Why; 0 without an error.
         ErrorID => error_id: ErrorId, "";

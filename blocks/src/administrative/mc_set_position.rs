@@ -13,7 +13,7 @@ pins! {
     inputs {
         /// A rising edge moves the coordinates with the values of that call.
         Execute => execute: bool = false, "";
-        /// New actual position, or with Relative what it grows by; finite.
+        /// New actual position, or with Relative the increase; finite.
         Position => position: f64 = 0.0, "u";
         /// TRUE: Position is added to the actual position found when the command executes.
         Relative => relative: bool = false, "";

@@ -13,13 +13,13 @@ pins! {
         TriggerInput => trigger_input: Raw<Trigger>;
     }
     inputs {
-        /// A rising edge arms the probe for one event, anew if it waits.
+        /// A rising edge arms the probe for one event; it arms a waiting probe anew.
         Execute => execute: bool = false, "";
         /// TRUE: only an event inside the window counts.
         WindowOnly => window_only: bool = false, "";
         /// Start of the window in positive direction, included.
         FirstPosition => first_position: f64 = 0.0, "u";
-        /// End of the window, included; on a modulo axis it may lie behind the end of the turn.
+        /// End of the window, included; on a modulo axis the window may pass the end of the modulo range.
         LastPosition => last_position: f64 = 0.0, "u";
     }
     vendor_inputs {}
@@ -34,7 +34,7 @@ pins! {
         Error => error: bool, "";
         /// Why; 0 without an error.
         ErrorID => error_id: ErrorId, "";
-        /// Position at the event, in the coordinates in force then; it stays until the next one is recorded.
+        /// Position at the event, in the coordinates in force then; it stays until the next event is recorded.
         RecordedPosition => recorded_position: f64, "u";
     }
     vendor_outputs {}

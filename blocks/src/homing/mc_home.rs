@@ -2,7 +2,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 //!
-//! The axis decides what to search and how: see `docs/homing.md`.
+//! The configuration of the axis decides what to search and how: see `docs/homing.md`.
 
 use standstill_axis::{AxisId, BufferMode, Command, Planner, Raw, Request};
 use standstill_fb::{Block, Context, ExecuteCore, Group, pins};
@@ -22,7 +22,7 @@ pins! {
     }
     vendor_inputs {}
     outputs {
-        /// The reference is known and named, and the axis stands.
+        /// The reference is found, its position is set, and the axis is at rest.
         Done => done: bool, "";
         ..motion;
     }

@@ -20,23 +20,24 @@ pins! {
         Execute => execute: bool = false, "";
         /// Changed inputs hold for the cam in progress while TRUE, if it was TRUE at the rising edge.
         ContinuousUpdate => continuous_update: bool = false, "";
-        /// Where place 0 of the cam lies at the master.
+        /// Position of the master at position 0 of the cam.
         MasterOffset => master_offset: f64 = 0.0, "u of the master";
-        /// Where place 0 of the cam lies at the slave.
+        /// Position of the slave at position 0 of the cam.
         SlaveOffset => slave_offset: f64 = 0.0, "u";
-        /// The master's side of the cam is so many times as long: above 1 it takes the master longer.
+        /// Factor of the master's side of the cam: above 1 the master needs a longer travel.
         MasterScaling => master_scaling: f64 = 1.0, "";
-        /// The slave's side of the cam is so many times as long; negative mirrors it.
+        /// Factor of the slave's side of the cam; negative mirrors it.
         SlaveScaling => slave_scaling: f64 = 1.0, "";
-        /// How far before MasterSyncPosition the master is, on its side of the cam, where the slave sets off; above 0 for a cam that
-        /// runs forwards, below 0 for one that runs backwards. 0 sets off at once.
+        /// Distance of the master before MasterSyncPosition, on its side of the cam, at which the slave starts.
+        /// Above 0 for a cam that runs forwards, below 0 for one that runs backwards. 0 starts at once.
         MasterStartDistance => master_start_distance: f64 = 0.0, "u of the master";
-        /// Place of the cam's master side at which the slave is in sync first with a MasterStartDistance; without, it joins there,
-        /// and 0 is the first row that it can reach in time.
+        /// With a MasterStartDistance, the position on the cam's master side at which the slave is in sync first.
+        /// Without one, the slave joins there; 0 is then the first row that it can reach in time.
         MasterSyncPosition => master_sync_position: f64 = 0.0, "u of the master";
-        /// mcAbsolute as selected, mcRelative so that the cam passes through where the slave is, mcRampIn as mcAbsolute.
+        /// mcAbsolute as selected, mcRelative so that the cam passes through the position of the slave, mcRampIn as
+        /// mcAbsolute.
         StartMode => start_mode: Raw<StartMode> = Raw::new(0), "";
-        /// mcSetValue, or mcActualValue for what the drive of the master tells, filtered.
+        /// mcSetValue, or mcActualValue for the filtered feedback of the master's drive.
         MasterValueSource => master_value_source: Raw<ValueSource> = Raw::new(1), "";
         /// The cam, from MC_CamTableSelect.
         CamTableID => cam_table_id: u32 = 0, "";
@@ -44,12 +45,12 @@ pins! {
         BufferMode => buffer_mode: Raw<BufferMode> = Raw::new(0), "";
     }
     vendor_inputs {
-        /// With BufferMode mcBuffered behind another cam: the place of that cam's master side at which this one takes over; 0 for its
-        /// end.
+        /// With BufferMode mcBuffered behind another cam: the position on that cam's master side at which this one
+        /// takes over; 0 for its end.
         SwitchAt => switch_at: f64 = 0.0, "u of the master";
     }
     outputs {
-        /// The set position of the slave is the one the cam asks for.
+        /// The set position of the slave is on the cam.
         InSync => in_sync: bool, "";
         /// Not finished.
         Busy => busy: bool, "";
@@ -61,18 +62,19 @@ pins! {
         Error => error: bool, "";
         /// Why; 0 without an error.
         ErrorID => error_id: ErrorId, "";
-        /// TRUE for one call each time the end of the cam is reached; running backwards at its first row.
+        /// TRUE for one call each time the end of the cam is reached; running backwards, its first row.
         EndOfProfile => end_of_profile: bool, "";
     }
     vendor_outputs {
-        /// How far the slave is from where the cam is at its master's place; 0 in sync.
+        /// Distance of the slave from its position on the cam; 0 in sync.
         Deviation => deviation: f64, "u";
-        /// The master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost).
+        /// The master went out of operation; the slave is at rest until it is coupled again (axis key
+        /// coupling.on_master_lost).
         MasterLost => master_lost: bool, "";
     }
 }
 
-/// What the block commands, as its pins say. It is smaller than a [`Command`].
+/// The command of the block, from its pins. It is smaller than a [`Command`].
 #[derive(Clone, Copy, Debug)]
 struct Commanded {
     master: AxisId,

@@ -7,7 +7,7 @@ use standstill_fb::{Block, Context, ExecuteCore, Group, pins};
 
 pins! {
     in_outs {
-        /// The axis that follows another on a cam by MC_CamIn.
+        /// The axis that MC_CamIn has coupled to a master.
         Slave => slave: AxisId;
     }
     inputs {

@@ -1,6 +1,6 @@
 //! `MC_CamTableSelect`: makes a cam from a table.
 //!
-//! Source: PLCopen Motion Control Part 1, section of that name; V20a. The rows are told in docs/cams.md.
+//! Source: PLCopen Motion Control Part 1, section of that name; V20a. docs/cams.md describes the rows.
 
 use core::cell::Cell;
 use standstill_axis::{
@@ -12,9 +12,9 @@ use standstill_fb::{Block, Context, Group, Int, TableOf, pins, record};
 record! {
     /// A row of a cam.
     pub struct CamPoint = "MC_CAM_REF" {
-        /// Place of the master, above that of the row before.
+        /// Position of the master, above that of the row before.
         Master => master: f64, "u of the master";
-        /// Place of the slave.
+        /// Position of the slave.
         Slave => slave: f64, "u";
         /// First derivative there, for mcCamPoly7 and mcCamPoly5.
         Slope => slope: f64, "";
@@ -22,16 +22,16 @@ record! {
         Curvature => curvature: f64, "";
         /// Third derivative there, for mcCamPoly7.
         Third => third: f64, "";
-        /// How the cam runs on to the next row.
+        /// Law of the cam from this row to the next.
         Law => law: Raw<CamCurve>, "";
     }
 }
 
 pins! {
     in_outs {
-        /// The master, whose velocity limit the cam is held against.
+        /// The master; the cam is checked against its velocity limit.
         Master => master: AxisId;
-        /// The slave, whose limits the cam is held against.
+        /// The slave; the cam is checked against its limits.
         Slave => slave: AxisId;
         /// The rows, 2 to 512; they are copied, and must not change while the block is Busy.
         CamTable => cam_table: TableOf<CamPoint, CAM_ROWS>;
@@ -39,20 +39,22 @@ pins! {
     inputs {
         /// A rising edge selects the table with the values of that call.
         Execute => execute: bool = false, "";
-        /// Behind its last row the cam goes on as at its first.
+        /// TRUE: the cam continues with its first row after its last one.
         Periodic => periodic: bool = false, "";
-        /// Places of the master are those of the axis; else the first row lies where the master is when MC_CamIn begins.
+        /// TRUE: positions of the master are those of the axis. FALSE: the first row is at the position of the
+        /// master when MC_CamIn begins.
         MasterAbsolute => master_absolute: bool = false, "";
-        /// Places of the slave are those of the axis; else the cam passes through where the slave is when MC_CamIn begins.
+        /// TRUE: positions of the slave are those of the axis. FALSE: the cam passes through the position of the
+        /// slave when MC_CamIn begins.
         SlaveAbsolute => slave_absolute: bool = false, "";
-        /// mcImmediately, or mcQueued for the end of what the slave has been commanded before.
+        /// mcImmediately, or mcQueued for the end of the commands that the slave has received before.
         ExecutionMode => execution_mode: Raw<ExecutionMode> = Raw::new(0), "";
     }
     vendor_inputs {}
     outputs {
         /// The cam is selected, and CamTableID valid.
         Done => done: bool, "";
-        /// Not finished: 32 rows are looked at in each call.
+        /// Not finished: each call checks 32 rows.
         Busy => busy: bool, "";
         /// Refused.
         Error => error: bool, "";
@@ -62,9 +64,9 @@ pins! {
         CamTableID => cam_table_id: u32, "";
     }
     vendor_outputs {
-        /// The highest constant velocity of the master with which the slave can follow the cam.
+        /// The highest constant velocity of the master at which the slave can follow the cam.
         MaxMasterVelocity => max_master_velocity: f64, "u/s of the master";
-        /// How many derivatives of the cam are continuous, at most 3.
+        /// Number of continuous derivatives of the cam, at most 3.
         Continuity => continuity: Int, "";
     }
 }

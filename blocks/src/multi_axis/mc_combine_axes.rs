@@ -1,4 +1,4 @@
-//! `MC_CombineAxes`: a slave follows the sum of the ways of two masters.
+//! `MC_CombineAxes`: a slave follows the sum of the travels of two masters.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 
@@ -21,13 +21,13 @@ pins! {
         Execute => execute: bool = false, "";
         /// Changed inputs hold for the coupling in progress while TRUE, if it was TRUE at the rising edge.
         ContinuousUpdate => continuous_update: bool = false, "";
-        /// mcAddAxes: the ways of both masters are added; mcSubAxes: that of the second is taken away.
+        /// mcAddAxes: the travels of both masters are added; mcSubAxes: that of the second is subtracted.
         CombineMode => combine_mode: Raw<CombineMode> = Raw::new(0), "";
-        /// Way of the slave for one of the first master, as a ratio: numerator, signed, 0 allowed.
+        /// Travel of the slave for that of the first master, as a ratio: numerator, signed, 0 allowed.
         GearRatioNumeratorM1 => gear_ratio_numerator_m1: i16 = 1, "";
         /// Denominator of that ratio, above 0.
         GearRatioDenominatorM1 => gear_ratio_denominator_m1: i16 = 1, "";
-        /// Way of the slave for one of the second master: numerator, signed, 0 allowed.
+        /// Travel of the slave for that of the second master: numerator, signed, 0 allowed.
         GearRatioNumeratorM2 => gear_ratio_numerator_m2: i16 = 1, "";
         /// Denominator of that ratio, above 0.
         GearRatioDenominatorM2 => gear_ratio_denominator_m2: i16 = 1, "";
@@ -40,7 +40,7 @@ pins! {
     }
     vendor_inputs {}
     outputs {
-        /// The set position of the slave is the one the masters ask for.
+        /// The set position of the slave is the one that the masters demand.
         InSync => in_sync: bool, "";
         /// Not finished.
         Busy => busy: bool, "";
@@ -54,9 +54,10 @@ pins! {
         ErrorID => error_id: ErrorId, "";
     }
     vendor_outputs {
-        /// How far the slave is from where the masters ask it to be, once it was in sync; 0 in sync.
+        /// Distance of the slave from its position in sync, once it was in sync; 0 in sync.
         Deviation => deviation: f64, "u";
-        /// A master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost).
+        /// A master went out of operation; the slave is at rest until it is coupled again (axis key
+        /// coupling.on_master_lost).
         MasterLost => master_lost: bool, "";
     }
 }

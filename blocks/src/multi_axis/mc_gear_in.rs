@@ -20,11 +20,11 @@ pins! {
         Execute => execute: bool = false, "";
         /// Changed inputs hold for the coupling in progress while TRUE, if it was TRUE at the rising edge.
         ContinuousUpdate => continuous_update: bool = false, "";
-        /// Way of the slave for one of the master, as a ratio: numerator, signed; 0 brings the slave to rest.
+        /// Travel of the slave for that of the master, as a ratio: numerator, signed; 0 brings the slave to rest.
         RatioNumerator => ratio_numerator: i16 = 0, "";
         /// Denominator of the ratio, above 0.
         RatioDenominator => ratio_denominator: u16 = 0, "";
-        /// mcSetValue, or mcActualValue for what the drive of the master tells, filtered.
+        /// mcSetValue, or mcActualValue for the filtered feedback of the master's drive.
         MasterValueSource => master_value_source: Raw<ValueSource> = Raw::new(1), "";
         /// Rate while the speed grows, until in gear; 0 takes the axis default.
         Acceleration => acceleration: f64 = 0.0, "u/s^2";
@@ -40,7 +40,7 @@ pins! {
         Snap => snap: f64 = 0.0, "u/s^4";
     }
     outputs {
-        /// The set position of the slave is the one the ratio asks for.
+        /// The set position of the slave is the one that the ratio demands.
         InGear => in_gear: bool, "";
         /// Not finished.
         Busy => busy: bool, "";
@@ -54,9 +54,10 @@ pins! {
         ErrorID => error_id: ErrorId, "";
     }
     vendor_outputs {
-        /// How far the slave is from where the ratio asks it to be, once it was in gear; 0 in gear.
+        /// Distance of the slave from its position in gear, once it was in gear; 0 in gear.
         Deviation => deviation: f64, "u";
-        /// The master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost).
+        /// The master went out of operation; the slave is at rest until it is coupled again (axis key
+        /// coupling.on_master_lost).
         MasterLost => master_lost: bool, "";
     }
 }

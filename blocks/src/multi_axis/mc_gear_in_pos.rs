@@ -18,22 +18,23 @@ pins! {
     inputs {
         /// A rising edge couples the axes with the values of that call.
         Execute => execute: bool = false, "";
-        /// Way of the slave for one of the master, as a ratio: numerator, signed; 0 brings the slave to rest.
+        /// Travel of the slave for that of the master, as a ratio: numerator, signed; 0 brings the slave to rest.
         RatioNumerator => ratio_numerator: i16 = 0, "";
         /// Denominator of the ratio, above 0.
         RatioDenominator => ratio_denominator: u16 = 0, "";
-        /// mcSetValue, or mcActualValue for what the drive of the master tells, filtered.
+        /// mcSetValue, or mcActualValue for the filtered feedback of the master's drive.
         MasterValueSource => master_value_source: Raw<ValueSource> = Raw::new(1), "";
-        /// Place of the master at the sync point.
+        /// Position of the master at the sync point.
         MasterSyncPosition => master_sync_position: f64 = 0.0, "u";
-        /// Place of the slave at the sync point.
+        /// Position of the slave at the sync point.
         SlaveSyncPosition => slave_sync_position: f64 = 0.0, "u";
-        /// Which of the places that mean the same on a modulo slave; with mcSlowDown the slave is never faster than in sync.
+        /// On a modulo slave, selects one of the equivalent positions; with mcSlowDown the slave is never faster
+        /// than in sync.
         SyncMode => sync_mode: Raw<SyncMode> = Raw::new(0), "";
-        /// How far before its sync point the master is where the slave sets off; above 0 for a master that moves forwards, below 0
-        /// for one that moves backwards. 0 sets off at once.
+        /// Distance of the master before its sync point at which the slave starts. Above 0 for a master that moves
+        /// forwards, below 0 for one that moves backwards. 0 starts at once.
         MasterStartDistance => master_start_distance: f64 = 0.0, "u";
-        /// Most speed from StartSync until InSync; 0 takes the axis limit.
+        /// Largest speed from StartSync until InSync; 0 takes the axis limit.
         Velocity => velocity: f64 = 0.0, "u/s";
         /// Rate while the speed grows, until in sync; 0 takes the axis default.
         Acceleration => acceleration: f64 = 0.0, "u/s^2";
@@ -49,9 +50,9 @@ pins! {
         Snap => snap: f64 = 0.0, "u/s^4";
     }
     outputs {
-        /// The slave is on its way to the sync point; FALSE from InSync on.
+        /// The slave approaches the sync point; FALSE from InSync on.
         StartSync => start_sync: bool, "";
-        /// The set position of the slave is the one the ratio asks for.
+        /// The set position of the slave is the one that the ratio demands.
         InSync => in_sync: bool, "";
         /// Not finished.
         Busy => busy: bool, "";
@@ -65,9 +66,10 @@ pins! {
         ErrorID => error_id: ErrorId, "";
     }
     vendor_outputs {
-        /// How far the slave is from where the ratio asks it to be; 0 in sync.
+        /// Distance of the slave from its position in sync; 0 in sync.
         Deviation => deviation: f64, "u";
-        /// The master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost).
+        /// The master went out of operation; the slave is at rest until it is coupled again (axis key
+        /// coupling.on_master_lost).
         MasterLost => master_lost: bool, "";
     }
 }

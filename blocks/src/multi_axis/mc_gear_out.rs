@@ -7,7 +7,7 @@ use standstill_fb::{Block, Context, ExecuteCore, Group, pins};
 
 pins! {
     in_outs {
-        /// The axis that follows another by MC_GearIn or MC_GearInPos.
+        /// The axis that MC_GearIn or MC_GearInPos has coupled to a master.
         Slave => slave: AxisId;
     }
     inputs {

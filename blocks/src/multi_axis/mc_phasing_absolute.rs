@@ -15,13 +15,13 @@ pins! {
     inputs {
         /// A rising edge shifts the master as the slave sees it.
         Execute => execute: bool = false, "";
-        /// How far ahead of its place the master is to be seen; below 0 behind.
+        /// Distance by which the slave sees the master ahead of its position; below 0 behind.
         PhaseShift => phase_shift: f64 = 0.0, "u";
-        /// Most speed of the shift; 0 takes what the slave's limits leave.
+        /// Largest speed of the shift; 0 takes what the slave's limits leave.
         Velocity => velocity: f64 = 0.0, "u/s";
         /// Rate while that speed grows; 0 takes what the slave's limits leave.
         Acceleration => acceleration: f64 = 0.0, "u/s^2";
-        /// Rate while it falls; the lower of both holds. 0 takes what the slave's limits leave.
+        /// Rate while that speed falls; the lower of the two rates holds. 0 takes what the slave's limits leave.
         Deceleration => deceleration: f64 = 0.0, "u/s^2";
         /// Jerk of the shift; 0 takes what the slave's limits leave.
         Jerk => jerk: f64 = 0.0, "u/s^3";
@@ -45,7 +45,7 @@ pins! {
         Error => error: bool, "";
         /// Why; 0 without an error.
         ErrorID => error_id: ErrorId, "";
-        /// The shift there is, updated while Busy.
+        /// The present shift, updated while Busy.
         AbsolutePhaseShift => absolute_phase_shift: f64, "u";
     }
     vendor_outputs {}

@@ -15,13 +15,13 @@ pins! {
     inputs {
         /// A rising edge shifts the master as the slave sees it.
         Execute => execute: bool = false, "";
-        /// By how much further ahead of its place the master is to be seen; below 0 further behind.
+        /// Distance by which the slave sees the master further ahead than before; below 0 further behind.
         PhaseShift => phase_shift: f64 = 0.0, "u";
-        /// Most speed of the shift; 0 takes what the slave's limits leave.
+        /// Largest speed of the shift; 0 takes what the slave's limits leave.
         Velocity => velocity: f64 = 0.0, "u/s";
         /// Rate while that speed grows; 0 takes what the slave's limits leave.
         Acceleration => acceleration: f64 = 0.0, "u/s^2";
-        /// Rate while it falls; the lower of both holds. 0 takes what the slave's limits leave.
+        /// Rate while that speed falls; the lower of the two rates holds. 0 takes what the slave's limits leave.
         Deceleration => deceleration: f64 = 0.0, "u/s^2";
         /// Jerk of the shift; 0 takes what the slave's limits leave.
         Jerk => jerk: f64 = 0.0, "u/s^3";
@@ -45,7 +45,7 @@ pins! {
         Error => error: bool, "";
         /// Why; 0 without an error.
         ErrorID => error_id: ErrorId, "";
-        /// How far the shift has changed since the rising edge, updated while Busy.
+        /// Change of the shift since the rising edge, updated while Busy.
         CoveredPhaseShift => covered_phase_shift: f64, "u";
     }
     vendor_outputs {}

@@ -24,7 +24,7 @@ pins! {
         ..snap;
     }
     outputs {
-        /// The axis stands.
+        /// The axis is at rest.
         Done => done: bool, "";
         ..motion;
     }

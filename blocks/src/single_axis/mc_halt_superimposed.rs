@@ -22,7 +22,7 @@ pins! {
         ..snap;
     }
     outputs {
-        /// Nothing superimposed is in motion.
+        /// No superimposed motion is in progress.
         Done => done: bool, "";
         /// Not finished.
         Busy => busy: bool, "";

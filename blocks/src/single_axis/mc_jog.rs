@@ -1,7 +1,7 @@
 //! `MC_Jog`: moves an axis by hand, as long as a button is held or by a step.
 //!
-//! Source: none, this block is not in the PLCopen standard; pins and outputs follow its rules R8, R19 to R38 as far as
-//! a level of two buttons has an edge. What the block does stands in docs/jogging.md.
+//! Source: none, this block is not in the PLCopen standard. Its pins and outputs follow the rules R8 and R19 to R38
+//! as far as the level of two buttons has an edge. docs/jogging.md describes the block.
 
 use standstill_axis::{Axis, AxisId, Command, CommandId, Dynamics, ErrorId, Fate, Planner, Request, Scope};
 use standstill_fb::{Block, Context, Group, Phase, pins};
@@ -18,7 +18,7 @@ pins! {
         JogForward => jog_forward: bool = false, "";
         /// The same towards smaller positions.
         JogBackward => jog_backward: bool = false, "";
-        /// Length of a step, after which the axis stands though the button is held; 0 goes on while it is held.
+        /// Length of a step, after which the axis stops even if the button is held; 0 moves while it is held.
         Distance => distance: f64 = 0.0, "u";
         /// Largest velocity; above 0, the buttons give the direction.
         Velocity => velocity: f64 = 0.0, "u/s";
@@ -32,7 +32,7 @@ pins! {
     }
     outputs {}
     vendor_outputs {
-        /// The axis stands after the release or the step.
+        /// The axis is at rest after the release or the step.
         Done => done: bool, "";
         /// Moving, or braking after the release.
         Busy => busy: bool, "";

@@ -20,7 +20,7 @@ pins! {
         /// Largest velocity, above 0; not necessarily reached.
         Velocity => velocity: f64 = 0.0, "u/s";
         ..rates;
-        /// Way round on a modulo axis; ignored on a linear one.
+        /// Direction of travel on a modulo axis; ignored on a linear one.
         Direction => direction: Raw<Direction> = Raw::new(0), "";
         /// How the command follows the one before it.
         BufferMode => buffer_mode: Raw<BufferMode> = Raw::new(0), "";

@@ -15,8 +15,8 @@ pins! {
         Execute => execute: bool = false, "";
         /// Changed inputs hold for the motion in progress while TRUE, if it was TRUE at the rising edge.
         ContinuousUpdate => continuous_update: bool = false, "";
-        /// Signed distance from the last commanded target; finite. From the set position at the start where there
-        /// is no such target: in Standstill and behind or during an endless motion.
+        /// Signed distance from the last commanded target; finite. Without such a target, from the set position at
+        /// the start: in Standstill, and behind or during an endless motion.
         Distance => distance: f64 = 0.0, "u";
         /// Largest velocity, above 0; not necessarily reached.
         Velocity => velocity: f64 = 0.0, "u/s";

@@ -41,7 +41,7 @@ pins! {
         Error => error: bool, "";
         /// Why; 0 without an error.
         ErrorID => error_id: ErrorId, "";
-        /// What was added since the rising edge; kept until the next one.
+        /// Distance added since the rising edge; kept until the next one.
         CoveredDistance => covered_distance: f64, "u";
     }
     vendor_outputs {

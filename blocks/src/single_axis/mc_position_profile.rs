@@ -1,6 +1,6 @@
 //! `MC_PositionProfile`: a motion along a curve of position over time.
 //!
-//! Source: PLCopen Motion Control Part 1, section of that name. The curve is told in docs/profiles.md.
+//! Source: PLCopen Motion Control Part 1, section of that name. docs/profiles.md describes the curve.
 
 use super::profile::{Pins, Point, Points, ProfileCore, Shape};
 use standstill_axis::{AxisId, BufferMode, Planner, ProfileKind, ProfileRow, Raw};
@@ -9,11 +9,11 @@ use standstill_fb::{Block, Context, Group, Time, pins, record};
 record! {
     /// A point of a position profile.
     pub struct PositionPoint = "MC_TP_REF" {
-        /// Time since the point before, above 0; of the first one since the start, which may be 0.
+        /// Time since the point before, above 0; for the first point since the start, where 0 is allowed.
         DeltaTime => delta_time: Time, "";
         /// Position there.
         Position => position: f64, "u";
-        /// The curve is level there: the axis stands, without acceleration and jerk.
+        /// The curve is level there: the axis is at rest, without acceleration and jerk.
         Level => level: bool, "";
     }
 }
@@ -49,7 +49,8 @@ pins! {
         PositionScale => position_scale: f64 = 1.0, "";
         /// Added to all positions.
         Offset => offset: f64 = 0.0, "u";
-        /// How the command follows the one before it; it starts at rest or with what the one before leaves it.
+        /// How the command follows the one before it. It starts at rest or in the state in which the one before
+        /// ends.
         BufferMode => buffer_mode: Raw<BufferMode> = Raw::new(0), "";
     }
     vendor_inputs {}

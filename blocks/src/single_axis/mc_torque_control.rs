@@ -17,7 +17,7 @@ pins! {
         ContinuousUpdate => continuous_update: bool = false, "";
         /// Torque or force to hold, in the unit of the drive; signed, positive towards larger positions.
         Torque => torque: f64 = 0.0, "torque";
-        /// Largest change of the torque ordered; 0 for none.
+        /// Largest rate of change of the torque ordered; 0 for no ramp.
         TorqueRamp => torque_ramp: f64 = 0.0, "torque/s";
         /// Largest speed, above 0; 0 takes the axis limit.
         Velocity => velocity: f64 = 0.0, "u/s";

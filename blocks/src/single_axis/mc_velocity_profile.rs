@@ -1,6 +1,6 @@
 //! `MC_VelocityProfile`: a motion along a curve of velocity over time.
 //!
-//! Source: PLCopen Motion Control Part 1, section of that name. The curve is told in docs/profiles.md.
+//! Source: PLCopen Motion Control Part 1, section of that name. docs/profiles.md describes the curve.
 
 use super::profile::{Pins, Point, Points, ProfileCore, Shape};
 use standstill_axis::{AxisId, BufferMode, Planner, ProfileKind, ProfileRow, Raw};
@@ -9,7 +9,7 @@ use standstill_fb::{Block, Context, Group, Time, pins, record};
 record! {
     /// A point of a velocity profile.
     pub struct VelocityPoint = "MC_TV_REF" {
-        /// Time since the point before, above 0; of the first one since the start, which may be 0.
+        /// Time since the point before, above 0; for the first point since the start, where 0 is allowed.
         DeltaTime => delta_time: Time, "";
         /// Velocity there, signed.
         Velocity => velocity: f64, "u/s";
@@ -49,12 +49,13 @@ pins! {
         VelocityScale => velocity_scale: f64 = 1.0, "";
         /// Added to all velocities.
         Offset => offset: f64 = 0.0, "u/s";
-        /// How the command follows the one before it; it starts at rest or with what the one before leaves it.
+        /// How the command follows the one before it. It starts at rest or in the state in which the one before
+        /// ends.
         BufferMode => buffer_mode: Raw<BufferMode> = Raw::new(0), "";
     }
     vendor_inputs {}
     outputs {
-        /// The last point has been reached; the axis keeps its velocity.
+        /// The last point is reached; the axis keeps its velocity.
         ProfileCompleted => profile_completed: bool, "";
         ..motion;
     }

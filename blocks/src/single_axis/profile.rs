@@ -11,7 +11,7 @@ use standstill_fb::{Context, ExecuteCore, Phase, Record, TableOf};
 
 /// A record of one of the three tables.
 pub trait Point: Record {
-    /// What its value is.
+    /// The kind of its value.
     const KIND: ProfileKind;
 
     /// The pin of the table.
@@ -24,7 +24,7 @@ pub trait Point: Record {
 /// The table at a pin.
 pub type Points<R> = TableOf<R, PROFILE_POINTS>;
 
-/// What defines a profile, as its pins say.
+/// The values that define a profile, from the pins.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape<R> {
     /// The table.
@@ -60,7 +60,7 @@ impl<R: Point> Shape<R> {
     }
 }
 
-/// The pins all three have.
+/// The pins that all three have.
 #[derive(Clone, Copy, Debug)]
 pub struct Pins {
     /// Axis.

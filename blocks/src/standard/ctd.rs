@@ -11,16 +11,16 @@ pins! {
     inputs {
         /// Counts down at a rising edge.
         CD => cd: bool = false, "";
-        /// Sets CV to PV; wins over an edge, which is then spent.
+        /// Sets CV to PV; has priority over an edge, which is then consumed.
         LD => ld: bool = false, "";
-        /// What LD sets CV to.
+        /// The value for LD.
         PV => pv: Int = 0, "";
     }
     vendor_inputs {}
     outputs {
         /// CV is 0 or less.
         Q => q: bool, "";
-        /// The count; it goes on below 0 and stops at -32768.
+        /// The count; it continues below 0 and stops at -32768.
         CV => cv: Int, "";
     }
     vendor_outputs {}

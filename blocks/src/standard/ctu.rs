@@ -11,7 +11,7 @@ pins! {
     inputs {
         /// Counts up at a rising edge.
         CU => cu: bool = false, "";
-        /// Sets CV to 0; wins over an edge, which is then spent.
+        /// Sets CV to 0; has priority over an edge, which is then consumed.
         R => r: bool = false, "";
         /// The count at which Q becomes TRUE.
         PV => pv: Int = 0, "";
@@ -20,7 +20,7 @@ pins! {
     outputs {
         /// CV has reached PV.
         Q => q: bool, "";
-        /// The count; it goes on past PV and stops at 32767.
+        /// The count; it continues past PV and stops at 32767.
         CV => cv: Int, "";
     }
     vendor_outputs {}

@@ -13,11 +13,11 @@ pins! {
         CU => cu: bool = false, "";
         /// Counts down at a rising edge; edges of both in one call cancel.
         CD => cd: bool = false, "";
-        /// Sets CV to 0; wins over LD and edges, which are then spent.
+        /// Sets CV to 0; has priority over LD and edges, which are then consumed.
         R => r: bool = false, "";
-        /// Sets CV to PV; wins over edges, which are then spent.
+        /// Sets CV to PV; has priority over edges, which are then consumed.
         LD => ld: bool = false, "";
-        /// The count at which QU becomes TRUE, and what LD sets CV to.
+        /// The count at which QU becomes TRUE, and the value for LD.
         PV => pv: Int = 0, "";
     }
     vendor_inputs {}

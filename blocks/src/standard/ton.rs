@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(at(&mut block, 1000, true, 30), (true, 30));
     }
 
-    /// TN-6, and a negative PT is no different.
+    /// TN-6. A negative PT gives the same.
     #[test]
     fn without_delay_q_comes_one_call_after_the_edge() {
         for pt in [0, -5] {

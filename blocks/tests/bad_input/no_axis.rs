@@ -37,7 +37,7 @@ fn an_axis_that_does_not_exist_is_an_error_until_the_next_edge() {
                     assert!(!bench.flag(&block, pin), "{}.{pin}", info.name);
                 }
             }
-            // No axis could tell of a slave that is none.
+            // No axis can record that the slave does not exist.
             if block.info().pin("Slave").is_some() {
                 let records: Vec<_> = bench.log.since(told).map(|record| record.event).collect();
                 let refused = Event::Refused {
@@ -62,7 +62,7 @@ fn an_axis_that_does_not_exist_is_an_error_until_the_next_edge() {
             );
             bench.set(&mut block, trigger, Value::Bool(true));
             bench.scan(&mut [&mut block]);
-            // What ends a coupling finds none.
+            // A block that ends a coupling finds no coupling.
             let error = match info.name {
                 "MC_GearOut" | "MC_CamOut" | "MC_PhasingAbsolute" | "MC_PhasingRelative" => {
                     ErrorId::NotCoupled

@@ -66,7 +66,7 @@ fn clamped(bench: &Bench, pin: &str) -> bool {
 fn refused(bench: &Bench, pin: &str) -> bool {
     bench.log.since(0).any(|record| match record.event {
         Event::Refused { pin: found, .. } => found == pin,
-        // A value of a profile that is no good where it meets its table.
+        // A value of a profile that is invalid only in combination with its table.
         Event::PointRefused { .. } => true,
         _ => false,
     })
@@ -86,7 +86,7 @@ fn each_value_gives_what_its_cell_says() {
                 bench.set(&mut block, pin, value);
                 let what = format!("{name}.{pin} = {value:?}, {cell:?}");
                 let Some(trigger) = trigger(&block) else {
-                    // A standard block: it has no Error, and does not mind.
+                    // A standard block: it has no Error and ignores the value.
                     bench.scan(&mut [&mut block]);
                     continue;
                 };
@@ -100,7 +100,7 @@ fn each_value_gives_what_its_cell_says() {
                     unaffected(&bench, still, &what);
                     // An Enable block stays Busy: the error is recoverable.
                     assert_eq!(bench.flag(&block, "Busy"), trigger == "Enable", "{what}");
-                    // What only reads leaves no record.
+                    // A block that only reads leaves no record.
                     let writes =
                         trigger != "Enable" || ["MC_SetOverride", "MC_DigitalCamSwitch"].contains(&name);
                     assert_eq!(refused(&bench, pin), writes, "{what}");
@@ -115,13 +115,13 @@ fn each_value_gives_what_its_cell_says() {
     }
 }
 
-/// The axis is as if the call had not been.
+/// Compares the axis with one that was not called.
 fn unaffected(bench: &Bench, mut without: Bench, what: &str) {
     without.scan(&mut []);
     assert!(same_motion(bench, &without, 0), "{what}");
 }
 
-/// With the value mended the block works, an Enable block without a new edge.
+/// With a valid value the block works, an Enable block without a new edge.
 fn recovers(
     bench: &mut Bench,
     block: &mut BlockInstance,
@@ -147,7 +147,7 @@ fn recovers(
     assert!(bench.flag(block, "Busy") || done, "{what}: mended");
 }
 
-/// The bad command changes nothing of a motion another instance commanded, nor what that instance shows.
+/// The bad command changes neither the motion of another instance nor the outputs of that instance.
 fn a_motion_goes_on(name: &str, pin: &str, value: Value, trigger: &str, what: &str) {
     let mut bench = Bench::new();
     let mut owner = bench.block("MC_MoveVelocity");

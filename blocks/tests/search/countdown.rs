@@ -111,7 +111,7 @@ impl Planner for Countdown {
         wanted
     }
 
-    /// Two motions fit unless the one below has just begun: so a command waits, and a hand-over finds no room.
+    /// Two motions fit unless the one below has just begun. So a command waits, and a hand-over finds no room.
     fn fits(&self, (_, elapsed): (&Count, u64), _: (&Count, u64), _: &Limits, _: Option<(f64, f64)>) -> bool {
         elapsed > 0
     }
@@ -143,7 +143,7 @@ impl Plan for Count {
         match scan {
             0 => self.start,
             _ if scan >= u64::from(self.scans) => self.goal,
-            // On the way: moving, with the velocity of neither end.
+            // In between: moving, with the velocity of neither end.
             _ => Setpoint {
                 velocity: 0.5,
                 ..self.start

@@ -1,11 +1,15 @@
 //! Every reachable state of one axis under any two motion blocks, MC_Stop and MC_Power.
 //!
-//! A breadth-first search tries, in every state, all inputs of the blocks and all events of the axis (faults,
-//! loss of power, their causes gone, MC_Reset), one of them in a scan, and four buffer modes, for each block with itself
-//! and with the next one; with `STANDSTILL_SEARCH=pairs` in the environment, as `.ci/run` has it, two in a scan, for each
-//! block with every other; with `all` any number of them and every mode. The planner is a countdown behind its trait, so that
-//! the states are finitely many; blocks and axis are the real ones. The rules checked after every scan have their ids
-//! beside them in `rules.rs`. A violation is printed as a scan script that reproduces it.
+//! A breadth-first search tries, in every state, all inputs of the blocks and all events of the axis: faults, loss
+//! of power, the end of their causes, MC_Reset.
+//!
+//! By default one of them changes in a scan, with four buffer modes, and each block is paired with itself and the
+//! next one. With `STANDSTILL_SEARCH=pairs` in the environment, as in `.ci/run`, two change in a scan, and each
+//! block is paired with every other. With `all` any number of them change, with every mode.
+//!
+//! The planner is a countdown behind its trait, so the number of states is finite; blocks and axis are the real
+//! ones. The rules checked after every scan have their ids beside them in `rules.rs`. A violation is printed as a
+//! scan script that reproduces it.
 
 mod countdown;
 mod rules;
@@ -17,7 +21,7 @@ use standstill_soak::rules::Kind;
 use std::collections::{BTreeSet, VecDeque};
 use system::{Inputs, System};
 
-/// How far a search went.
+/// The extent of a search.
 #[derive(Debug)]
 struct Reached {
     states: usize,
@@ -74,12 +78,12 @@ fn path_to(trail: &[(usize, Inputs)], mut place: usize, last: Inputs) -> Vec<Inp
     path
 }
 
-/// Whether this much is asked for.
+/// Whether this extent is requested.
 fn asked_for(much: &str) -> bool {
     std::env::var("STANDSTILL_SEARCH").is_ok_and(|value| value == much)
 }
 
-/// Things that change in one scan: one, two, or as many as there are.
+/// Number of things that change in one scan: one, two, or all.
 fn changes_at_once() -> usize {
     if asked_for("all") {
         usize::MAX
@@ -90,7 +94,7 @@ fn changes_at_once() -> usize {
     }
 }
 
-/// Buffer modes besides mcAborting: waiting, and blending with the lower and the higher velocity; or all there are.
+/// Buffer modes besides mcAborting: waiting, and blending with the lower and the higher velocity; or all modes.
 fn modes() -> &'static [u8] {
     if asked_for("all") {
         &[1, 2, 3, 4, 5]
@@ -99,7 +103,7 @@ fn modes() -> &'static [u8] {
     }
 }
 
-/// Blocks of the registry that give commands, but for MC_Stop, which stands between any two.
+/// Blocks of the registry that give commands, except MC_Stop, which is part of every pair.
 fn kinds() -> Vec<&'static str> {
     REGISTRY
         .iter()
@@ -116,7 +120,8 @@ fn seconds() -> usize {
     if changes_at_once() == 1 { 2 } else { usize::MAX }
 }
 
-/// Every reachable state of every pair whose first is `first`, as far as not searched from the other one.
+/// Every reachable state of every pair whose first block is `first`, except pairs that the search of the other
+/// block covers.
 fn all_states_with(first: &'static str) {
     let kinds = kinds();
     let place = kinds
@@ -142,7 +147,7 @@ macro_rules! searches {
             }
         )*
 
-        /// The searches there are, to see that none is missing.
+        /// All searches, to check that none is missing.
         const SEARCHED: &[&str] = &[$($kind),*];
     };
 }
@@ -168,7 +173,7 @@ fn every_command_of_the_registry_is_searched() {
 
 #[test]
 fn a_broken_rule_is_found_and_printed_as_a_script() {
-    // The search is worth what it finds: with a rule that forbids Stopping it must give the shortest way there.
+    // The search must find errors: with a rule that forbids Stopping it must give the shortest path there.
     let start = System::new("MC_MoveAbsolute", "MC_MoveVelocity", modes());
     let stop = Inputs {
         stop: true,

@@ -71,7 +71,7 @@ pub fn calls(scene: &Scene<'_>, kinds: [Kind; 4]) -> Result<(), String> {
     )
 }
 
-/// Rules on what is so after the motion step, whichever instance was called when.
+/// Rules on the state after the motion step, independent of the order of calls.
 ///
 /// Covers: R25, R47, R48, R50, R51, R77, S1
 pub fn truth(polled: &[Shown], axis: &Outlook, kinds: [Kind; 4]) -> Result<(), String> {

@@ -1,4 +1,4 @@
-//! A counterexample as a scan script: the shortest way from Standstill to the broken rule.
+//! A counterexample as a scan script: the shortest path from Standstill to the broken rule.
 
 use crate::system::{AxisEvent, Inputs};
 use std::fmt::Write;
@@ -70,7 +70,7 @@ pub fn print(first: &str, second: &str, path: &[Inputs]) -> String {
             AxisEvent::AxisFault => step.push_str(&fault("axis")),
             AxisEvent::DriveFault => step.push_str(&fault("drive")),
             AxisEvent::PowerLoss => step.push_str(&fault("power")),
-            // A pulse: the step above has set it, the next one takes it back.
+            // A pulse: the step above has set it, the next one resets it.
             AxisEvent::Reset => {}
             AxisEvent::CausesGone => step.push_str(", \"clear\": {\"axis\": \"X\"}"),
         }

@@ -73,7 +73,7 @@ pub struct System {
     blocks: [BlockInstance; 4],
     kinds: [Kind; 4],
     outputs: [Outputs; 4],
-    /// What the blocks would show if they were called now with their inputs as they stand.
+    /// The outputs that the blocks would show if they were called now with unchanged inputs.
     polled: [Shown; 4],
     inputs: Inputs,
     /// Buffer modes to try besides mcAborting.
@@ -81,8 +81,8 @@ pub struct System {
     scans: u64,
 }
 
-/// Places of the instances, in call order: MC_Stop stands between the two motion blocks, so that one of them
-/// is called before it and one after it.
+/// Positions of the instances in call order. MC_Stop is between the two motion blocks: one is called before it and
+/// one after it.
 pub const NAMES: [&str; 4] = ["power", "first", "stop", "second"];
 const POWER: usize = 0;
 const FIRST: usize = 1;
@@ -98,7 +98,7 @@ const SECOND: usize = 3;
 pub struct Key {
     axis: Outlook,
     setpoint: (u64, u64),
-    /// Position and velocity the plan ends with.
+    /// Position and velocity at the end of the plan.
     goal: Option<(u64, u64)>,
     drive: Drive,
     inputs: Inputs,
@@ -128,7 +128,7 @@ impl System {
         for (place, position) in [(FIRST, 1.0), (SECOND, 0.0)] {
             let has = |block: &BlockInstance, pin: &str| block.info().pin(pin).is_some();
             let block = &mut blocks[place];
-            // No distance, in two scans: positions that add up would be infinitely many.
+            // No distance, in two scans: the number of positions would be infinite if they added up.
             let distance = has(block, "Distance") && !has(block, "EndVelocity");
             let velocity = if distance { 2.0 } else { 1.0 };
             for (pin, value) in [
@@ -174,7 +174,7 @@ impl System {
         self.axis[0].state()
     }
 
-    /// The inputs as they stand, without an event.
+    /// The present inputs, without an event.
     pub fn held(&self) -> Inputs {
         Inputs {
             event: AxisEvent::Nothing,
@@ -182,8 +182,8 @@ impl System {
         }
     }
 
-    /// All inputs worth trying: at most `changes` things change in a scan, and a buffer mode matters only at
-    /// a rising edge.
+    /// All inputs worth trying: at most `changes` things change in a scan, and a buffer mode matters only at a
+    /// rising edge.
     pub fn choices(&self, changes: usize) -> Vec<Inputs> {
         let modes = |place: usize| {
             let mut modes = vec![(false, 0), (true, 0)];
@@ -335,7 +335,7 @@ impl System {
         }
     }
 
-    /// What the blocks would show if they were called now with their inputs as they stand.
+    /// The outputs that the blocks would show if they were called now with unchanged inputs.
     fn poll(&self) -> [Shown; 4] {
         let mut copy = self.clone();
         copy.call(&mut Log::default());
@@ -368,7 +368,7 @@ impl System {
                 mode: [0; 2],
                 ..self.held()
             },
-            // Which error it is does not matter for what happens next.
+            // The error number has no effect on the next scans.
             shown: self.shown().map(Shown::without_error_id),
             polled: self.polled.map(Shown::without_error_id),
         }
