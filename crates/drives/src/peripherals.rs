@@ -94,9 +94,9 @@ impl Peripherals {
     }
 }
 
-/// The position at a part of the way from one to the other. Modulo positions take the shorter way.
-// In line, its products would be computed ahead in every scan, of a turn that is not there: garbage is mostly denormal, which takes
-// a processor a hundred times as long.
+/// The position at a part of the distance between two positions. Modulo positions take the shorter direction.
+// If this were inlined, its products would be computed ahead in every scan, even without a turn. The values are
+// then garbage and mostly denormal, which takes a processor a hundred times as long.
 #[cold]
 #[inline(never)]
 fn between(from: DrivePosition, to: DrivePosition, part: f64, turn: Option<f64>) -> DrivePosition {
@@ -136,7 +136,7 @@ mod tests {
         let mut report = DriveReport::default();
         device.report(Units(10.0), &mut report);
         device.order(&armed(Some(Edge::Rising)));
-        // Rising at a quarter of the way from 10 to 14.
+        // Rising at a quarter of the distance from 10 to 14.
         device.set_probe(0, 0.25, true);
         device.report(Units(14.0), &mut report);
         let seen = ProbeReport {

@@ -29,9 +29,9 @@ pub enum DriveSetup {
 pub struct PlantSetup {
     /// Scans until power is confirmed; `None` for never.
     pub power_on: Option<u32>,
-    /// What is moved.
+    /// The moving parts.
     pub plant: Plant,
-    /// Between them.
+    /// The mechanical stops, if any.
     pub stops: Option<Stops>,
     /// The loops.
     pub gains: Gains,
@@ -164,7 +164,7 @@ pub struct MotorSetup {
 pub struct IdealDriveSetup {
     /// Scans from command to actual position.
     pub delay: usize,
-    /// Scans until power is confirmed; `None` never.
+    /// Scans until power is confirmed; `None` for never.
     pub power_on: Option<u32>,
     /// Along its travel.
     pub switches: Switches,
@@ -195,8 +195,8 @@ pub enum DriveChange {
         /// The level from there on.
         level: bool,
     },
-    /// Its encoder is broken: from this scan on it reports this position, wherever the axis is, until its
-    /// cause is cleared.
+    /// The encoder is broken: from this scan on the drive reports this position, independent of the position of the
+    /// axis, until the cause is cleared.
     ReportPosition(DrivePosition),
     /// The same for the actual torque. No effect on a drive that reports none.
     ReportTorque(f64),
@@ -210,7 +210,7 @@ pub struct SimulatedDrive {
     kind: Kind,
     peripherals: Peripherals,
     travel: Travel,
-    /// As last fed back.
+    /// The last reported position.
     position: DrivePosition,
     /// Reported instead of the measured position.
     told_position: Option<DrivePosition>,
@@ -219,7 +219,7 @@ pub struct SimulatedDrive {
     commanded: f64,
 }
 
-/// What moves.
+/// The part that moves.
 #[derive(Clone, Debug)]
 // Without a heap all kinds share this place, so the largest determines the size.
 #[allow(clippy::large_enum_variant)]
@@ -252,7 +252,7 @@ impl SimulatedDrive {
             DriveSetup::Cia402(setup) => {
                 let ordered = |(one, other): (f64, f64)| {
                     let (one, other) = (increments(one)?, increments(other)?);
-                    // The drive may count the other way.
+                    // The drive may count in the other direction.
                     Some((one.min(other), one.max(other)))
                 };
                 let per_unit = increments_per_unit(axis);
@@ -324,7 +324,8 @@ impl SimulatedDrive {
         matches!(self.kind, Kind::Cia402(_))
     }
 
-    /// The scans from command to actual position, if it is an ideal drive: what it does then depends on no earlier command.
+    /// The scans from command to actual position, for an ideal drive. Its behaviour then depends on no earlier
+    /// command.
     pub fn delay(&self) -> Option<usize> {
         match &self.kind {
             Kind::Ideal(drive) => Some(drive.delay()),

@@ -18,7 +18,7 @@ pub struct Marker {
 /// positions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Switches {
-    /// The limit switches are active below the first place and above the second (u), the places included.
+    /// The limit switches are active below the first place and above the second (u); the places are included.
     pub limits: Option<(f64, f64)>,
     /// The home switch is active from the first to the second (u).
     pub home: Option<(f64, f64)>,
@@ -37,7 +37,7 @@ impl Switches {
         turn: None,
     };
 
-    /// What there is.
+    /// The available equipment.
     pub fn equipment(&self) -> Equipment {
         Equipment {
             home_switch: self.home.is_some(),
@@ -47,7 +47,7 @@ impl Switches {
         }
     }
 
-    /// Sets the existing switches as they are at `place` (u).
+    /// Sets the available switches for a drive at `place` (u).
     pub fn show(&self, place: f64, signals: &mut DriveSignals) {
         let place = self.turn.map_or(place, |turn| split(place, turn).1);
         if let Some((low, high)) = self.limits {
@@ -59,7 +59,7 @@ impl Switches {
         }
     }
 
-    /// The first reference pulse on the way from one place (u), which is excluded, to another (u).
+    /// The first reference pulse between one place (u), which is excluded, and another (u).
     pub fn pulse_between(&self, from: f64, to: f64) -> Option<f64> {
         let Marker { at, every } = self.marker?;
         let is_between = |place: f64| (from < place && place <= to) || (to <= place && place < from);
@@ -91,7 +91,7 @@ pub struct Travel {
     renamed: f64,
     /// Increments that the drive has dropped from its count.
     origin: i64,
-    /// At the last two feedbacks (u).
+    /// Places at the last two feedbacks (u).
     places: Option<[f64; 2]>,
     ordered: bool,
     latched: Option<DrivePosition>,
@@ -116,7 +116,7 @@ impl Travel {
         self.renamed += by;
     }
 
-    /// From now on the count of increments is less by `origin` than at the start.
+    /// From now on the count of increments is `origin` less than at the start.
     pub fn drop_increments(&mut self, origin: i64) {
         self.origin = origin;
     }
@@ -167,7 +167,7 @@ impl Travel {
     }
 
     fn pulse_between(&self, from: f64, to: f64) -> Option<DrivePosition> {
-        // On a modulo axis the way is the shorter one.
+        // On a modulo axis the shorter direction is taken.
         let from = match self.switches.turn {
             Some(turn) if to - from > 0.5 * turn => from + turn,
             Some(turn) if from - to > 0.5 * turn => from - turn,

@@ -21,7 +21,7 @@ const LIMITS: Limits = Limits {
     snap: f64::INFINITY,
 };
 
-/// Most increments between two set-points.
+/// Largest number of increments between two set-points.
 const STEP: i64 = (100.0 * CYCLE * SCALE as f64) as i64 + 1;
 
 struct Rig {
@@ -72,7 +72,7 @@ impl Rig {
         else {
             panic!("increments");
         };
-        // From one set-point in operation to the next, and from the actual position to the first.
+        // Measures from one set-point in operation to the next, and from the actual position to the first.
         if feedback.enabled {
             let step = target - self.last.unwrap_or(actual);
             self.worst = self.worst.max(step.abs());
@@ -197,9 +197,9 @@ fn each_loss_is_told_in_the_scan_it_is_seen() {
     }
 }
 
-/// Whatever happens to the drive, no set-point in operation is farther from the one before than the axis may go in
-/// a scan, and enabling takes over where the axis stands. (An axis that takes an arrow the state machine does not
-/// have fails a debug assertion.)
+/// With any events at the drive, no set-point in operation is farther from the one before than the axis may move in
+/// a scan, and enabling starts from the actual position. (An axis that takes an arrow that the state machine does
+/// not have fails a debug assertion.)
 ///
 /// Covers: CI-3, CI-5, CI-8
 fn schedules(seeds: core::ops::Range<u64>) {
@@ -230,7 +230,7 @@ fn schedules(seeds: core::ops::Range<u64>) {
                 3 => power = !power,
                 4 | 5 => rig.drive.node_mut().clear_cause(),
                 6 => {
-                    // Refused while there is torque, which is as it should be.
+                    // Refused while there is torque, which is correct.
                     let _ = rig
                         .drive
                         .node_mut()
@@ -242,7 +242,7 @@ fn schedules(seeds: core::ops::Range<u64>) {
                     rig.drive.node_mut().clear_cause();
                     rig.drive.node_mut().set_remote(true);
                     rig.step(|axis, scope| {
-                        // Only in ErrorStop there is something to reset.
+                        // Only ErrorStop has something to reset.
                         let _ = axis.reset(scope);
                     });
                 }

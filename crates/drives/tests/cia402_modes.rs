@@ -43,7 +43,7 @@ fn in_velocity_mode_it_runs_at_its_target() {
         ..Outputs::default()
     };
     let positions: Vec<i32> = (0..4).map(|_| scan(&mut node, outputs).position).collect();
-    // 50 increments a scan of 1 ms; the first scan gets there.
+    // 50 increments in a scan of 1 ms. The first scan reaches the velocity.
     assert_eq!(positions, [-25, -75, -125, -175]);
     let inputs = scan(&mut node, outputs);
     assert_eq!((inputs.mode, inputs.velocity), (MODE_CSV, -50_000));
@@ -76,7 +76,7 @@ fn in_torque_mode_it_speeds_up_as_its_inertia_and_friction_say() {
         assert_eq!((inputs.mode, inputs.torque), (MODE_CST, 60));
     }
     assert!(velocity > 4000.0);
-    // More than 6072h it does not hold.
+    // It does not hold more than 6072h.
     assert_eq!(scan(&mut node, torque(i16::MAX)).torque, 3000);
     // Without a load it does not know the mode, and stays in the one it has.
     let mut node = SimulatedNode::new(Settings {
@@ -86,8 +86,8 @@ fn in_torque_mode_it_speeds_up_as_its_inertia_and_friction_say() {
     assert_eq!(scan(&mut node, torque(60)).mode, MODE_CSP);
 }
 
-/// A drive in torque mode at some velocity, then back: whatever a node takes to change its mode, it goes on as fast as it
-/// was, but for the friction of scans without torque.
+/// A drive in torque mode at some velocity, then back. However long a node takes to change its mode, it keeps its
+/// velocity, except for the friction in scans without torque.
 ///
 /// Covers: CI-3, CI-7
 #[test]
@@ -157,12 +157,13 @@ fn a_mode_that_is_acknowledged_late_makes_no_step() {
             .iter()
             .find(|(scan, actual, _)| *scan > 50 && *actual == -0.1);
         assert_eq!(first, Some(&(52 + late, -0.1, false)));
-        // Going there it keeps its velocity, less what friction takes in the one scan without torque.
+        // On the change to torque mode it keeps its velocity, less the friction in the one scan without torque.
         for step in &steps[2..52 + late] {
             assert!((0..=20).contains(step), "{mode_change}: {step}");
         }
-        // 50 thousandths less friction speed 0.5 up by less than 80 a scan. On the way back friction takes 19 from the velocity
-        // in each scan until the mode is acknowledged; the way that was lost is made up in the scan after.
+        // 50 thousandths less friction increase the speed by 0.5, which is less than 80 a scan. On the way back,
+        // friction reduces the velocity by 19 in each scan until the mode is acknowledged. The scan after makes up
+        // for the lost distance.
         let jumps = steps.windows(2).map(|pair| (pair[1] - pair[0]).abs());
         let allowed = 80 + 19 * i64::from((mode_change + 1) * mode_change);
         assert!(jumps.max().expect("many") <= allowed, "{mode_change}: {steps:?}");
@@ -207,7 +208,7 @@ fn a_probe_latches_both_edges_once_or_continuously() {
                 | stored(ProbeStatus::FALLING, falling);
             assert_eq!(told(&inputs), expected);
             assert_eq!(inputs.probe_positions[1 - probe], [0, 0]);
-            // Disabled it forgets that it stored something; a source it does not have arms nothing.
+            // A disabled probe forgets its stored positions. A source that the node does not have arms nothing.
             assert_eq!(told(&scan(&mut node, probing(0, 400))), 0);
             let other = (function | 1 << 2) << (8 * probe);
             assert_eq!(told(&scan(&mut node, probing(other, 500))), 0);

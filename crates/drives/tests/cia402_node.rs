@@ -4,7 +4,7 @@ use standstill_drives::cia402::{
     Command, Inputs, Node, Outputs, Reaction, Settings, SimulatedNode, State, Statusword, TRANSITIONS,
 };
 
-/// One scan with a control word, standing where it is; the inputs after it.
+/// One scan with a control word, with the actual position as target. Returns the inputs after it.
 fn scan(node: &mut SimulatedNode, controlword: u16) -> Inputs {
     let target = node.position() as i32;
     scan_to(node, controlword, target)
@@ -68,7 +68,7 @@ fn settings() -> Settings {
     }
 }
 
-/// Every state with every command: where it goes stands in the table of transitions, and nothing else moves it.
+/// Every state with every command. The table of transitions has the next state, and nothing else changes it.
 ///
 /// Covers: CI-9
 #[test]
@@ -88,7 +88,7 @@ fn commands_take_the_arrows_of_the_table_and_no_other() {
                 .iter()
                 .find(|arrow| arrow.from == state && arrow.command == Some(Command::of(word)));
             let expected = match (state, arrow) {
-                // The self-test ends in this scan, and the word then acts on the next state.
+                // The self-test ends in this scan. The word then acts on the next state.
                 (State::NotReadyToSwitchOn, _) if Command::of(word) == Command::Shutdown => {
                     State::ReadyToSwitchOn
                 }

@@ -28,7 +28,7 @@ const SWITCHES: Switches = Switches {
     turn: None,
 };
 
-/// Homes from `start` and returns the place that is called 0 afterwards.
+/// Homes from `start` and returns the place whose position is 0 afterwards.
 fn place_of_zero(homing: Homing, start: f64, delay: usize) -> f64 {
     let config = AxisConfig {
         start: StartState::Standstill,
@@ -64,7 +64,7 @@ fn place_of_zero(homing: Homing, start: f64, delay: usize) -> f64 {
         match axis.fate(id) {
             Fate::Done => {
                 assert_eq!(axis.state(), AxisState::Standstill);
-                // It stands at `place`, which it calls so:
+                // It is at `place`. This is the place of its position 0:
                 return place - axis.setpoint().position;
             }
             Fate::Active { .. } => assert_eq!(axis.state(), AxisState::Homing),
@@ -74,7 +74,7 @@ fn place_of_zero(homing: Homing, start: f64, delay: usize) -> f64 {
         let setpoint = axis.setpoint();
         let command = axis.drive_command();
         if command.rename.is_none() {
-            // Old names are places.
+            // Places are positions in the old coordinates.
             place = setpoint.position;
             assert!((place - before).abs() <= LIMITS.velocity * CYCLE * (1.0 + 1e-9));
             before = place;
@@ -125,7 +125,7 @@ fn the_reference_of_a_switch_is_the_same_from_everywhere() {
         let edge = if is_lower { 3.0 } else { 9.0 };
         let start = -60.0 + 120.0 * random.unit();
         let found = place_of_zero(homing, start, random.one_of(&[0, 1, 4]));
-        // Behind the edge in the direction of the last approach, by no more than a scan's way.
+        // Behind the edge in the direction of the last approach, by at most the distance of a scan.
         let behind = if is_up { found - edge } else { edge - found };
         assert!(
             (-1e-9..=creep * CYCLE + 1e-9).contains(&behind),

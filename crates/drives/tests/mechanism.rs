@@ -157,7 +157,7 @@ fn friction_takes_energy_from_a_load_on_any_spring_and_gives_none() {
         };
         let mut mechanism = Mechanism::new(plant, 0.0, CYCLE).unwrap();
         mechanism.step(1.0);
-        // All that went in.
+        // The sum of the energy that went in.
         let first = mechanism.position();
         for _ in 0..20_000 {
             mechanism.step(0.0);
@@ -217,7 +217,7 @@ fn the_loops_hold_any_plant_and_follow_a_ramp() {
             let mut servo = Servo::new(mechanism, Gains::of(&plant, cycle), cycle).unwrap();
             let mut worst = 0.0_f64;
             for scan in 1..=2000_u32 {
-                // Speeds up for 1000 scans, then stays.
+                // It accelerates for 1000 scans, then keeps its velocity.
                 let time = f64::from(scan) * cycle;
                 let end = 1000.0 * cycle;
                 let velocity = time.min(end);
@@ -225,7 +225,7 @@ fn the_loops_hold_any_plant_and_follow_a_ramp() {
                 servo.follow(SetPoint { position, velocity });
                 worst = worst.max((position - servo.mechanism().position()).abs());
             }
-            // A hundredth of what is gone in a scan at the end.
+            // A hundredth of the distance of a scan at the end.
             let way = 1000.0 * cycle * cycle;
             assert!(worst <= 0.05 * way, "{plant:?}: {worst} of {way}");
         }
@@ -240,7 +240,7 @@ fn a_torque_limit_delays_and_does_not_wind_up() {
         ..Gains::of(&RIGID, CYCLE)
     };
     let mut servo = Servo::new(mechanism, gains, CYCLE).unwrap();
-    // Speeds up with 60 u/s^2 for long, where the torque is for 50, and brakes with 40.
+    // Accelerates with 60 u/s^2 for long, although the torque is enough for 50 only, and brakes with 40.
     let (mut velocity, mut position, mut lag) = (0.0_f64, 0.0_f64, 0.0_f64);
     for scan in 0..8000 {
         let rate = match scan {
@@ -383,7 +383,7 @@ fn an_axis_moves_a_load_and_the_load_swings_behind_it() {
             }
         }
         assert!(done > 300);
-        // It lags by less than a scan's way, and the load swings.
+        // It lags by less than the distance of a scan, and the load swings.
         assert!(lag > 0.0 && lag < 2.0 * 2.0 * CYCLE, "{lag}");
         assert!(swing > 1e-5 && swing < 0.05, "{swing}");
         near(rig.drive.servo().mechanism().position(), 0.5, 2e-3);
@@ -422,7 +422,8 @@ fn without_power_it_coasts_and_enabling_takes_it_where_it_is() {
     assert_eq!(rig.axis.state(), AxisState::ErrorStop);
     let coasted = rig.drive.servo().mechanism().position() - at_loss;
     assert!(coasted > 0.2, "{coasted}");
-    // Back on while it still moves: from the first set-point in operation on no step is more than a scan's way.
+    // Power returns while it still moves. From the first set-point in operation on, no step is larger than the
+    // distance of a scan.
     rig.drive.clear_cause();
     rig.step(|axis, scope| {
         axis.reset(scope).unwrap();

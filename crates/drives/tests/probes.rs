@@ -60,7 +60,7 @@ impl Rig {
     }
 }
 
-/// The way from one actual position to the next, the shorter one on a modulo axis.
+/// The distance from one actual position to the next; on a modulo axis the shorter one.
 fn way(from: f64, to: f64, modulo: Option<f64>) -> f64 {
     let nearest = |turn: f64| [-turn, 0.0, turn].map(|turns| to - from + turns);
     let nearest = modulo.map_or([to - from; 3], nearest);
@@ -76,7 +76,7 @@ fn an_edge_between_scans_is_recorded_to_a_millionth_of_the_way() {
     for case in 0..2000 {
         let modulo = (case % 2 == 1).then_some(360.0);
         let mut rig = Rig::new(modulo, case % 3);
-        // From a creep to ten units a scan, either way.
+        // From very slow to ten units a scan, in both directions.
         let speed = 1e4 * random.unit() * random.unit() * random.unit() + 0.1;
         let velocity = if random.bits().is_multiple_of(2) {
             speed
@@ -121,7 +121,7 @@ fn an_edge_between_scans_is_recorded_to_a_millionth_of_the_way() {
         let travel = way(before, rig.axis.actual_position(), modulo);
         let recorded = rig.axis.recorded_position(probing).expect("recorded");
         let error = way(before + at * travel, recorded, modulo).abs();
-        // What positions of this size resolve comes on top.
+        // The resolution of positions of this size is added.
         let resolved = 4.0 * f64::EPSILON * before.abs().max(recorded.abs()).max(360.0);
         assert!(
             error <= 1e-6 * travel.abs() + resolved,

@@ -18,11 +18,10 @@ use standstill_axis::{
 ///   less than 2^31 increments between two scans (DR-2).
 /// - Operation counts as enabled when the state is Operation enabled and the mode is acknowledged (CI-7).
 ///   Until then the target is the actual position, so that enabling never makes a step (CI-3).
-/// - Until the change to torque mode is acknowledged, the node keeps its velocity. On the way back its
-///   torque is 0 until position mode is acknowledged. Both take no time if the node answers in the same
-///   scan.
-/// - The adapter keeps the velocity bounds of a torque command by reducing the torque near them. The
-///   profile has only one bound (6080h) for both directions, which is left to the node.
+/// - Until the change to torque mode is acknowledged, the node keeps its velocity. On the way back its torque is 0
+///   until position mode is acknowledged. Both changes take no time if the node answers in the same scan.
+/// - The adapter keeps the velocity bounds of a torque command by reducing the torque near them. The profile has
+///   only one bound (6080h) for both directions; it stays under the node's control.
 /// - If inputs do not arrive, the communication is lost in the same scan (CI-8); outputs are still sent.
 /// - A node that is not under remote control counts as a node without supply: not ready, no error (CI-6).
 ///
@@ -62,7 +61,7 @@ impl<N: Node> Adapter<N> {
         }
     }
 
-    /// The same for a node that measures torque, and that holds a torque if its 6072h says so.
+    /// The same for a node that measures torque. The node holds a torque if its 6072h permits it.
     pub fn with_torque(mut self, scale: TorqueScale) -> Self {
         self.torque.set_scale(scale);
         self
@@ -84,7 +83,7 @@ impl<N: Node> Adapter<N> {
         self
     }
 
-    /// The state the node showed last.
+    /// The last state that the node reported.
     pub fn state(&self) -> State {
         Statusword(self.last.statusword).state()
     }
@@ -120,7 +119,7 @@ impl<N: Node> Adapter<N> {
             // On the way back from torque mode, the target must be right in the scan in which position
             // mode begins.
             DrivePosition::Increments(increments) if is_in_mode || self.torque.is_on_way_back() => increments,
-            // Without a scaling the axis cannot know what an increment is: it does not move.
+            // Without a scaling the size of an increment is unknown to the axis: it does not move.
             DrivePosition::Increments(_) | DrivePosition::Units(_) => self.position,
         }
     }
@@ -146,7 +145,7 @@ impl<N: Node> Drive for Adapter<N> {
             voltage: status.voltage() && status.remote(),
             fault: is_faulty.then_some(Fault {
                 code: self.last.error_code,
-                // The profile does not say whether a reset will work. Only trying it shows.
+                // The profile does not say whether a reset will work. Only an attempt shows it.
                 cause_present: false,
             }),
             position: DrivePosition::Increments(self.position),

@@ -14,7 +14,7 @@ pub(super) struct Link {
     leads: bool,
     /// Bit 4 has been sent.
     started: bool,
-    /// Bit 12 has been seen FALSE: from now on it belongs to this homing.
+    /// Bit 12 has been seen FALSE. From now on it belongs to this homing.
     fresh: bool,
     told: DriveHoming,
 }
@@ -30,7 +30,7 @@ impl Link {
         self.wanted = wanted;
     }
 
-    /// Takes the inputs. `reference` is its position at the drive once it is known.
+    /// Takes the inputs. `reference` is the drive's position of the reference once it is known.
     pub fn take(&mut self, inputs: &Inputs, reference: DrivePosition) {
         if !self.leads {
             return;
@@ -61,8 +61,8 @@ impl Link {
         }
     }
 
-    /// Mode and further bits of the control word, from the last inputs and from whether operation is
-    /// asked for.
+    /// Mode and additional bits of the control word, from the last inputs and from `enable`: operation is
+    /// requested.
     pub fn give(&mut self, inputs: &Inputs, enable: bool) -> (i8, u16) {
         if !self.leads {
             return (MODE_CSP, 0);
@@ -84,7 +84,7 @@ impl Link {
         self.leads
     }
 
-    /// For the axis.
+    /// The report for the axis.
     pub fn told(&self) -> DriveHoming {
         self.told
     }
@@ -97,8 +97,8 @@ fn is_in_mode(inputs: &Inputs) -> bool {
 /// 603Fh of a simulated node whose homing met a limit switch: the profile's "reference limit".
 pub(super) const REFERENCE_LIMIT: u16 = 0x8612;
 
-/// Homing of a simulated node in mode 6: it moves to the home switch, sets the position to 0 where the
-/// switch goes on, and comes to rest. A limit switch on the way is an error.
+/// Homing of a simulated node in mode 6. It moves to the home switch, sets the position to 0 where the switch
+/// becomes active, and comes to rest. An active limit switch on the path is an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NodeHoming {
     /// Towards larger positions.

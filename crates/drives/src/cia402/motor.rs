@@ -78,7 +78,7 @@ impl Motor {
         }
     }
 
-    /// Where it is.
+    /// The actual position.
     pub fn actual(&self) -> i64 {
         self.line
             .get((self.head + DELAY_MAX + 1 - self.late) % (DELAY_MAX + 1))
@@ -180,7 +180,7 @@ impl Motor {
         self.stand_at(self.actual());
     }
 
-    /// Someone moved it.
+    /// Someone moved the motor to `position`.
     pub fn stand_at(&mut self, position: i64) {
         *self = Self::new(position, self.delay, self.load);
     }

@@ -14,7 +14,7 @@ pub const MODE_CSV: i8 = 9;
 /// Mode of operation 10: cyclic synchronous torque.
 pub const MODE_CST: i8 = 10;
 
-/// What a node sends.
+/// The data that a node sends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Inputs {
     /// 6041h
@@ -38,7 +38,7 @@ pub struct Inputs {
     pub probe_positions: [[i32; 2]; PROBES],
 }
 
-/// What a node receives.
+/// The data that a node receives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Outputs {
     /// 6040h
@@ -63,8 +63,8 @@ pub trait Node {
     /// This scan's outputs.
     fn outputs(&mut self, now_ns: i64, outputs: &Outputs);
 
-    /// The equipment of the node. The default is both kinds of switches, in 60FDh, and mode 6; a node
-    /// with less overrides it.
+    /// The equipment of the node. By default it has both kinds of switches, in 60FDh, and mode 6. A node with less
+    /// overrides it.
     fn equipment(&self) -> Equipment {
         Equipment {
             home_switch: true,
@@ -74,8 +74,8 @@ pub trait Node {
         }
     }
 
-    /// 6072h: the largest torque it holds in mode 10 (thousandths of the rated torque). 0, the default,
-    /// if it does not have the mode.
+    /// 6072h: the largest torque it holds in mode 10 (thousandths of the rated torque). 0, the default, if it does
+    /// not have the mode.
     fn max_torque(&self) -> u16 {
         0
     }

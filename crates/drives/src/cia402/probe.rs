@@ -67,7 +67,7 @@ const fn of(word: u16, probe: usize) -> u16 {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Link {
     ordered: [Option<Edge>; PROBES],
-    /// The function that is asked for.
+    /// The requested edge of each probe.
     asked: [Option<Edge>; PROBES],
 }
 
@@ -88,7 +88,7 @@ impl Link {
         function
     }
 
-    /// The report for the axis. Latched positions lie within 2^31 increments of `position`.
+    /// The report for the axis. Latched positions are within 2^31 increments of `position`.
     pub fn report(&self, inputs: &Inputs, position: i64, report: &mut DriveReport) {
         let probes = self.asked.iter().zip(&inputs.probe_positions).enumerate();
         for ((probe, (asked, positions)), told) in probes.zip(&mut report.probes) {

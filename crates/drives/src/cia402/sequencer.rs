@@ -12,10 +12,9 @@ pub struct Memory {
 
 /// Returns the control word for this request and this status, and the data to keep.
 ///
-/// Every step waits for the status and never for time (CI-1). A fault reset is an edge: the bit is set
-/// for one scan and cleared in the next, as long as the reset is asked for and the fault exists (CI-4).
-/// Every status word has an answer; if its state is unknown the answer is 0, which disables the voltage.
-/// Mode specific bits stay 0. Pure.
+/// Every step waits for the status and never for time (CI-1). A fault reset is an edge: the bit is set for one scan
+/// and cleared in the next, as long as the reset is requested and the fault exists (CI-4). Every status word has an
+/// answer. In an unknown state the answer is 0, which disables the voltage. Mode-specific bits stay 0. Pure.
 pub fn controlword(request: DriveRequest, status: Statusword, memory: Memory) -> (u16, Memory) {
     let state = status.state();
     if request == DriveRequest::FaultReset && state == State::Fault {

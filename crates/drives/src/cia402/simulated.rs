@@ -21,8 +21,7 @@ pub enum Reaction {
     /// Along a ramp; then as the transition requires.
     #[default]
     Ramp,
-    /// Along a ramp. The quick stop then stays active until the controller asks for something else (605Ah
-    /// 5 to 8).
+    /// Along a ramp. The quick stop then stays active until the controller sends another command (605Ah 5 to 8).
     RampAndStay,
 }
 
@@ -95,7 +94,7 @@ pub struct SimulatedNode {
     leaving: Option<State>,
     controlword: u16,
     mode: i8,
-    /// Scans since another mode was asked for.
+    /// Scans since the request of another mode.
     changing: u32,
     motor: Motor,
     probes: NodeProbes,
@@ -333,7 +332,7 @@ impl SimulatedNode {
                     .run(f64::from(outputs.target_velocity) / self.settings.rate),
                 MODE_CST => self.motor.turn(f64::from(outputs.target_torque)),
                 _ => {
-                    // The target is modulo 2^32: the one nearest to the last is meant.
+                    // The target is modulo 2^32: it is taken as the position nearest to the last target.
                     let newest = self.motor.newest();
                     let step = i64::from(outputs.target_position.wrapping_sub(newest as i32));
                     self.motor.follow(newest.saturating_add(step));

@@ -14,14 +14,14 @@ pub struct TorqueScale {
     pub rated: f64,
     /// Increments per unit of the axis; negative if the node counts the other way. Not 0.
     pub increments: f64,
-    /// Keeps the velocity bounds of a torque (torque s/u, above 0): torque for each unit per second that
-    /// is left to the bound. A motor of inertia J in scans of T takes up to J/(2T); J/(4T) keeps it off
-    /// the bound without oscillation.
+    /// Keeps the velocity bounds of a torque (torque s/u, above 0): the torque for each unit per second between
+    /// velocity and bound. For a motor of inertia J in scans of T it is at most J/(2T); J/(4T) stays within the
+    /// bound without oscillation.
     pub gain: f64,
 }
 
-/// The controller's side. A torque is sent once mode 10 is acknowledged (CI-7). The way back ends once
-/// mode 8 is acknowledged.
+/// The controller's side. A torque is sent once mode 10 is acknowledged (CI-7). The way back ends once mode 8 is
+/// acknowledged.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Link {
     scale: Option<TorqueScale>,
@@ -51,12 +51,12 @@ impl Link {
         self.leads
     }
 
-    /// Mode 10 is asked for.
+    /// Mode 10 is requested.
     pub fn is_wanted(&self) -> bool {
         self.order.is_some()
     }
 
-    /// Mode 8 is asked for, and mode 10 may still be in force.
+    /// Mode 8 is requested, and mode 10 may still be in force.
     pub fn is_on_way_back(&self) -> bool {
         self.leads && self.order.is_none()
     }

@@ -84,7 +84,7 @@ pub enum HomingStatus {
 }
 
 impl HomingStatus {
-    /// Whether the drive stands.
+    /// Whether the drive is at rest.
     pub const fn is_at_rest(self) -> bool {
         matches!(self, Self::Stopped | Self::Done | Self::ErrorStopped)
     }

@@ -81,7 +81,7 @@ impl PlantDrive {
         }
     }
 
-    /// A commanded position, converted to u.
+    /// A commanded position, converted to units.
     fn meant(&self, position: DrivePosition) -> f64 {
         match (position, &self.scaling) {
             (DrivePosition::Units(units), _) => units,
@@ -107,7 +107,7 @@ impl Drive for PlantDrive {
     fn write(&mut self, now_ns: i64, command: &DriveCommand) {
         let followed = self.stage.is_enabled();
         match command.rename {
-            // As it is: a copy would be read before it is there.
+            // Passed by reference: a copy would be read before it is written.
             None => self.stage.write(now_ns, command),
             Some(name) => {
                 self.servo.rename(name - self.servo.set_point().position);

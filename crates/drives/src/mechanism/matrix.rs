@@ -1,6 +1,6 @@
 //! The exponential of a small matrix, with multiplications and additions only.
 
-/// Size of the matrices: three states, the way, and the input.
+/// Size of the matrices: three states, the distance, and the input.
 pub(super) const SIZE: usize = 5;
 
 pub(super) type Matrix = [[f64; SIZE]; SIZE];

@@ -4,7 +4,8 @@ use super::SUBSTEPS;
 use super::matrix::{Matrix, SIZE, exponential};
 use core::fmt;
 
-/// Rounds in which the way of a substep and the torque of a stop find each other. Each leaves three quarters of the error at most.
+/// Rounds of the iteration for the distance of a substep and the torque of a stop. Each round leaves at most three
+/// quarters of the error.
 const ROUNDS: u32 = 100;
 
 /// A load behind an elastic coupling.
@@ -75,8 +76,8 @@ pub struct Stops {
 }
 
 impl Stops {
-    /// The mean of the torque on a motor over its `way` (u) of `time` seconds from the position `from` (u): with it a spring gives back
-    /// what it took.
+    /// The mean torque on a motor that moves by `way` (u) in `time` seconds from the position `from` (u). With this
+    /// mean a spring returns the energy it has taken.
     fn torque(&self, from: f64, way: f64, time: f64) -> f64 {
         let (low, high) = self.ends;
         let between = |place: f64| place.max(low).min(high);
@@ -120,7 +121,7 @@ impl fmt::Display for MechanismError {
 
 impl core::error::Error for MechanismError {}
 
-/// A substep of a mechanism: the way of its motor (u), and what is at its end.
+/// A substep of a mechanism: the distance of its motor (u), and the state at its end.
 struct Moved {
     way: f64,
     twist: f64,
@@ -130,21 +131,22 @@ struct Moved {
 
 /// A plant in motion.
 ///
-/// Between two steps the torque is constant. So the linear part is solved exactly, by one matrix that is
-/// computed when the mechanism is made. Friction that does not depend on velocity takes away as much
-/// velocity in a step as it can, and stops at 0, so that a mechanism at rest stays there to the last bit.
+/// Between two steps the torque is constant. So the linear part is solved exactly, by one matrix that is computed
+/// when the mechanism is made. Friction that does not depend on velocity reduces the velocity in a step as far as
+/// it can, down to 0. So a mechanism at rest stays there to the last bit.
 #[derive(Clone, Copy, Debug)]
 pub struct Mechanism {
     plant: Plant,
     stops: Option<Stops>,
-    /// What 1 of the twist, the motor velocity, the load velocity and the torque gives to [motor velocity, way, twist, load velocity]
-    /// one step later. Side by side in this order they are computed two at once.
+    /// The effect of 1 of the twist, the motor velocity, the load velocity and the torque on [motor velocity,
+    /// distance, twist, load velocity] one step later. In this order two of them are computed at once.
     step: [[f64; 4]; 4],
-    /// What the twist and the load velocity give to [twist, load velocity] one step later if friction holds the motor.
+    /// The effect of the twist and the load velocity on [twist, load velocity] one step later if friction holds the
+    /// motor.
     held: [[f64; 2]; 2],
     /// Torque that changes the motor's velocity by 1 u/s in a step.
     stopping: f64,
-    /// Of a step (s).
+    /// Duration of a step (s).
     time: f64,
     /// Motor position (u).
     position: f64,
@@ -191,7 +193,7 @@ impl Mechanism {
         })
     }
 
-    /// The same between `stops`, in scans of `cycle` seconds.
+    /// The same with `stops`, in scans of `cycle` seconds.
     ///
     /// # Errors
     /// [`MechanismError`] if they are in the wrong order, or too hard to be followed in a step.
@@ -219,7 +221,8 @@ impl Mechanism {
         Ok(self)
     }
 
-    /// One substep under a constant torque. Cost: about 25 multiplications; at a stop 100 times that at most.
+    /// One substep under a constant torque. Cost: about 25 multiplications; in contact with a stop up to 100 times
+    /// that.
     #[inline]
     pub fn step(&mut self, torque: f64) {
         let mut moved = self.moved(torque);
@@ -240,7 +243,7 @@ impl Mechanism {
         self.load_velocity = moved.load_velocity;
     }
 
-    /// What a substep under this torque and friction leads to.
+    /// The result of a substep under this torque and friction.
     #[inline]
     fn moved(&self, torque: f64) -> Moved {
         let [by_twist, by_motor, by_load, by_torque] = &self.step;
@@ -248,10 +251,10 @@ impl Mechanism {
         let free: [f64; 4] = core::array::from_fn(|of| {
             by_twist[of] * twist + by_motor[of] * motor + by_load[of] * load + by_torque[of] * torque
         });
-        // The torque that would stop the motor in this step; friction gives at most its limit.
+        // The torque that would stop the motor in this step. Friction is at most its limit.
         let stopped = free[0].abs() <= self.plant.coulomb * by_torque[0];
         if stopped && motor == 0.0 {
-            // Held by friction for the whole step: it must not move by a rounding error.
+            // Friction holds it for the whole step: it must not move by a rounding error.
             let [by_twist, by_load] = &self.held;
             let [twist, load_velocity] = core::array::from_fn(|of| by_twist[of] * twist + by_load[of] * load);
             return Moved {
@@ -268,7 +271,7 @@ impl Mechanism {
         };
         let friction = match self.plant.load {
             Some(_) => {
-                // A hard spring turns the motor within the step. Friction along its way would give energy.
+                // A hard spring reverses the motor within the step. Full friction over that path would add energy.
                 let whole_way = free[1] / by_torque[1];
                 wanted.max(whole_way.min(0.0)).min(whole_way.max(0.0))
             }
@@ -298,7 +301,7 @@ impl Mechanism {
         self.position - self.twist
     }
 
-    /// What is moved.
+    /// The plant.
     pub fn plant(&self) -> &Plant {
         &self.plant
     }

@@ -115,8 +115,8 @@ impl Servo {
         })
     }
 
-    /// One scan on the way to `to`. Between the scans the set-point follows the cubic through both ends
-    /// with their velocities. Cost: four steps.
+    /// One scan towards `to`. Between the scans the set-point follows the cubic through both ends with their
+    /// velocities. Cost: four steps.
     pub fn follow(&mut self, to: SetPoint) {
         let from = core::mem::replace(&mut self.from, to);
         let step = 1.0 / f64::from(SUBSTEPS);
@@ -197,19 +197,19 @@ impl Servo {
         };
     }
 
-    /// Someone moved it by so much (u).
+    /// Someone moved the mechanism by this distance (u).
     pub fn shift(&mut self, by: f64) {
         self.mechanism.shift(by);
         self.from.position += by;
     }
 
-    /// Everything is called `by` (u) more.
+    /// Renames positions: each is `by` (u) more.
     pub fn rename(&mut self, by: f64) {
         self.mechanism.rename(by);
         self.from.position += by;
     }
 
-    /// What is moved.
+    /// The mechanism.
     pub fn mechanism(&self) -> &Mechanism {
         &self.mechanism
     }

@@ -9,7 +9,7 @@ use standstill_axis::{
 
 const NO_NUMBERS: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
-/// Numbers all the same, which differ by more than there are numbers for, or by nearly nothing.
+/// Finite numbers whose difference overflows or is nearly nothing.
 const FAR: [f64; 8] = [
     f64::MAX,
     f64::MIN,
@@ -25,7 +25,7 @@ fn one_of(random: &mut Random, numbers: &[f64]) -> f64 {
     numbers[random.below(numbers.len() as u64) as usize]
 }
 
-/// What a drive that lies tells: at least one of the two is a lie.
+/// The false report of a drive. At least one of the two values is false.
 fn lie(random: &mut Random, numbers: &[f64]) -> Told {
     let kind = random.below(3);
     Told {
@@ -35,8 +35,8 @@ fn lie(random: &mut Random, numbers: &[f64]) -> Told {
     }
 }
 
-/// Random motions, faults, resets and switching, and in random scans a lie for some scans. What holds in every scan is in
-/// [`Rig::step`].
+/// Random motions, faults, resets and switching. In random scans the drive reports false values for some scans.
+/// [`Rig::step`] checks the claims for every scan.
 fn lying(seed: u64, is_plant: bool, numbers: &[f64]) -> Rig {
     let random = &mut Random(seed);
     let mut rig = Rig::new(random, is_plant);
@@ -150,7 +150,7 @@ fn every_number_of_a_report_is_looked_at() {
         rig.step(true, Permission::BOTH, |_, _| {});
         rig.told = Told::beside(told);
         rig.step(true, Permission::BOTH, |axis, _| assert_eq!(axis.state(), state));
-        // A drive that tells nothing of these leaves them alone.
+        // A drive that does not report these values leaves them alone.
         rig.told = Told::beside(|report| {
             (report.probes, report.marker) = (Default::default(), Default::default());
             report.homing = DriveHoming::Off;
@@ -159,7 +159,8 @@ fn every_number_of_a_report_is_looked_at() {
     }
 }
 
-/// Under a torque the largest one may become less: what is ordered follows at once, and comes back along the ramp.
+/// The largest torque may fall during a torque command. The ordered torque follows at once and returns along the
+/// ramp.
 #[test]
 fn a_drive_that_can_hold_less_is_ordered_less() {
     fn most(report: &mut DriveReport, most: f64) {
@@ -198,7 +199,7 @@ fn a_drive_that_can_hold_less_is_ordered_less() {
     assert_eq!(ordered(Told::default()), Some(1.0));
 }
 
-/// The error is that of the first cause, and what is read tells the present one.
+/// The error is that of the first cause. Reading gives the present cause.
 #[test]
 fn an_axis_that_is_lied_to_tells_why() {
     let random = &mut Random(1);

@@ -9,7 +9,7 @@ use standstill_axis::{
     ParameterValue, Permission, Profile, ProfileKind, ProfileRow, Request, Scope, Superimpose,
 };
 
-/// What an axis is asked to do; each is refused where the state does not allow it.
+/// The motions to try. Each is refused where the state does not allow it.
 const MOTIONS: [&str; 15] = [
     "endless",
     "absolute",
@@ -36,7 +36,7 @@ fn dynamics(random: &mut Random) -> Dynamics {
     }
 }
 
-/// Whether it was taken.
+/// Whether the motion was accepted.
 fn begin(name: &str, random: &mut Random, axis: &mut Axis, scope: &mut Scope<'_>) -> bool {
     let dynamics = dynamics(random);
     let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
@@ -142,12 +142,12 @@ fn begin(name: &str, random: &mut Random, axis: &mut Axis, scope: &mut Scope<'_>
     axis.command(&request, scope).is_ok()
 }
 
-/// What may go wrong: 0 a fault, 1 the supply, 2 the communication, 3 MC_Power off, 4 an axis fault, 5 a following error above
-/// the largest, 6 a drive that does not obey, 7 a direction that MC_Power bars. Limit switches, stops and software limits come by
-/// themselves.
+/// What may go wrong: 0 a fault, 1 the supply, 2 the communication, 3 MC_Power off, 4 an axis fault, 5 a following
+/// error above the largest, 6 a drive that does not obey, 7 a direction that MC_Power bars. Limit switches, stops
+/// and software limits occur without being planned.
 ///
-/// A schedule: motions one after the other, something that goes wrong in the middle of most of them, and the way back. An
-/// axis that takes an arrow the state machine does not have fails a debug assertion.
+/// A schedule is a sequence of motions, with an event in the middle of most of them, and the recovery. An axis that
+/// takes an arrow that the state machine does not have fails a debug assertion.
 fn schedule(seed: u64, is_plant: bool, met: &mut [[u32; 8]; MOTIONS.len()]) -> f64 {
     let random = &mut Random(seed);
     let mut rig = Rig::new(random, is_plant);
@@ -196,7 +196,7 @@ fn schedule(seed: u64, is_plant: bool, met: &mut [[u32; 8]; MOTIONS.len()]) -> f
                 if scan == when {
                     match upset {
                         4 => axis.raise(ErrorId::AxisFault, 3, scope),
-                        // The supervision of a following error, or a limit, that is broken at once.
+                        // Sets the supervision of a following error, or a limit, such that it is exceeded at once.
                         5 => drop(axis.write_parameter(
                             7,
                             ParameterValue::Real(1e-9),
@@ -218,7 +218,7 @@ fn schedule(seed: u64, is_plant: bool, met: &mut [[u32; 8]; MOTIONS.len()]) -> f
         assert_eq!(recovered, Ok(()), "seed {seed}, {}", MOTIONS[first]);
         let mut taken = Err(ErrorId::None);
         rig.step(true, Permission::BOTH, |axis, scope| {
-            // Back from whatever limit it may stand at.
+            // Away from a limit that it may have reached.
             let distance = -0.5_f64.copysign(axis.actual_position());
             let command = Command::MoveRelative {
                 distance,
@@ -233,7 +233,7 @@ fn schedule(seed: u64, is_plant: bool, met: &mut [[u32; 8]; MOTIONS.len()]) -> f
             rig.step(true, Permission::BOTH, |_, _| {});
         }
         let came_of_it = taken.map(|id| rig.axis.fate(id));
-        // Where MC_Home named a place far outside the software limits, only a move that ends inside is taken.
+        // If MC_Home named a position far outside the software limits, only a move that ends inside is accepted.
         let is_outside = came_of_it == Err(ErrorId::TargetOutsideSoftwareLimits);
         assert!(
             came_of_it == Ok(Fate::Done) || is_outside,

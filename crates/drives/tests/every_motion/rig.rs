@@ -1,4 +1,4 @@
-//! An axis over a drive that can fail, scan by scan, with the claims that hold in every one.
+//! An axis over a drive that can fail, scan by scan, with the claims that hold in every scan.
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BlockDetection, Comms, Drive, DriveCommand, DriveFeedback,
@@ -24,16 +24,16 @@ pub const LIMITS: Limits = Limits {
     snap: f64::INFINITY,
 };
 
-/// Farthest from one set-point to the next (u): a scan at the velocity limit, and an increment.
+/// Largest distance from one set-point to the next (u): a scan at the velocity limit, and an increment.
 pub const STEP: f64 = LIMITS.velocity * CYCLE + 1.0 / SCALE;
 
-/// What turns.
+/// The kind of drive.
 enum Kind {
     Cia402(Box<Cia402Drive>),
     Plant(Box<PlantDrive>),
 }
 
-/// What fails, or mends.
+/// A failure, or its repair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Upset {
     Fault,
@@ -44,7 +44,7 @@ pub enum Upset {
     Remote(bool),
 }
 
-/// What a drive tells instead of what it measures.
+/// Values that a drive reports instead of its measurements.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Told {
     pub position: Option<f64>,
@@ -75,7 +75,7 @@ impl Told {
         }
     }
 
-    /// What comes of a feedback and a report. A count of increments is always a number.
+    /// Applies the false values to a feedback and a report. A count of increments is always a number.
     fn over(&self, feedback: &mut DriveFeedback, report: &mut DriveReport) {
         if let Some(told) = self.position {
             feedback.position = match feedback.position {
@@ -105,7 +105,7 @@ impl Device {
             (Kind::Cia402(drive), Upset::Power) => drive.node_mut().cut_power(),
             (Kind::Cia402(drive), Upset::Communication) => drive.node_mut().cut_communication(),
             (Kind::Cia402(drive), Upset::Clear) => drive.node_mut().clear_cause(),
-            // Refused while there is torque, which is as it should be.
+            // Refused while there is torque, which is correct.
             (Kind::Cia402(drive), Upset::Displace(by)) => {
                 drive.node_mut().displace(by.into()).unwrap_or_default()
             }
@@ -161,7 +161,7 @@ impl Device {
         }
     }
 
-    /// A position by the names of the start (u).
+    /// A position in the coordinates of the start (u).
     fn place(&self, position: DrivePosition) -> f64 {
         match position {
             DrivePosition::Units(units) => units,
@@ -175,21 +175,21 @@ pub struct Rig {
     device: Device,
     pub log: Log,
     pub scan: u64,
-    /// The last set-point in operation (u), and whether the axis was to go there: under a torque, and while it moves by itself,
-    /// the set-point is the actual position.
+    /// The last set-point in operation (u), and whether the axis was commanded to go there. Under a torque, and
+    /// while the drive moves by itself, the set-point is the actual position.
     last: Option<(f64, bool)>,
     pub enabled: u32,
     pub worst: f64,
-    /// What the drive tells of itself that is not so.
+    /// The false values that the drive reports.
     pub told: Told,
-    /// Lies are told that the axis believes, so that it may be led anywhere.
+    /// The axis may believe false values, so it may move anywhere.
     pub believes_lies: bool,
-    /// Scans in which what the drive told was refused.
+    /// Scans in which the axis refused the report of the drive.
     pub refused: u32,
 }
 
 impl Rig {
-    /// With a drive and a way of homing drawn from `random`.
+    /// With a drive and a kind of homing drawn from `random`.
     pub fn new(random: &mut Random, is_plant: bool) -> Self {
         let procedures = if is_plant {
             &Procedure::ALL[..5]
@@ -287,7 +287,7 @@ impl Rig {
         self.scan += 1;
     }
 
-    /// What is no number is no feedback: the axis fails, and keeps what it knew.
+    /// A value that is no number is no feedback: the axis fails, and keeps its last values.
     fn look_at_feedback(&mut self, told: &DriveFeedback) {
         let is_number = told.position.is_finite() && self.axis.report().is_finite();
         if !is_number && told.comms == Comms::Ok {
@@ -299,7 +299,7 @@ impl Rig {
         assert!(self.axis.actual_velocity().is_ok_and(f64::is_finite) || self.axis.fresh_position().is_err());
     }
 
-    /// Whatever a drive tells, what it is told are numbers, and no torque is above what it can hold.
+    /// For any report of a drive, the commands to it are numbers, and no torque is above its largest one.
     fn look_at_numbers(&self, command: &DriveCommand, order: &DriveOrder) {
         let scan = self.scan;
         let rename = command.rename.unwrap_or_default();
@@ -320,8 +320,8 @@ impl Rig {
         }
     }
 
-    /// No set-point in operation is farther from the one before than the axis may go in a scan; the first one is so from
-    /// the actual position, and those during and after a torque from either.
+    /// No set-point in operation is farther from the one before than the axis may move in a scan. The first
+    /// set-point is compared with the actual position. Those during and after a torque are compared with either.
     fn look(&mut self, feedback: &DriveFeedback, command: &DriveCommand, order: &DriveOrder) {
         let (target, actual) = (
             self.device.place(command.position),
@@ -350,11 +350,12 @@ impl Rig {
         self.last = feedback.enabled.then_some((target, leads));
     }
 
-    /// Whatever happened: with every cause gone, power, a reset and a halt bring the axis to rest, and it makes a move.
+    /// After any events: once every cause is gone, power, a reset and a halt bring the axis to rest, and it makes a
+    /// move.
     pub fn recovers(&mut self) -> Result<(), AxisState> {
         self.upset(Upset::Remote(true));
         self.upset(Upset::Clear);
-        // A rising Enable ends what a loss of power left.
+        // A rising Enable ends the state that a loss of power left.
         for scan in 0..1500 {
             self.step(scan > 3, Permission::BOTH, |axis, scope| {
                 axis.clear_cause();
