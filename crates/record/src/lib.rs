@@ -1,9 +1,9 @@
 //! What a machine did, scan by scan: a recorder of fixed size, and its rows as a trace.
 //!
-//! A ring of the last scans freezes around a trigger ([`Ring`]). With the feature `alloc` a recorder
-//! keeps them on the heap (`Recorder`); hosts without a heap write its text as a trace ([`text`]). The
-//! feature `std` adds the words for axes, pins, values and records that every trace uses (`told`). The
-//! crate knows no block and no executor: whoever runs the machine passes the values in every scan.
+//! A ring of the last scans freezes around a trigger ([`Ring`]). With the feature `alloc` a recorder keeps them on
+//! the heap (`Recorder`). Hosts without a heap write its text as a trace ([`text`]). The feature `std` adds the
+//! words for axes, pins, values and records that every trace uses (`told`). The crate knows no block and no
+//! executor: the host passes the values in every scan.
 //!
 //! The recorder allocates memory once, when it is made. In a scan it copies numbers: no heap, no text,
 //! work proportional to the number of signals.

@@ -108,8 +108,7 @@ impl Recorder {
         self.ring.observe(&mut self.states, axes);
     }
 
-    /// Ends a scan: set-points are those the drives were given. `pins` adds every instance of the
-    /// signals.
+    /// Ends a scan. The set-points are those that the drives received. `pins` adds every instance of the signals.
     pub fn record<P: Planner>(
         &mut self,
         scan: u64,
@@ -143,8 +142,8 @@ impl Recorder {
         self.ring.end(log);
     }
 
-    /// Trips the recorder in the scan that ends next, for a reason of the host's own. No effect on a
-    /// tripped recorder.
+    /// Trips the recorder in the scan that ends next, for a reason of the host's own. No effect on a tripped
+    /// recorder.
     pub fn trip(&mut self) {
         self.ring.trip(None);
     }
@@ -161,12 +160,12 @@ impl Recorder {
         &self.ring
     }
 
-    /// What it records.
+    /// The recorded signals.
     pub const fn signals(&self) -> &Signals {
         &self.signals
     }
 
-    /// Where it stands.
+    /// Its state: armed, tripped or frozen.
     pub const fn state(&self) -> State {
         self.ring.state()
     }

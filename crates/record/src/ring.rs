@@ -15,9 +15,9 @@ pub struct Setup {
     pub scans: usize,
     /// Of these, scans after that of the trigger. Less than `scans`.
     pub after: usize,
-    /// Records of axes (plans, refusals, faults) that are kept; older ones give way.
+    /// Records of axes (plans, refusals, faults) that are kept; newer ones replace older ones.
     pub records: usize,
-    /// What freezes it.
+    /// The event that freezes it.
     pub trigger: Trigger,
 }
 
@@ -33,7 +33,7 @@ impl Default for Setup {
     }
 }
 
-/// What freezes a recorder.
+/// The event that freezes a recorder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Trigger {
     /// An axis goes into ErrorStop, or [`Ring::trip`].
@@ -43,7 +43,7 @@ pub enum Trigger {
     Host,
 }
 
-/// Where a recorder stands.
+/// The state of a recorder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     /// It keeps the last scans.
@@ -57,7 +57,7 @@ pub enum State {
     Frozen,
 }
 
-/// What tripped a recorder.
+/// The cause that tripped a recorder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Tripped {
     /// The scan, counted from arming.
@@ -68,8 +68,7 @@ struct Tripped {
 
 /// The places of rows and records in lists of fixed length, and the moment to stop writing.
 ///
-/// It holds no rows: [`Recorder`](crate::Recorder) keeps them on the heap, other recorders in memory they
-/// were given.
+/// It holds no rows: [`Recorder`](crate::Recorder) keeps them on the heap, other recorders in memory of their host.
 #[derive(Clone, Copy, Debug)]
 pub struct Ring {
     setup: Setup,
@@ -105,7 +104,7 @@ impl Ring {
         }
     }
 
-    /// How much it keeps.
+    /// The set-up.
     pub const fn setup(&self) -> &Setup {
         &self.setup
     }
@@ -149,7 +148,7 @@ impl Ring {
         (self.setup.records > 0).then(|| self.place(number, self.setup.records))
     }
 
-    /// Says that the row and the records are written.
+    /// Marks the row and the records as written.
     pub fn end(&mut self, log: &Log) {
         self.taken = log.total();
         self.seen += 1;
@@ -179,18 +178,19 @@ impl Ring {
         self.recorded = 0;
     }
 
-    /// Where it stands.
+    /// Its state.
     pub const fn state(&self) -> State {
         self.state
     }
 
-    /// The scan that tripped it, and the place of the axis that went into ErrorStop; no axis if the host did.
+    /// The scan that tripped it, and the index of the axis that went into ErrorStop. There is no axis if the host
+    /// tripped it.
     pub fn tripped(&self) -> Option<(u64, Option<usize>)> {
         let tripped = self.tripped?;
         Some((self.first + tripped.at, tripped.axis))
     }
 
-    /// The number of the first scan that is there, and how many are.
+    /// The number of the first scan in the ring, and the count of scans.
     pub fn scans(&self) -> (u64, usize) {
         let kept = self.seen.min(self.setup.scans as u64);
         (self.first + (self.seen - kept), kept as usize)
@@ -225,9 +225,8 @@ pub fn moved(words: &[u64]) -> f64 {
     words.last().map_or(0.0, |word| f64::from_bits(*word))
 }
 
-/// Writes an axis into its words of the row of `scan`: the index of its state in [`AxisState::ALL`], then
-/// the bits of its numbers. `state` is the state before the motion step; set-points are those the drive
-/// was given.
+/// Writes an axis into its words of the row of `scan`: the index of its state in [`AxisState::ALL`], then the bits
+/// of its numbers. `state` is the state before the motion step. The set-points are those that the drive received.
 pub fn write_axis<P: Planner>(words: &mut [u64], scan: u64, state: AxisState, axis: &Axis<P>) {
     let setpoint = axis.setpoint();
     let numbers = [

@@ -21,7 +21,7 @@ fn config() -> AxisConfig {
     }
 }
 
-/// An axis that stands, and a recorder of it.
+/// An axis at rest, and a recorder of it.
 struct Bench {
     axes: [Axis; 1],
     drive: IdealDrive,
@@ -42,7 +42,7 @@ impl Bench {
         }
     }
 
-    /// So many scans; `before` is called in each, before blocks would be.
+    /// Runs `count` scans. `before` is called in each, at the place of the blocks.
     fn scans(&mut self, count: u64, before: impl Fn(&mut Self)) {
         for _ in 0..count {
             let [axis] = &mut self.axes;
@@ -86,7 +86,7 @@ fn it_keeps_the_last_scans_until_one_trips_it_and_a_few_behind() {
         (bench.recorder.state(), bench.recorder.scans()),
         (State::Frozen, (18, 10))
     );
-    // What comes later does not change it.
+    // Later scans do not change it.
     bench.scans(50, |_| {});
     assert_eq!(bench.recorder.scans(), (18, 10));
     let trace = bench.recorder.trace("t", 1_000_000).expect("a trace");
@@ -119,13 +119,13 @@ fn armed_again_it_waits_for_the_next_one() {
         (bench.recorder.state(), bench.recorder.scans().1),
         (State::Armed, 0)
     );
-    // The axis is in ErrorStop still, which is no way into it.
+    // The axis is still in ErrorStop. That is no entry into it.
     bench.scans(5, |_| {});
     assert_eq!(
         (bench.recorder.state(), bench.recorder.scans()),
         (State::Armed, (6, 5))
     );
-    // The records of before are gone.
+    // The records of the first recording are gone.
     let trace = bench.recorder.trace("t", 1_000_000).expect("a trace");
     assert_eq!(trace.notes().len(), 1);
     assert_eq!(trace.notes()[0].text, "scans 6 to 10 of the machine");
@@ -186,7 +186,7 @@ fn a_setup_that_makes_no_sense_is_the_nearest_that_does() {
     assert_eq!(bench.recorder.trace("t", 1).expect("a trace").scans(), 1);
 }
 
-/// A trace without one of them would show a jump, which claims about limits take for a fault.
+/// Without a shift, a trace would show a jump, which claims about limits take for a fault.
 #[test]
 fn every_move_of_coordinates_is_told_however_few_records_are_kept() {
     let mut bench = Bench::new(SETUP);
@@ -211,7 +211,7 @@ fn every_move_of_coordinates_is_told_however_few_records_are_kept() {
     assert_eq!(moves, expected);
 }
 
-/// The ring of records holds 64: of 70 axes that move their coordinates in one scan it has lost some.
+/// The ring of records holds 64. If 70 axes shift their coordinates in one scan, it loses some records.
 #[test]
 fn the_moves_of_70_axes_in_one_scan_are_told() {
     let axis = |number| Axis::new(AxisId::new(number), config(), Standard::new(0.001)).expect("a good axis");

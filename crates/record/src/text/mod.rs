@@ -1,7 +1,7 @@
 //! A recorder's scans as the text of a trace, line by line, without a heap.
 //!
-//! The text is the same that `standstill-trace` writes for these rows. A test of the C library, whose
-//! recorder lives in memory of its host, compares the two.
+//! The text is the same that `standstill-trace` writes for these rows. The recorder of the C library is in the
+//! memory of its host; a test there compares the two texts.
 
 mod number;
 mod sentence;
