@@ -157,7 +157,7 @@ fn friction_takes_energy_from_a_load_on_any_spring_and_gives_none() {
         };
         let mut mechanism = Mechanism::new(plant, 0.0, CYCLE).unwrap();
         mechanism.step(1.0);
-        // The sum of the energy that went in.
+        // All the energy that went in.
         let first = mechanism.position();
         for _ in 0..20_000 {
             mechanism.step(0.0);
