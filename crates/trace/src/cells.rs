@@ -2,15 +2,15 @@
 
 use crate::column::{Kind, canonical_bits};
 
-/// The cells of a column in the rows that are held. Those at the end that are the same as the next one take no memory, so a column
-/// that rests costs nothing.
+/// The cells of a column in the rows that are held. Cells at the end that are equal to the next one take no memory,
+/// so a column that does not change costs nothing.
 ///
-/// A cell is told by its word: a BOOL is 0 or 1, a number its bits, a whole number itself, a name its index.
+/// A cell is stored as a word: a BOOL is 0 or 1, a number its bits, a whole number itself, a name its index.
 #[derive(Clone, Debug)]
 pub(crate) struct Cells {
-    /// The first ones, up to the last that differs from the next one.
+    /// The first cells, up to the last one that differs from the next one.
     first: First,
-    /// The word of all behind them, and of the next row.
+    /// The word of all cells behind them, and of the next row.
     next: u64,
 }
 
@@ -22,7 +22,7 @@ enum First {
     Name(Vec<u32>),
 }
 
-/// Runs the same code for cells of any width; `$word` is where a word becomes a cell of `$cells`.
+/// Runs the same code for cells of any width; `$of_word` converts a word to a cell of `$cells`.
 macro_rules! each {
     ($first:expr, $cells:ident, $of_word:ident => $code:expr) => {
         match $first {
@@ -39,7 +39,7 @@ macro_rules! each {
                 $code
             }
             First::Name($cells) => {
-                // More names than that fit into no memory.
+                // The memory cannot hold more names than that.
                 let $of_word = |word: u64| u32::try_from(word).unwrap_or(u32::MAX);
                 $code
             }
@@ -60,7 +60,7 @@ impl Cells {
         }
     }
 
-    /// From this row on all have the same word.
+    /// The row from which on all rows have the same word.
     #[inline]
     pub(crate) fn same_from(&self) -> usize {
         each!(&self.first, cells, _word => cells.len())
@@ -83,7 +83,7 @@ impl Cells {
         word.unwrap_or(self.next)
     }
 
-    /// Puts the words of the rows from `row` on there.
+    /// Writes the words of the rows from `row` on to `to`.
     pub(crate) fn put<'w>(&self, row: usize, to: impl Iterator<Item = &'w mut u64>) {
         fn all<'w, T: Copy>(
             (cells, row, next): (&[T], usize, u64),
@@ -103,7 +103,8 @@ impl Cells {
         }
     }
 
-    /// The numbers from a row on up to those that are all the same, and that one; none of another kind.
+    /// The numbers from a row on, up to the equal ones at the end, and the value of those. `None` for a column of
+    /// another kind.
     #[inline]
     pub(crate) fn reals_from(&self, row: usize) -> Option<(&[f64], f64)> {
         match &self.first {
@@ -112,7 +113,7 @@ impl Cells {
         }
     }
 
-    /// The same of BOOLs.
+    /// The same for BOOLs.
     #[inline]
     pub(crate) fn bools_from(&self, row: usize) -> Option<(&[bool], bool)> {
         match &self.first {
@@ -121,7 +122,7 @@ impl Cells {
         }
     }
 
-    /// Sets the word of the next row, before which there are so many.
+    /// Sets the word of the next row, which is behind `rows` rows.
     #[inline]
     pub(crate) fn set_next(&mut self, rows: usize, word: u64) {
         if self.next == word {
@@ -131,7 +132,7 @@ impl Cells {
         self.next = word;
     }
 
-    /// The same of a number, in a column of reals.
+    /// The same for a number, in a column of reals.
     #[inline]
     pub(crate) fn set_next_real(&mut self, rows: usize, value: f64) {
         let (word, before) = (canonical_bits(value), self.next);
@@ -147,7 +148,7 @@ impl Cells {
         }
     }
 
-    /// Writes the cells of so many rows down.
+    /// Stores the cells of the first `rows` rows one by one.
     pub(crate) fn fill(&mut self, rows: usize) {
         self.fill_with(rows, self.next);
     }
@@ -161,8 +162,8 @@ impl Cells {
         });
     }
 
-    /// Room for the numbers of so many more rows behind the first ones; nothing for a column of another kind. The next row
-    /// begins as the last of them, once [`Cells::take_reals`] was called.
+    /// Makes room for the numbers of `more` rows behind the first `rows`; nothing for a column of another kind.
+    /// After [`Cells::take_reals`] the next row begins with the last of these numbers.
     pub(crate) fn more_reals(&mut self, rows: usize, more: usize) -> &mut [f64] {
         self.fill(rows);
         match &mut self.first {
@@ -174,8 +175,8 @@ impl Cells {
         }
     }
 
-    /// The numbers of the rows from `row` on were written down. The last of them becomes that of the next row; none at the end is the
-    /// same as it.
+    /// Call it after the numbers of the rows from `row` on were written. The last of them becomes that of the next
+    /// row, and equal ones at the end are dropped.
     pub(crate) fn take_reals(&mut self, row: usize) {
         let First::Real(cells) = &mut self.first else {
             return;
@@ -191,18 +192,18 @@ impl Cells {
         self.next = last;
     }
 
-    /// Drops the cells of so many rows.
+    /// Drops the cells of the first `rows` rows.
     pub(crate) fn forget(&mut self, rows: usize) {
         each!(&mut self.first, cells, _word => drop(cells.drain(..rows.min(cells.len()))));
     }
 
-    /// Drops all cells; their room stays.
+    /// Drops all cells and keeps their memory.
     pub(crate) fn clear(&mut self) {
         each!(&mut self.first, cells, _word => cells.clear());
         self.next = 0;
     }
 
-    /// Makes room, so that so many rows take no more memory.
+    /// Reserves memory for `rows` rows.
     pub(crate) fn reserve(&mut self, rows: usize) {
         each!(&mut self.first, cells, _word => cells.reserve(rows.saturating_sub(cells.len())));
     }
@@ -222,7 +223,7 @@ mod tests {
             for (row, word) in words.into_iter().enumerate() {
                 cells.set_next(row, word);
             }
-            // The first of the last ones is row 6.
+            // The equal cells at the end begin with row 6.
             assert_eq!(cells.same_from(), 6);
             let found: Vec<u64> = (0..10).map(|row| cells.word(row)).collect();
             assert_eq!(found, [0, 0, 1, 1, 1, 0, 1, 1, 1, 1]);

@@ -65,15 +65,15 @@ impl Role {
 pub struct Column {
     /// `axis.Signal`, `instance.Pin`, or the name of an input variable.
     pub name: String,
-    /// What its cells are.
+    /// The kind of its cells.
     pub kind: Kind,
-    /// What it tells of.
+    /// The role of the column.
     pub role: Role,
     /// Whether it is a TIME (ns), which may change in every scan.
     pub is_time: bool,
     /// The text of its default value, if known: for an input or output pin. Unless the column is
     /// [named](Self::named), events show it only once it has another value, and a golden leaves it out if
-    /// it has the default in all rows.
+    /// The script names this input pin with a constant, a wire or a step. Then every row counts.
     pub default: Option<String>,
     /// Whether the script names this input pin: with a constant, a wire or a step. Then every row counts.
     pub named: bool,
@@ -91,7 +91,7 @@ impl Column {
         Cell::read(self.kind, self.default.as_deref()?)
     }
 
-    /// As [`Column::default_cell`], if the default is not shown.
+    /// The same as [`Column::default_cell`], if the default is not shown.
     pub(crate) fn unsaid(&self) -> Option<Cell<'_>> {
         self.default_cell().filter(|_| !self.named)
     }
@@ -134,7 +134,7 @@ impl<'a> Cell<'a> {
         }
     }
 
-    /// What it is.
+    /// The kind of the cell.
     #[must_use]
     pub const fn kind(&self) -> Kind {
         match self {

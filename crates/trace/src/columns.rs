@@ -7,8 +7,8 @@ use crate::subjects::counted;
 use crate::trace::Trace;
 
 impl Trace {
-    /// The same run with only the columns at these places, in this order; places outside are skipped. All
-    /// of them count from then on, with any values.
+    /// The same run with only the columns at these indices, in this order; other indices are skipped. From then on
+    /// all of them count, with any values.
     pub(crate) fn only(&self, places: &[usize]) -> Self {
         let kept = places.iter().filter_map(|&at| self.columns().get(at).cloned());
         let kept = kept.map(|column| Column {
@@ -58,7 +58,7 @@ impl Trace {
             })
             .map(|(_, column)| column)
             .collect();
-        // A pin that is named now and had its default then was not named.
+        // If a pin is named now and kept its default in the stored run, it was not named then.
         let unnamed = added.iter().map(|column| Column {
             named: false,
             ..(*column).clone()

@@ -1,4 +1,4 @@
-//! Where two traces part.
+//! The first difference of two traces.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -9,10 +9,10 @@ use crate::exact::ordered;
 use crate::number::{cell_text, time_literal};
 use crate::trace::Trace;
 
-/// Most signals that the text of a difference names.
+/// Largest number of signals that the text of a difference names.
 const SIGNALS_SHOWN: usize = 20;
 
-/// If more representable numbers than this lie between two values, the text shows the values instead.
+/// If more representable numbers than this are between two values, the text shows the values instead.
 const ULPS_TOLD: u64 = 1_000_000;
 
 /// Events shown before the first difference, and after it on either side.
@@ -29,8 +29,8 @@ pub struct Tolerance {
 }
 
 impl Default for Tolerance {
-    /// 1e-6 and 1e-9: no machine notices this if the unit is the millimetre or the degree. Reordered
-    /// arithmetic stays far below, another plan does not.
+    /// 1e-6 and 1e-9: no machine notices this if the unit is the millimetre or the degree. Reordered arithmetic
+    /// differs by much less, another plan by more.
     fn default() -> Self {
         Self {
             absolute: 1e-6,
@@ -63,9 +63,9 @@ pub enum Yardstick {
     /// To the bit, and with the same columns.
     #[default]
     Exact,
-    /// Booleans, states, names and whole numbers must agree in every scan, and so all events; real
-    /// numbers within a tolerance. Columns that only the actual trace has, for example from a later
-    /// version, do not count.
+    /// Booleans, states, names and whole numbers must agree in every scan. So all events agree. Real numbers must
+    /// agree within a tolerance. Columns that only the actual trace has, for example from a later version, do not
+    /// count.
     Events(Tolerance),
 }
 
@@ -108,7 +108,7 @@ pub struct SignalDifference {
     pub name: String,
     /// Its expected value.
     pub expected: String,
-    /// What was found.
+    /// The actual value.
     pub actual: String,
     /// The number of representable numbers between the two, if both are finite.
     pub ulps: Option<u64>,
@@ -123,7 +123,7 @@ pub fn compare(expected: &Trace, actual: &Trace) -> Option<Difference> {
     compare_by(expected, actual, Yardstick::Exact)
 }
 
-/// As [`compare`], by a yardstick.
+/// The same as [`compare`], by a yardstick.
 #[must_use]
 pub fn compare_by(expected: &Trace, actual: &Trace, yardstick: Yardstick) -> Option<Difference> {
     let pairs = pairs(expected, actual);

@@ -1,7 +1,7 @@
 //! Traces as comma-separated values (or in another [`Dialect`]): a line of column names, then one line a scan.
 //!
-//! Written by hand and without a library: names and numbers need no quotes, so only a split at delimiters
-//! is left, which can report the character position of a bad cell.
+//! Written by hand and without a library. Names and numbers need no quotes, so only a split at delimiters remains.
+//! It can report the character position of a bad cell.
 
 use std::borrow::Cow;
 use std::io::{self, Write};
@@ -13,8 +13,8 @@ use crate::number::{self, cell_text};
 use crate::read::{Field, Line, Loaded, ReadError, assemble};
 use crate::trace::Trace;
 
-/// How cells are separated and numbers are written. The format itself uses commas and decimal points;
-/// other programs need others.
+/// The separator of cells and the form of numbers. The format itself uses commas and decimal points. Other programs
+/// need other forms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dialect {
     /// The separator of cells, one of [`DELIMITERS`].
@@ -23,7 +23,7 @@ pub struct Dialect {
     pub decimal_comma: bool,
 }
 
-/// The separators that cells may have.
+/// The permitted separators of cells.
 pub const DELIMITERS: [char; 4] = [',', ';', '\t', '|'];
 
 impl Default for Dialect {
@@ -44,7 +44,7 @@ pub fn write(trace: &Trace, out: &mut impl Write) -> io::Result<()> {
     write_as(trace, Dialect::default(), out)
 }
 
-/// As [`write()`], in another dialect. [`read`] takes every dialect of [`DELIMITERS`] except a decimal
+/// The same as [`write()`], in another dialect. [`read`] accepts every dialect of [`DELIMITERS`] except a decimal
 /// comma between commas.
 ///
 /// # Errors

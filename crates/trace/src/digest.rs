@@ -53,7 +53,7 @@ impl Fnv1a {
 
 const PRIME: u64 = 0x0000_0100_0000_01b3;
 
-/// Of the prime.
+/// Powers of the prime.
 const POWERS: [u64; 9] = {
     let mut powers = [1; 9];
     let mut at = 1;
@@ -98,7 +98,7 @@ impl Prepared {
 static TRUE: Prepared = Prepared::new(b"TRUE\0");
 static FALSE: Prepared = Prepared::new(b"FALSE\0");
 
-/// Most names that are prepared: the first ones that occur. The limit bounds the memory.
+/// Largest number of prepared names: the first ones that occur. The limit bounds the memory.
 const NAMES_PREPARED: usize = 64;
 
 impl Default for Fnv1a {
@@ -123,7 +123,7 @@ pub fn whole(trace: &Trace) -> u64 {
     whole.finish()
 }
 
-/// The digest of every bit of a trace that grows, and may forget rows that were read.
+/// The digest of every bit of a trace that grows and may forget rows that were read.
 #[derive(Clone, Debug, Default)]
 pub struct Whole {
     /// Scans taken in.

@@ -25,8 +25,8 @@ pub struct Event {
     pub text: String,
 }
 
-/// All events in the order of cause and effect: by scan; in a scan the input variables, the instances in
-/// call order, the axes in script order. Notes follow the line of their subject.
+/// All events in the order of cause and effect: by scan; within a scan the input variables, the instances in call
+/// order, the axes in script order. Notes follow the line of their subject.
 #[must_use]
 pub fn events(trace: &Trace) -> Vec<Event> {
     with_notes(trace, trace.notes())
@@ -47,7 +47,7 @@ fn with_notes(trace: &Trace, of_trace: &[Note]) -> Vec<Event> {
     for scan in 0..trace.scans() {
         log.scan(trace, scan, notes.remove(&scan).unwrap_or_default(), &mut events);
     }
-    // Notes of scans that the trace does not have come last, rather than being lost.
+    // Notes of scans that the trace does not have come last, so that they are not lost.
     events.extend(notes.into_values().flatten().map(note_event));
     events
 }
@@ -65,8 +65,8 @@ pub struct EventLog {
 }
 
 impl EventLog {
-    /// The events of the rows and notes that the trace has got since the last call. At least two of the
-    /// rows before must still be held. Cost: proportional to these rows times columns.
+    /// The events of the rows and notes that the trace has received since the last call. At least two of the rows
+    /// before must still be held. Cost: proportional to these rows times columns.
     pub fn take(&mut self, trace: &Trace) -> Vec<Event> {
         let mut events = Vec::new();
         let taken = self.notes.saturating_sub(trace.notes_forgotten());
@@ -270,8 +270,8 @@ fn is_change(trace: &Trace, at: usize, column: &Column, scan: usize) -> bool {
             stood && !same(before, now)
         }
         (Some(before), _) => !jitters && before != now,
-        // Variables and whole numbers start from zero or their default, names from any value. The other
-        // inputs of a block are shown when the block takes them.
+        // Variables and whole numbers start from zero or their default, names from any value. The other inputs of a
+        // block are shown when the block uses them.
         (None, role) => {
             (!jitters || role == Role::Variable) && !is_default(column, now) && column.kind != Kind::Name
         }
@@ -302,7 +302,7 @@ fn is_zero(cell: Cell<'_>) -> bool {
     }
 }
 
-/// Equal to the bit: a NaN is the same as itself.
+/// Equal to the bit: a NaN is equal to itself.
 pub fn same(a: Cell<'_>, b: Cell<'_>) -> bool {
     match (a, b) {
         (Cell::Real(a), Cell::Real(b)) => a.to_bits() == b.to_bits(),

@@ -40,10 +40,10 @@ pub fn extremes_text(trace: &Trace) -> String {
     found.text()
 }
 
-/// The extremes of a trace that grows, and may forget rows that were read.
+/// The extremes of a trace that grows and may forget rows that were read.
 #[derive(Clone, Debug)]
 pub struct Extremes {
-    /// Scans looked at.
+    /// Number of scans that were read.
     scans: usize,
     axes: Vec<OfAxis>,
 }
@@ -67,7 +67,7 @@ impl Extremes {
         extremes
     }
 
-    /// Reads the rows that the trace has got since the last call.
+    /// Reads the rows that the trace has received since the last call.
     pub fn look(&mut self, trace: &Trace) {
         for axis in &mut self.axes {
             axis.look(trace, self.scans);
@@ -75,13 +75,13 @@ impl Extremes {
         self.scans = trace.scans();
     }
 
-    /// What [`extremes`] gives of the rows so far.
+    /// The result of [`extremes`] for the rows so far.
     pub fn all(&self) -> impl Iterator<Item = Extreme> + '_ {
         self.axes.iter().flat_map(OfAxis::all)
     }
 
-    /// Of an axis, told by its place in the header, the extreme of a quantity ([`Extreme::quantity`]) so far, and the limit of
-    /// that.
+    /// The extreme so far of a quantity ([`Extreme::quantity`]) of an axis, and its limit. `axis` is the index in
+    /// the header.
     #[must_use]
     pub fn of(&self, axis: usize, quantity: &str) -> Option<(f64, Option<f64>)> {
         let mut found = self.axes.get(axis)?.found();
@@ -89,7 +89,7 @@ impl Extremes {
         Some((value, limit))
     }
 
-    /// What [`extremes_text`] gives of the rows so far.
+    /// The result of [`extremes_text`] for the rows so far.
     #[must_use]
     pub fn text(&self) -> String {
         let mut text = String::new();
@@ -147,7 +147,7 @@ struct OfAxis {
     greatest: Peak,
     velocity: Peak,
     acceleration: Peak,
-    /// While the speed falls, if that has a limit of its own.
+    /// For falling speed, if it has a limit of its own.
     deceleration: Peak,
     jerk: Peak,
     snap: Peak,
@@ -227,19 +227,20 @@ impl OfAxis {
     }
 }
 
-/// The magnitude of an acceleration that speeds up (or starts from rest), and of one that slows down; the other is 0.
+/// The magnitude of an acceleration that speeds up (or starts from rest), and of one that slows down. The other one
+/// is 0.
 fn by_sense(velocity: f64, acceleration: f64) -> [f64; 2] {
     let slows = (velocity > 0.0 && acceleration < 0.0) || (velocity < 0.0 && acceleration > 0.0);
     let size = acceleration.abs();
     if slows { [0.0, size] } else { [size, 0.0] }
 }
 
-/// The greatest value and its first scan. A NaN is greater than all, so that it is not overlooked.
+/// The greatest value and its first scan. A NaN is greater than all numbers, so that it is not missed.
 #[derive(Clone, Copy, Debug, Default)]
 struct Peak(Option<(f64, usize)>);
 
 impl Peak {
-    /// Reads the numbers of a column from a scan on, of which `rank` says how great they are.
+    /// Reads the numbers of a column from a scan on; `rank` gives their order.
     fn look(&mut self, trace: &Trace, from: usize, column: Option<usize>, rank: impl Fn(f64) -> f64) {
         let numbers = column.and_then(|column| trace.reals_from(column, from));
         let Some((numbers, same)) = numbers else { return };
@@ -266,7 +267,7 @@ impl Peak {
     }
 }
 
-/// The greatest rank of some numbers: NaN if there is one, so that it is not overlooked. None of none.
+/// The greatest rank of some numbers. NaN if there is one, so that it is not missed; none of no numbers.
 pub fn greatest(numbers: &[f64], rank: impl Fn(f64) -> f64) -> Option<f64> {
     if numbers
         .iter()

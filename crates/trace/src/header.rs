@@ -6,9 +6,9 @@ use crate::column::{Column, Kind, Role};
 use crate::read::ReadError;
 use crate::trace::Note;
 
-/// The columns of every axis after its name, in the order of the file. `State` is a name, the others are
-/// numbers: the set-point at the end of the scan, and the position the drive reported at its start. Later
-/// versions append columns and do not reorder them.
+/// The columns of every axis after its name, in the order of the file. `State` is a name, the others are numbers:
+/// the set-point at the end of the scan, and the position that the drive reported at its start. Later versions
+/// append columns and do not reorder them.
 pub const AXIS_SIGNALS: [&str; 7] = [
     "State",
     "Position",
@@ -32,9 +32,9 @@ pub const COMBINED_SIGNALS: [&str; 2] = ["Master2", "Phase2"];
 /// ([`Axis::superimposed`]): the distance superimposed on its law (u).
 pub const SUPERIMPOSED_SIGNALS: [&str; 1] = ["Superimposed"];
 
-/// A further column of every axis at the `Slave` pin of MC_CamIn ([`Axis::on_cam`]): the place of the
-/// master (u of the master) at which the slave is on the curve. In sync it is the place of its master; it
-/// is 0 while the slave is not on the curve.
+/// A further column of every axis at the `Slave` pin of MC_CamIn ([`Axis::on_cam`]): the position of the master (u
+/// of the master) at which the slave is on the curve. In sync it is the position of its master. It is 0 while the
+/// slave is not on the curve.
 pub const CAM_SIGNALS: [&str; 1] = ["Shadow"];
 
 /// The description of a run: everything but its rows.
@@ -63,33 +63,31 @@ pub struct Header {
     /// The claims with their verdicts; empty until they are judged.
     #[serde(default)]
     pub claims: Vec<Claim>,
-    /// The positions of the cams that axes were on, in the order of their first rows; at most
-    /// [`CAMS_MAX`].
+    /// The positions of the cams that axes were on, in the order of their first rows; at most [`CAMS_MAX`].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cams: Vec<Cam>,
 }
 
-/// Most entries of [`Header::cams`]; later ones are not kept.
+/// Largest number of entries of [`Header::cams`]; later ones are not kept.
 pub const CAMS_MAX: usize = 64;
 
-/// A cam with its place between two axes, for pictures.
+/// A cam with its position between two axes, for pictures.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cam {
     /// The slave, by its index in [`Header::axes`].
     pub slave: usize,
     /// The master, likewise.
     pub master: usize,
-    /// The first and the last row in which the cam was at this place.
+    /// The first and the last row in which the cam was at this position.
     pub scans: [usize; 2],
-    /// Place of the master at the first row of the table (u of the master), relative to its position in
-    /// the first of the scans.
+    /// Position of the master at the first row of the table (u of the master), relative to its position in the
+    /// first of the scans.
     pub begin: f64,
-    /// Way of the master from the first row to the last (u of the master); negative if it moves
-    /// backwards.
+    /// Travel of the master from the first row to the last (u of the master); negative if it moves backwards.
     pub length: f64,
     /// Whether the table repeats.
     pub periodic: bool,
-    /// Place of the slave at the first row (u).
+    /// Position of the slave at the first row (u).
     pub from: f64,
     /// The distances of the slave from there (u) at equal steps of the master, from the first row to the
     /// last, rounded to 32-bit floats.
@@ -177,11 +175,11 @@ pub struct Limits {
 /// The integer ratio between units and drive increments.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scaling {
-    /// So many increments ..
+    /// This many increments ..
     pub increments: i64,
-    /// .. are so many units.
+    /// .. are this many units.
     pub units: i64,
-    /// The drive counts the other way.
+    /// The drive counts in the other direction.
     #[serde(default)]
     pub invert: bool,
     /// Position at increment 0 (u).
@@ -219,7 +217,7 @@ pub struct Pin {
     /// Its IEC type, for example `LREAL`.
     #[serde(rename = "type")]
     pub iec_type: String,
-    /// Which way it points.
+    /// Its direction.
     pub direction: Direction,
     /// Text of its default value, if that is known; see [`Column::default`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -243,7 +241,7 @@ pub struct Written {
     pub value: Option<String>,
 }
 
-/// Which way a pin points.
+/// The direction of a pin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Direction {
@@ -260,38 +258,38 @@ pub enum Direction {
 pub struct Claim {
     /// Its place in the script, for example `expect[2]`.
     pub path: String,
-    /// What it says.
+    /// Its statement.
     pub text: String,
-    /// Whether it held.
+    /// Whether it is fulfilled.
     pub verdict: ClaimVerdict,
     /// The first and the last scan it refers to; absent if that is not known or not in the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scans: Option<[usize; 2]>,
-    /// The scan in which a claim that needs only one came true.
+    /// The scan in which a claim that needs only one was fulfilled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub held: Option<usize>,
-    /// What spoke against it.
+    /// The reasons against it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub failures: Vec<ClaimFailure>,
 }
 
-/// One thing that speaks against a claim.
+/// One reason against a claim.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClaimFailure {
-    /// The first scan it shows in; absent if it is about the run as a whole.
+    /// The first scan that shows it; absent if it is about the run as a whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scan: Option<usize>,
     /// The actual and the expected value.
     pub text: String,
 }
 
-/// Whether a claim held.
+/// Whether a claim is fulfilled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ClaimVerdict {
-    /// It held.
+    /// It is fulfilled.
     Passed,
-    /// It did not.
+    /// It is not fulfilled.
     Failed,
 }
 
@@ -391,7 +389,7 @@ impl Header {
         Self::with_notes(text).map(|(header, _)| header)
     }
 
-    /// As [`Header::to_json`], with the notes of the run.
+    /// The same as [`Header::to_json`], with the notes of the run.
     pub(crate) fn json_with_notes(&self, notes: &[Note]) -> String {
         let json = self.to_json();
         match (notes, json.strip_suffix('}')) {
@@ -404,7 +402,7 @@ impl Header {
         }
     }
 
-    /// As [`Header::from_json`], with the notes of the run.
+    /// The same as [`Header::from_json`], with the notes of the run.
     pub(crate) fn with_notes(text: &str) -> Result<(Self, Vec<Note>), ReadError> {
         let text = text.trim_start_matches('\u{feff}');
         let probe: Probe = serde_json::from_str(text).map_err(|error| ReadError::json(&error, 1))?;

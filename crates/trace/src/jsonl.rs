@@ -82,8 +82,8 @@ fn json_string(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }
 
-/// Reads a trace. Blank lines are skipped, and the header may be missing: kinds of columns are then found
-/// from their values.
+/// Reads a trace. Blank lines are skipped. The header may be missing: the kinds of columns are then found from
+/// their values.
 ///
 /// # Errors
 /// Lines that are not JSON objects, rows whose keys differ from those of the first row, a file that is

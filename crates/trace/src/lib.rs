@@ -1,4 +1,4 @@
-//! Scan traces: what every signal was in every scan, as data and as text.
+//! Scan traces: the value of every signal in every scan, as data and as text.
 //!
 //! A host describes a run in a [`Header`], makes a [`Trace`] of it and pushes one row a scan. From then on
 //! the trace is read only: it can be written as CSV or JSON Lines and read back bit by bit, condensed

@@ -35,7 +35,7 @@ pub fn parse(text: &str) -> Option<f64> {
     }
 }
 
-/// A number for people: six decimals, no -0.000000; if too large or not finite as [`shortest`] does.
+/// A number for people: six decimals, no -0.000000. If it is too large or not finite, the text of [`shortest`].
 pub fn fixed(value: f64) -> String {
     if !value.is_finite() || value.abs() >= 1e9 {
         return shortest(value);

@@ -7,15 +7,14 @@
 
 use std::borrow::Cow;
 
-/// `text` as one line with only visible characters: control characters, line and paragraph separators,
-/// those that change the direction of writing and those that nothing is shown for become escapes such as
-/// `\u{1b}`.
+/// `text` as one line with only visible characters. Escapes such as `\u{1b}` replace control characters, line and
+/// paragraph separators, characters that change the direction of writing, and characters that are not shown.
 #[must_use]
 pub fn printable(text: &str) -> Cow<'_, str> {
     escaped(text, is_hidden)
 }
 
-/// As [`printable`], for a text that may have lines.
+/// The same as [`printable`], for a text that may have lines.
 #[must_use]
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
     escaped(text, |character| character != '\n' && is_hidden(character))
@@ -36,9 +35,9 @@ fn escaped(text: &str, hidden: impl Fn(char) -> bool) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// Whether a character has another effect than to be shown, or cannot be seen.
+/// Whether a character has an effect other than being shown, or cannot be seen.
 fn is_hidden(character: char) -> bool {
-    // Most texts have no others.
+    // Most texts are pure ASCII.
     if character.is_ascii() {
         return character.is_ascii_control();
     }
@@ -47,10 +46,10 @@ fn is_hidden(character: char) -> bool {
             character,
             // Line and paragraph separators.
             '\u{2028}' | '\u{2029}'
-            // Marks between the lines of a text.
+            // Interlinear annotation marks.
             | '\u{fff9}'..='\u{fffb}'
-            // What Unicode lets a font show nothing for (Default_Ignorable_Code_Point): joiners, marks of no width,
-            // directions of writing, fillers, choices of a variant, tags.
+            // Characters for which Unicode lets a font show nothing (Default_Ignorable_Code_Point): joiners, marks
+            // without width, directions of writing, fillers, variant selectors, tags.
             | '\u{ad}' | '\u{34f}' | '\u{61c}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}'
             | '\u{180b}'..='\u{180f}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
             | '\u{3164}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}' | '\u{ffa0}' | '\u{fff0}'..='\u{fff8}'

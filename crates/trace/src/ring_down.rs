@@ -1,26 +1,26 @@
 //! A decaying oscillation: its frequency and damping, from samples.
 //!
-//! The samples are fitted by `exp(-d t) (a cos w t + b sin w t) + c + e t` with least squares. For given
-//! `w` and `d` the rest is linear, so only those two are searched: first on a grid that is fine enough
-//! for every peak, then by steps that halve. Motion slower than the window, such as a loop that settles,
-//! is left to the straight line.
+//! The samples are fitted by `exp(-d t) (a cos w t + b sin w t) + c + e t` with least squares. For given `w` and
+//! `d` the rest is linear, so only those two are searched: first on a grid that is fine enough for every peak, then
+//! by steps that halve. The straight line takes motion slower than the window, such as a loop that settles.
 //!
-//! The same bits on every processor: `+ - * / sqrt`, and the exponential and the sine of `libm` once for each try.
+//! Gives the same bits on every processor: it uses `+ - * / sqrt`, and the exponential and the sine of `libm` once
+//! for each try.
 
 use std::f64::consts::PI;
 use std::fmt;
 
-/// Most samples of a fit. Longer windows are reduced to this number by means over equal blocks, which
+/// Largest number of samples of a fit. A longer window is reduced to this number by means over equal blocks, which
 /// change neither frequency nor damping.
 pub const SAMPLES: usize = 1024;
 
 /// The least number of samples.
 pub const SAMPLES_MIN: usize = 16;
 
-/// Periods a window must have, at least.
+/// Least number of periods in a window.
 pub const PERIODS_MIN: f64 = 2.0;
 
-/// The least part of the oscillation that a fit must explain.
+/// Least part of the oscillation that a fit must explain.
 pub const EXPLAINED_MIN: f64 = 0.5;
 
 /// The largest damping ratio of an oscillation, as a part of the turn: a motion that decays faster is a
@@ -33,22 +33,22 @@ pub const GROWTH_MAX: f64 = 0.1;
 /// Rates of decay on the grid, in one window.
 const DECAYS: [f64; 5] = [0.0, 4.0, 24.0, 96.0, 400.0];
 
-/// The part of the sum of squares that is known in one sample: what the fit leaves of it may be rounding.
+/// The part of the sum of squares that is known in one sample: a smaller remainder of the fit may be rounding.
 const RESOLVED: f64 = 4.0 * f64::EPSILON;
 
-/// A fit whose decay is this near to a bound, as a part of the turn, is on it.
+/// A fit whose decay is this near to a bound, as a part of the turn, counts as on it.
 const ON_BOUND: f64 = 1e-6;
 
-/// Halvings of the steps around the best of the grid.
+/// Halvings of the steps around the best point of the grid.
 const HALVINGS: u32 = 40;
 
-/// Moves between two halvings, at most.
+/// Largest number of moves between two halvings.
 const MOVES: u32 = 40;
 
 /// The largest part of the samples, beside their level, that counts as rounding.
 const STILL: f64 = 1e-12;
 
-/// An oscillation that was found.
+/// An oscillation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RingDown {
     /// Its frequency without damping (Hz), above 0.
@@ -67,7 +67,7 @@ pub struct RingDown {
     pub periods: f64,
 }
 
-/// Why none was found.
+/// Why there is no oscillation in the result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoRingDown {
     /// There are only this many samples.
@@ -80,9 +80,10 @@ pub enum NoRingDown {
     Unexplained(f64),
     /// The best fit has no more periods than this.
     Slow(f64),
-    /// The best fit has this damping ratio, the largest or the least that is looked for: there is a better one beyond it.
+    /// The best fit has this damping ratio, which is the largest or the least of the search: a better fit is beyond
+    /// it.
     Bound(f64),
-    /// The samples do not tell the frequency and the damping of the best fit.
+    /// The samples do not determine the frequency and the damping of the best fit.
     Vague,
 }
 
@@ -206,7 +207,7 @@ fn in_window(samples: &[f64], step: f64) -> Result<(f64, RingDown), NoRingDown> 
             best = (left, at);
         }
     }
-    // A fast decay is looked for in larger steps, as its grid is coarser and its peak is wider.
+    // The search for a fast decay uses larger steps, because its grid is coarser and its peak is wider.
     let decay = (0.25 * best.1.decay).max(1.0 / count);
     let (left, at) = refined(&scaled, best, width * decay * count, decay);
     let explained = 1.0 - left / line;
@@ -272,7 +273,7 @@ fn refined(samples: &[f64], (mut left, mut at): (f64, Try), turn: f64, decay: f6
     let (mut turn, mut decay) = (turn, decay);
     for _ in 0..HALVINGS {
         for _ in 0..MOVES {
-            // Diagonals, too: of a swing that decays fast, turn and decay change the fit together.
+            // Diagonals, too: for an oscillation with fast decay, turn and decay change the fit together.
             let neighbours = [
                 (1.0, 0.0),
                 (-1.0, 0.0),
@@ -305,8 +306,8 @@ fn refined(samples: &[f64], (mut left, mut at): (f64, Try), turn: f64, decay: f6
     (left, at)
 }
 
-/// The uncertainty of turn and decay, 95 %: from the growth of the sum of squares around the best; `None` if it does not grow to
-/// every side.
+/// The uncertainty of turn and decay, 95 %, from the growth of the sum of squares around the best fit. `None` if it
+/// does not grow in every direction.
 fn within(samples: &[f64], at: Try, left: f64) -> Option<(f64, f64)> {
     let count = samples.len() as f64;
     let (turn, decay) = (0.01 / count, 0.01 / count);
@@ -348,7 +349,7 @@ impl Fit {
         let (mut c, mut s) = (if at.is_some() { 1.0 } else { 0.0 }, 0.0);
         let by = 2.0 / samples.len() as f64;
         let mut x = -1.0;
-        // Sums of the products of cosine, sine, 1 and the place from -1 to 1, and of each with the samples.
+        // Sums of the products of cosine, sine, 1 and the position from -1 to 1, and of each with the samples.
         let (mut cc, mut cs, mut c1, mut cx, mut ss, mut s1, mut sx) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
         let (mut x1, mut xx) = (0.0, 0.0);
         let (mut yc, mut ys, mut y1, mut yx, mut yy) = (0.0, 0.0, 0.0, 0.0, 0.0);

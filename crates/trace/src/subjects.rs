@@ -143,7 +143,7 @@ pub fn subjects(trace: &Trace) -> Vec<Subject> {
     by_subject(trace, &of_columns(trace))
 }
 
-/// As [`subjects`], of all columns, whether they keep their defaults or not.
+/// The same as [`subjects`], with all columns, even those that keep their defaults.
 pub(crate) fn of_all_columns(trace: &Trace) -> Vec<Subject> {
     let mut digests = of_columns(trace);
     digests.iter_mut().for_each(|(_, counts)| *counts = true);

@@ -13,9 +13,9 @@ use crate::printable::{make_printable, printable};
 /// An event that is no column: an accepted plan, a refused or clamped command.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Note {
-    /// The scan it happened in.
+    /// The scan in which it happened.
     pub scan: usize,
-    /// The axis or instance it is about.
+    /// Its axis or instance.
     pub subject: String,
     /// One line of text.
     pub text: String,
@@ -50,7 +50,7 @@ pub enum RowError {
     },
 }
 
-/// Rows that are put together at once to be read one after the other.
+/// Number of rows that are assembled at once to be read one after the other.
 const ROWS_AT_ONCE: usize = 16;
 
 /// A run: its header, one row for each scan from scan 0, and its notes. All its texts are
@@ -60,14 +60,14 @@ const ROWS_AT_ONCE: usize = 16;
 #[derive(Clone, Debug)]
 pub struct Trace {
     header: Header,
-    /// Shared by the traces of all cases of a sweep, as their places are.
+    /// Shared by the traces of all cases of a sweep, with their indices.
     columns: Arc<[Column]>,
     by_name: Arc<BTreeMap<String, usize>>,
     /// The scan of the first row that is held.
     first: usize,
     /// The scan of the next row.
     end: usize,
-    /// Of each column. The next row begins as the last one.
+    /// The cells of each column. The next row begins as a copy of the last one.
     cells: Vec<Cells>,
     names: Names,
     notes: Vec<Note>,
@@ -83,8 +83,8 @@ impl Trace {
         Self::with_columns(header, columns)
     }
 
-    /// An empty trace with only those columns of the header that are kept, told by their places in `all` of them
-    /// ([`Header::columns`]).
+    /// An empty trace with only some columns of the header. `kept` gives their indices in `all`, the list of all
+    /// columns ([`Header::columns`]).
     #[must_use]
     pub fn with_some(header: Header, all: Vec<Column>, kept: impl Fn(usize) -> bool) -> Self {
         let columns = (0..).zip(all);
@@ -141,7 +141,7 @@ impl Trace {
         })
     }
 
-    /// Says that the cam at this index of the header stayed at its place up to the row of `scan`.
+    /// Extends the cam at this index of the header up to the row of `scan`: it has stayed at its position.
     pub fn cam_lay_until(&mut self, place: usize, scan: usize) {
         if let Some(cam) = self.header.cams.get_mut(place) {
             let [_, last] = &mut cam.scans;
@@ -198,7 +198,7 @@ impl Trace {
         self.notes_forgotten += old;
     }
 
-    /// Drops all that a run has added, for the next run with these columns. The room for rows stays.
+    /// Drops everything that a run has added, for the next run with these columns. The memory for rows is kept.
     pub fn clear(&mut self) {
         self.header.claims.clear();
         self.header.cams.clear();
@@ -235,7 +235,7 @@ impl Trace {
         self.push_cells(cells.iter().copied())
     }
 
-    /// As [`Trace::push_row`], for cells that need not be put into a list.
+    /// The same as [`Trace::push_row`], for cells that need not be in a list.
     ///
     /// # Errors
     /// Those of [`Trace::push_row`].
@@ -279,7 +279,7 @@ impl Trace {
         Ok(())
     }
 
-    /// Sets a number of the next row, as [`Trace::set_next`] does, if that column is one of reals.
+    /// Sets a number of the next row, as [`Trace::set_next`] does, if the column is one of reals.
     // Called in every scan by other crates.
     #[inline]
     pub fn set_next_real(&mut self, place: usize, value: f64) {
@@ -297,12 +297,12 @@ impl Trace {
         }
     }
 
-    /// Rows that are held.
+    /// Number of rows that are held.
     const fn held(&self) -> usize {
         self.end - self.first
     }
 
-    /// Appends the next row so many times. Use it for rows with few changed cells: only these are set
+    /// Appends the next row `times` times. Use it for rows with few changed cells: only these are set
     /// ([`Trace::set_next`]), and only these take time and memory.
     #[inline]
     pub fn push_next(&mut self, times: usize) {
@@ -310,8 +310,9 @@ impl Trace {
         self.end += if self.cells.is_empty() { 0 } else { times };
     }
 
-    /// Writes down what a column has had so far, another one after each row. A column that rests is else written down when it
-    /// changes, all at once; in a scan of a paced run that would take long.
+    /// Stores the cells of one column one by one up to now; call it after each row, and it takes the columns in
+    /// turn. Without it, a column that has not changed is stored all at once when it changes. In a scan of a paced
+    /// run that would take long.
     pub fn keep_up(&mut self) {
         let rows = self.held();
         let place = self.end.checked_rem(self.cells.len());
@@ -320,8 +321,9 @@ impl Trace {
         }
     }
 
-    /// Has `write` put numbers into columns of reals, in the last rows, which were added at once by [`Trace::push_next`]: for each of
-    /// these columns it gets the places of all those rows, for none no places.
+    /// Calls `write` to put numbers into columns of reals, in the last `rows` rows. [`Trace::push_next`] must have
+    /// added these rows at once. `write` receives for each column its cells in those rows, and for `None` an empty
+    /// slice.
     pub fn write_last_reals<const N: usize>(
         &mut self,
         rows: usize,
@@ -343,7 +345,8 @@ impl Trace {
         }
     }
 
-    /// A scan from which on all rows that are held have the same value in this column; the number of rows if that is not known.
+    /// A scan from which on all rows that are held have the same value in this column. The number of rows if that
+    /// is not known.
     // Asked for in every scan by other crates.
     #[inline]
     #[must_use]
@@ -352,8 +355,9 @@ impl Trace {
         cells.map_or(self.scans(), |cells| self.first + cells.same_from())
     }
 
-    /// The numbers of a column of reals from a scan on, or from the first row that is held, up to those at the end that are all the
-    /// same ([`Trace::same_since`]), and that one if there are such rows; none for another column.
+    /// The numbers of a column of reals from a scan on, or from the first row that is held. They end before the
+    /// equal ones at the end ([`Trace::same_since`]). The second result is the value of those, if there are such
+    /// rows. `None` for another column.
     // Read in every scan by other crates.
     #[inline]
     #[must_use]
@@ -365,7 +369,7 @@ impl Trace {
         Some((cells, self.has_same(column, scan).then_some(same)))
     }
 
-    /// The same of a column of BOOLs.
+    /// The same for a column of BOOLs.
     #[inline]
     #[must_use]
     pub fn bools_from(&self, column: usize, scan: usize) -> Option<(&[bool], Option<bool>)> {
@@ -376,12 +380,12 @@ impl Trace {
         Some((cells, self.has_same(column, scan).then_some(same)))
     }
 
-    /// Whether there are rows from a scan on that have the same value in this column as all behind them.
+    /// Whether there are rows from a scan on that have the same value in this column as all later ones.
     fn has_same(&self, column: usize, scan: usize) -> bool {
         self.same_since(column).max(scan) < self.scans()
     }
 
-    /// Whether any of these columns has another value in a scan than in the one before; in the first one all have.
+    /// Whether any of these columns has another value in a scan than in the one before. In the first scan all have.
     pub(crate) fn moves(&self, scan: usize, columns: &[usize]) -> bool {
         let Some(before) = scan.checked_sub(1) else {
             return true;
@@ -471,7 +475,8 @@ impl Trace {
         Some(trace)
     }
 
-    /// Calls `take` with each row from a scan on as stored: a word a cell; for a name its index in [`Trace::names`].
+    /// Calls `take` with each row from a scan on as stored: a word for each cell; for a name its index in
+    /// [`Trace::names`].
     pub(crate) fn each_row(&self, scan: usize, mut take: impl FnMut(&[u64])) {
         let width = self.columns.len().max(1);
         let mut block = vec![0; ROWS_AT_ONCE * width];
@@ -479,7 +484,7 @@ impl Trace {
         let mut before = None;
         while from < self.held() {
             for (place, cells) in self.cells.iter().enumerate() {
-                // Else it is the same in all rows, as in those before.
+                // Otherwise the value is the same in all rows, as in the rows before.
                 if before.is_none_or(|before| cells.same_from() > before) {
                     cells.put(from, block.iter_mut().skip(place).step_by(width));
                 }
@@ -551,7 +556,7 @@ fn in_order(kind: Kind, word: u64) -> u64 {
     }
 }
 
-/// The word under which a row holds a cell of this column; `before` is that of the row before.
+/// The word under which a row stores a cell of this column; `before` is that of the row before.
 fn word_of(names: &mut Names, column: &Column, cell: Cell<'_>, before: u64) -> Result<u64, RowError> {
     if cell.kind() != column.kind {
         return Err(RowError::Kind {

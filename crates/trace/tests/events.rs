@@ -49,7 +49,7 @@ fn header() -> Header {
     }
 }
 
-/// What of a row matters to a test; the rest runs along with the scan.
+/// The part of a row that matters to a test; the rest changes with the scan.
 #[derive(Clone, Copy)]
 struct Row {
     state: &'static str,

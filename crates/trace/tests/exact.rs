@@ -79,7 +79,7 @@ fn an_empty_trace_and_a_hard_one_come_back() {
     }
 }
 
-/// A companion of one column of BOOL and so many rows, with these bytes for its cells.
+/// A companion of one column of BOOL and `rows` rows, with these bytes for its cells.
 fn made(rows: u64, cells: &[u8]) -> Vec<u8> {
     let mut body = Vec::new();
     let mut put = |mut number: u64| {
@@ -104,18 +104,18 @@ fn made(rows: u64, cells: &[u8]) -> Vec<u8> {
 #[test]
 fn what_a_file_says_takes_no_memory_and_what_it_unpacks_to_is_bounded() {
     let too_large = |file: &[u8]| matches!(decode(file), Err(ExactError::TooLarge { .. }));
-    // It says so many rows, whatever it has.
+    // It states this number of rows, whatever it contains.
     assert!(too_large(&made(50_000_000, &[])));
     assert_eq!(
         decode(&made(u64::MAX, &[])).err(),
         Some(ExactError::TooLarge { most: 1 << 22 })
     );
     assert_eq!(decode(&made(1_000_000, &[])).err(), Some(ExactError::Damaged));
-    // It has them, packed to a thousandth.
+    // It contains them, packed to a thousandth.
     let zeros = vec![0; 20_000_000];
     let file = made(zeros.len() as u64, &zeros);
     assert!(file.len() < 25_000 && too_large(&file), "{} bytes", file.len());
-    // It says few and has many.
+    // It states few and contains many.
     assert!(decode(&made(3, &zeros)).is_err());
     // A golden is bounded by its run.
     let trace = common::run(2000, None);

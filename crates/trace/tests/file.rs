@@ -104,7 +104,7 @@ fn nothing_is_written_through_a_link_and_permissions_stay() {
     let fresh = folder.join("fresh");
     fs::write(&fresh, "").expect("writable");
     assert_eq!(mode(&link), mode(&fresh), "a new file is as any other");
-    // A device is written to where a person names it, and nowhere else.
+    // A device is written where a person names it, and nowhere else.
     let null = Path::new("/dev/null");
     assert!(replace(null, |out| out.write_all(b"gone")).is_ok());
     assert!(replace_beside(null, |_| Ok(())).is_err());
@@ -168,7 +168,7 @@ fn a_trace_that_is_written_on_the_way_is_the_one_written_at_its_end() {
             }
         }
         assert!(trace.scans() == 200 && trace.first() > 180, "rows were forgotten");
-        // Those of scans that the run did not come to.
+        // Notes of scans that the run did not reach.
         notes.for_each(|note| trace.push_note(note.clone()));
         trace.set_claims(claims);
         let kept = writing.kept().map(|(partial, rows)| (partial.to_owned(), rows));

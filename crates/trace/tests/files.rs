@@ -117,7 +117,7 @@ fn a_trace_without_its_header_is_read_and_says_what_it_lacks() {
         );
         assert_eq!(loaded.trace.header().cycle_ns, 1_000_000);
         assert_eq!(loaded.trace.header().axes.len(), 1);
-        // Only kinds of columns that never leave the whole numbers may differ, and they hold the same.
+        // Only kinds of columns that have whole numbers alone may differ; their values are the same.
         assert_eq!(loaded.trace.columns().len(), trace.columns().len());
         assert_eq!(digest::whole(&loaded.trace), digest::whole(&trace));
     }

@@ -144,10 +144,10 @@ fn what_is_no_row_shows_in_the_text_alone() {
     assert!(told.contains("+axis    X  mm  order 4  v=250.0"), "{told}");
 }
 
-/// What is in the way of the new file leaves the old one as it is.
+/// An obstacle to the new file leaves the old one as it is.
 #[test]
 fn a_golden_that_cannot_be_written_is_an_error_with_its_path() {
-    // That a full disk leaves the old one whole is shown from outside, in the tests of the command line.
+    // The tests of the command line show that a full disk leaves the old one whole.
     let snap = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden_whole/absent/x.snap");
     let refused = accept(&snap, &common::run(60, Some(30)));
     assert!(

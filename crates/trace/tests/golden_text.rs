@@ -40,7 +40,7 @@ fn a_move_there_and_back_reads_well_and_stays_short() {
 
 #[test]
 fn one_bit_changes_the_digests_of_what_has_it_and_the_last_line() {
-    // `read` tells the position, too.
+    // `read` shows the position, too.
     let [a, b] = [None, Some(700)].map(|nudge| golden::text(&common::run(1000, nudge)));
     let changed: Vec<_> = a.lines().zip(b.lines()).filter(|(a, b)| a != b).collect();
     let [read, axis, end] = changed.as_slice() else {

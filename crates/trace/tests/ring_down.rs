@@ -1,4 +1,4 @@
-//! A vibration is found with its frequency and its damping; without one the result says so.
+//! The fit finds a vibration with its frequency and its damping. Without a vibration the result says so.
 
 use standstill_testkit::Random;
 use standstill_trace::ring_down::{NoRingDown, RingDown, identify};
@@ -89,7 +89,7 @@ fn what_is_said_of_the_error_holds_in_noise() {
             "{frequency}: {found:?}"
         );
     }
-    // 95 % of 40 are 38; fewer than 34 come once in a hundred.
+    // 95 % of 40 are 38; fewer than 34 occur once in a hundred.
     assert!(
         frequencies >= 34 && dampings >= 34,
         "{frequencies} and {dampings} of 40"

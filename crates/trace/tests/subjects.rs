@@ -29,7 +29,7 @@ impl Own {
         }
     }
 
-    /// All values that are one bit away, as a trace tells numbers apart; another one for a name.
+    /// All values that are one bit away, as far as a trace distinguishes numbers; another name for a name.
     fn neighbours(&self) -> Vec<Self> {
         let shown = |value: f64| (value.is_nan(), value == 0.0, value.to_bits());
         let same = |a: f64, b: f64| {
@@ -79,7 +79,7 @@ fn pin(name: &str, iec_type: &str, direction: Direction, default: Option<&str>) 
     }
 }
 
-/// Two axes, inputs, two instances of one block; of its pins every kind is there with and without a default.
+/// Two axes, inputs, two instances of one block. Its pins have every kind, with and without a default.
 fn header() -> Header {
     use Direction::{InOut, Input as In, Output};
     let pins = vec![
@@ -149,7 +149,7 @@ fn made(header: Header, rows: &[Vec<Own>]) -> Trace {
     trace
 }
 
-/// The subjects of the second whose digest is not that of the first.
+/// The subjects of the second list whose digest differs from that of the first.
 fn moved(before: &[Subject], after: &[Subject]) -> Vec<String> {
     let other = after.iter().filter(|subject| !before.contains(subject));
     other.map(|subject| subject.name.clone()).collect()
@@ -193,7 +193,8 @@ fn every_bit_changes_the_digest_of_exactly_its_subject() {
     assert!(tried > 4000, "{tried}");
 }
 
-/// Wherever a later version puts a pin, of whatever kind and default: nobody who does not use it sees it.
+/// A later version may add a pin at any place, of any kind and default: a script that does not use it is not
+/// affected.
 #[test]
 fn a_column_at_its_default_changes_no_digest_no_event_and_no_golden() {
     let mut random = Random(2);
@@ -221,7 +222,7 @@ fn a_column_at_its_default_changes_no_digest_no_event_and_no_golden() {
                 let mut wider = header.clone();
                 let pins = &mut wider.instances[instance].pins;
                 let before = first + instance * pins.len() + place;
-                // A name that comes first, and one that tells where to go.
+                // A name that comes first, and one of a pin that gives a target.
                 let name = if place == 4 { "Position" } else { "AAA" };
                 pins.insert(place, pin(name, iec_type, direction, Some(default)));
                 let mut wide = rows.clone();
@@ -284,7 +285,8 @@ fn a_column_that_leaves_its_default_once_is_seen_and_named() {
     }
 }
 
-/// A pin that the script names counts even where it has its default; a golden from before knows what it had.
+/// A pin that the script names counts even where it has its default. A golden from before the naming knows its
+/// value.
 #[test]
 fn a_pin_that_is_named_counts_and_is_held_against_its_default() {
     let snap = common::folder("subjects_named").join("x.snap");
@@ -315,7 +317,7 @@ fn a_pin_that_is_named_counts_and_is_held_against_its_default() {
     assert!(told.starts_with(begin), "{told}");
 }
 
-/// What stands in which order is no behaviour of a subject.
+/// The order of pins, instances and axes is no behaviour of a subject.
 #[test]
 fn the_order_of_pins_instances_and_axes_changes_no_digest() {
     let mut random = Random(3);
@@ -349,7 +351,7 @@ fn the_order_of_pins_instances_and_axes_changes_no_digest() {
     assert_eq!(sorted(&turned), sorted(&trace));
 }
 
-/// Goldens rest on these numbers: whoever changes one changes every golden there is.
+/// Goldens depend on these numbers: a change of one changes every golden.
 #[test]
 fn the_digests_are_what_they_were() {
     let mut random = Random(4);

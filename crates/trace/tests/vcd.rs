@@ -1,4 +1,4 @@
-//! Waveforms, read back with the library under Surfer: every value of every scan must be there.
+//! Waveforms, read back with the library of Surfer: every value of every scan must be there.
 
 use crate::common;
 

@@ -30,7 +30,7 @@ fn old(name: &str, trace: &Trace) -> PathBuf {
     snap
 }
 
-/// The run with one more pin of `there`, in the middle of the row, and without `without`.
+/// The run with one more pin of the instance `there`, in the middle of the row, and without the column `without`.
 fn other_columns(trace: &Trace, value: Option<f64>, without: &str) -> Trace {
     let mut header = common::header();
     let pins = &mut header.instances[1].pins;

@@ -4,12 +4,12 @@
 //! small because signals of motion are smooth: each number is predicted from those before it, and only
 //! the distance from the prediction, counted in representable numbers, is stored and deflated.
 //!
-//! Layout: a line of text with the version; the digest of the trace (8 bytes, least significant first:
-//! that of all subjects together, in version 1 of all rows, [`digest::whole`]); then in zlib form: cycle,
-//! number of rows and columns, the columns, the names, and column after column the distances. Whole
-//! numbers are LEB128, signed ones zigzag. Predictions use `+ - *` on f64 in a fixed order, so the same
-//! trace gives the same bytes everywhere. A new version of the compressor may pack tighter;
-//! [`crate::golden::accept`] does not change a file that has the right content.
+//! Layout: a line of text with the version; the digest of the trace (8 bytes, least significant first: that of all
+//! subjects together, in version 1 of all rows, [`digest::whole`]); then in zlib form: cycle, number of rows and
+//! columns, the columns, the names, and column after column the distances. Whole numbers are LEB128, signed ones
+//! zigzag. Predictions use `+ - *` on f64 in a fixed order, so the same trace gives the same bytes everywhere. A
+//! new version of the compressor may pack tighter; [`crate::golden::accept`] does not change a file that has the
+//! right content.
 
 mod bytes;
 mod predict;
@@ -36,10 +36,10 @@ const MAGIC_1: &[u8] = b"standstill exact 1\n";
 /// Bytes that are enough for the cycle and the numbers of rows and columns.
 const HEAD_BYTES: usize = 64;
 
-/// Most bytes of a cell: a number of 64 bits, seven a byte.
+/// Largest number of bytes of a cell: a number of 64 bits, seven a byte.
 const CELL_BYTES: usize = 10;
 
-/// Most bytes of a companion beside its cells: the names of its columns, and those in them.
+/// Largest number of bytes of a companion beside its cells: the names of its columns, and those in them.
 const NAMES_BYTES: usize = 1 << 22;
 
 /// Number of cells that may always be unpacked, if a companion gives no other bound ..
@@ -111,7 +111,7 @@ pub(crate) fn is_current(file: &[u8]) -> bool {
 /// The digest of the trace in a companion, without unpacking it.
 ///
 /// # Errors
-/// Another file, or one cut short.
+/// The file is no companion, or it is cut short.
 pub fn digest_of(file: &[u8]) -> Result<u64, ExactError> {
     let rest = file.strip_prefix(MAGIC).or_else(|| file.strip_prefix(MAGIC_1));
     rest.ok_or(ExactError::Foreign)?
@@ -127,17 +127,16 @@ pub fn digest_of(file: &[u8]) -> Result<u64, ExactError> {
 /// byte. Goldens are bounded by their runs instead, see [`decode_within`].
 ///
 /// # Errors
-/// Another file, one whose content does not have its stated digest, or one that would take too much
-/// memory.
+/// The file is no companion, its content does not have the stated digest, or it would take too much memory.
 pub fn decode(file: &[u8]) -> Result<Trace, ExactError> {
     decode_within(file, CELLS_FREE.max(file.len().saturating_mul(CELLS_PER_BYTE)))
 }
 
-/// Unpacks a companion with a limited number of cells, that is rows times columns. Memory: at most some
-/// 30 bytes for each cell, and 4 MiB.
+/// Unpacks a companion with a limited number of cells, that is rows times columns. Memory: at most some 30 bytes
+/// for each cell, and 4 MiB.
 ///
 /// # Errors
-/// As [`decode`].
+/// Those of [`decode`].
 pub fn decode_within(file: &[u8], most: usize) -> Result<Trace, ExactError> {
     let stated = digest_of(file)?;
     let packed = file.get(MAGIC.len() + 8..).unwrap_or_default();
@@ -172,7 +171,7 @@ pub fn decode_within(file: &[u8], most: usize) -> Result<Trace, ExactError> {
     }
 }
 
-/// The names that occur, numbered in the order a reader of the file meets them.
+/// The names that occur, numbered in the order in which a reader of the file meets them.
 fn names(trace: &Trace) -> BTreeMap<&str, u64> {
     let mut names = BTreeMap::new();
     for at in 0..trace.columns().len() {

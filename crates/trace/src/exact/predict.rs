@@ -50,7 +50,7 @@ impl Predictor {
                     .unwrap_or(0.0)
             }
         };
-        // An overflow is useless, and which NaN it gives differs between processors.
+        // An overflow is useless, and the NaN that it gives differs between processors.
         if prediction.is_finite() {
             prediction
         } else {
@@ -81,12 +81,12 @@ impl Predictor {
     }
 }
 
-/// Within this many bytes of the least that any predictor can need, the search ends: a constant column
-/// costs its first value.
+/// The search ends when a predictor is within this many bytes of the least that any predictor can need: a constant
+/// column costs its first value.
 const BYTES_SPARE: usize = 10;
 
-/// The predictor under which a column takes the fewest bytes, or nearly the least possible, found by
-/// trying one after the other; of equal ones the first.
+/// The predictor with which a column takes the fewest bytes, or nearly the least possible. All are tried one after
+/// the other; of equal ones the first is taken.
 pub fn cheapest(values: &[f64], earlier: &[Vec<f64>]) -> Predictor {
     let extrapolations = (0..EXTRAPOLATION_ORDERS).map(Predictor::Extrapolation);
     let copies =

@@ -19,30 +19,30 @@ use tempfile::NamedTempFile;
 /// Why a trace file could not be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// Its name ends in something else.
+    /// Its name has an unknown ending.
     #[error("{}: a trace is a .csv, .jsonl or (for reading) .exact file", shown(.path))]
     Form {
         /// The file.
         path: PathBuf,
     },
-    /// The system refused.
+    /// The system reported an error.
     #[error("{}: {source}", shown(.path))]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The message of the system.
         source: io::Error,
     },
-    /// The system refused while a long run was written; the part written so far was kept.
+    /// The system reported an error while a long run was written; the part written so far was kept.
     #[error("{}: {source}; the first {rows} rows are in {}", shown(.path), shown(.partial))]
     Partial {
         /// The file.
         path: PathBuf,
-        /// Where the rows are.
+        /// The file with the rows.
         partial: PathBuf,
         /// Number of rows in it, all of them whole.
         rows: usize,
-        /// What the system said.
+        /// The message of the system.
         source: io::Error,
     },
     /// Its text is no trace, or a part of one.
@@ -82,20 +82,20 @@ fn form(path: &Path) -> Result<Form, FileError> {
     }
 }
 
-/// Whether [`save`] can write a file of this name. Ask before a long run, not after it.
+/// Whether [`save`] can write a file of this name. Call it before a long run, not after it.
 #[must_use]
 pub fn can_save(path: &Path) -> bool {
     matches!(form(path), Ok(Form::Csv | Form::JsonLines))
 }
 
-/// Whether the name is that of a CSV file.
+/// Whether this is the name of a CSV file.
 #[must_use]
 pub fn is_csv(path: &Path) -> bool {
     matches!(form(path), Ok(Form::Csv))
 }
 
-/// Writes a trace; for CSV its header goes into [`csv::meta_path`]. An existing file is replaced as by
-/// [`replace`].
+/// Writes a trace; for CSV its header goes into [`csv::meta_path`]. An existing file is replaced as [`replace`]
+/// does.
 ///
 /// # Errors
 /// A name that ends in neither `.csv` nor `.jsonl`, or an error of the system.
@@ -103,10 +103,10 @@ pub fn save(trace: &Trace, path: &Path) -> Result<(), FileError> {
     save_as(trace, path, Dialect::default())
 }
 
-/// As [`save`], CSV in this dialect.
+/// The same as [`save`], with CSV in this dialect.
 ///
 /// # Errors
-/// As [`save`].
+/// Those of [`save`].
 pub fn save_as(trace: &Trace, path: &Path, dialect: Dialect) -> Result<(), FileError> {
     Saving::begin(path)?.finish(trace, dialect)
 }
@@ -120,10 +120,10 @@ pub struct Saving {
 }
 
 impl Saving {
-    /// Begins what [`save`] writes.
+    /// Begins the files that [`save`] writes.
     ///
     /// # Errors
-    /// As [`save`].
+    /// Those of [`save`].
     pub fn begin(path: &Path) -> Result<Self, FileError> {
         let form = form(path)?;
         if form == Form::Exact {
@@ -139,10 +139,10 @@ impl Saving {
         Ok(Self { rows, header })
     }
 
-    /// Writes them; a table in this dialect.
+    /// Writes the files; a table in this dialect.
     ///
     /// # Errors
-    /// What the system says.
+    /// An error of the system.
     pub fn finish(self, trace: &Trace, dialect: Dialect) -> Result<(), FileError> {
         let Self { rows, header } = self;
         let Some(header) = header else {
@@ -153,9 +153,8 @@ impl Saving {
     }
 }
 
-/// Writes a file that a person named, whole or not at all: `write` fills a new file beside it, which then
-/// takes its place. A link is replaced, not followed. If it is not a regular file (a pipe, a device), it
-/// is written to directly.
+/// Writes a file that a person named, whole or not at all: `write` fills a new file beside it, which then replaces
+/// it. A link is replaced, not followed. A file that is not regular (a pipe, a device) is written directly.
 ///
 /// # Errors
 /// An error of the system; an existing file is then unchanged.
@@ -163,11 +162,11 @@ pub fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>
     Draft::begin(path)?.finish(write)
 }
 
-/// As [`replace`], for a file that nobody named, such as the golden beside a script. Only this name in
-/// its folder changes, whatever was there before. A folder or a device there is an error.
+/// The same as [`replace`], for a file that nobody named, such as the golden beside a script. Only this name in its
+/// folder changes, of any previous kind. A folder or a device there is an error.
 ///
 /// # Errors
-/// As [`replace`].
+/// Those of [`replace`].
 pub fn replace_beside(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -175,8 +174,8 @@ pub fn replace_beside(
     Draft::beside(path)?.finish(write)
 }
 
-/// A file that will be replaced, created before there is anything to write, so that an obstacle shows at
-/// the begin of a long run and not at its end. If it is dropped, the existing file is unchanged.
+/// A file that will be replaced. It is created before there is anything to write, so that an obstacle shows at the
+/// begin of a long run and not at its end. If it is dropped, the existing file is unchanged.
 #[derive(Debug)]
 pub struct Draft {
     path: PathBuf,
@@ -185,17 +184,17 @@ pub struct Draft {
 
 #[derive(Debug)]
 enum Target {
-    /// It takes the place of the existing file.
+    /// A new file that replaces the existing one.
     New(NamedTempFile),
-    /// A pipe or a device, written to directly.
+    /// A pipe or a device, written directly.
     Open(File),
 }
 
 impl Draft {
-    /// Begins what [`replace`] does.
+    /// Begins a [`replace`].
     ///
     /// # Errors
-    /// What the system says.
+    /// An error of the system.
     pub fn begin(path: &Path) -> Result<Self, FileError> {
         if !is_special(path) {
             return Self::beside(path);
@@ -219,11 +218,11 @@ impl Draft {
     /// Writes the file and puts it into its place.
     ///
     /// # Errors
-    /// As [`replace`].
+    /// Those of [`replace`].
     pub fn finish(mut self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
         let mut out = BufWriter::new(&mut self);
         let written = write(&mut out).and_then(|()| out.flush());
-        // What it still holds after an error is dropped.
+        // After an error, the rest of the buffer is dropped.
         drop(out.into_parts());
         match written {
             Ok(()) => self.keep(),
@@ -237,7 +236,7 @@ impl Draft {
     /// Puts the written file into its place.
     ///
     /// # Errors
-    /// The message of the system; an existing file is then unchanged.
+    /// An error of the system; an existing file is then unchanged.
     pub fn keep(self) -> Result<(), FileError> {
         let Self { path, target } = self;
         match target {
@@ -260,7 +259,7 @@ impl Draft {
     }
 }
 
-/// For data written in parts; [`Draft::keep`] ends it.
+/// For data that is written in parts; [`Draft::keep`] ends it.
 impl Write for Draft {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self.file().write(bytes) {
@@ -275,7 +274,8 @@ impl Write for Draft {
     }
 }
 
-/// Whether there is a pipe or a device at `path`, also through a link: `/dev/stdout` is one. It takes what is written to it.
+/// Whether there is a pipe or a device at `path`, also through a link: `/dev/stdout` is one. It is written
+/// directly.
 #[must_use]
 pub fn is_special(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
@@ -337,11 +337,11 @@ pub fn shown(path: &Path) -> String {
     printable(&text).into_owned()
 }
 
-/// The bytes of a file that nobody named. Anything but a regular file is not read: a pipe would block,
-/// and a device may have no end.
+/// The bytes of a file that nobody named. Only a regular file is read: a pipe would block, and a device may have no
+/// end.
 ///
 /// # Errors
-/// What the system says.
+/// An error of the system.
 pub fn read_regular(path: &Path) -> io::Result<Vec<u8>> {
     if !fs::metadata(path)?.is_file() {
         return Err(io::Error::new(

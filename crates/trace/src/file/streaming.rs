@@ -8,9 +8,9 @@ use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, BufWriter, ErrorKind, Seek, Write};
 use std::path::{Path, PathBuf};
 
-/// The files of a trace whose rows are written as they come and are then no longer needed. They go to
-/// `X.partial`, which takes the place of `X` at the end. A pipe or a device is written to directly. If
-/// the run ends early, the partial file has whole rows, except for the last one after a kill.
+/// The files of a trace that are written row by row during the run, so that the trace may forget its rows. They go
+/// to `X.partial`, which replaces `X` at the end. A pipe or a device is written directly. If the run ends early,
+/// the partial file has whole rows, except for the last one after a kill.
 ///
 /// JSON Lines end with an object for data that the header, written before the first scan, cannot have:
 /// verdicts, cams, notes.
@@ -82,7 +82,7 @@ impl Streaming {
         Some((self.partial.as_deref()?, self.rows))
     }
 
-    /// Writes the rows that the trace has got since the last call.
+    /// Writes the rows that the trace has received since the last call.
     ///
     /// # Errors
     /// The error of the system, and the file with the rows written so far.
@@ -104,8 +104,7 @@ impl Streaming {
         self.notes.take(trace)
     }
 
-    /// Writes whole lines. If they cannot be written, a line that was begun is removed, and the whole
-    /// ones are counted.
+    /// Writes whole lines. After an error, the incomplete line is removed, and the whole ones are counted.
     fn write(&mut self, lines: &[u8]) -> Result<(), (io::Error, usize)> {
         let mut rest = lines;
         while !rest.is_empty() {
@@ -135,11 +134,10 @@ impl Streaming {
         }
     }
 
-    /// Writes the data behind the rows, for a trace whose claims are judged, and puts the files into
-    /// their places.
+    /// Writes the data behind the rows, for a trace whose claims are judged, and puts the files into their places.
     ///
     /// # Errors
-    /// As [`Streaming::look`].
+    /// Those of [`Streaming::look`].
     pub fn finish(mut self, trace: &Trace) -> Result<(), FileError> {
         let mut end = || {
             self.take(trace)?;
@@ -259,7 +257,7 @@ impl Notes {
         })
     }
 
-    /// Takes the notes that the trace has got since the last call.
+    /// Takes the notes that the trace has received since the last call.
     fn take(&mut self, trace: &Trace) -> io::Result<()> {
         let new = self.count.saturating_sub(trace.notes_forgotten());
         for note in trace.notes().get(new..).unwrap_or_default() {

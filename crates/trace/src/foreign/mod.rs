@@ -24,7 +24,7 @@ use crate::read::ReadError;
 /// Lines that are searched for the line of names.
 pub const HEADER_LINES: usize = 1000;
 
-/// Which column.
+/// A column of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
     /// The one of this name.
@@ -55,7 +55,7 @@ pub enum Times {
     Column {
         /// The column.
         place: Place,
-        /// What its numbers count.
+        /// The unit of its numbers.
         unit: Unit,
     },
     /// Not in the file: the distance of two rows (ns), above 0.
@@ -80,7 +80,7 @@ pub enum Reading {
     Curve,
     /// Truth values (`TRUE`, `FALSE` in any case, 1, 0), which stay until the next sample.
     Bool,
-    /// Whole numbers, which hold.
+    /// Whole numbers, which stay until the next sample.
     Whole,
     /// Words, which stay until the next sample; those listed here are replaced.
     Word(BTreeMap<String, String>),
@@ -102,7 +102,7 @@ pub struct Wanted {
 pub enum Channel {
     /// Samples, their times rising.
     Curve(Vec<(i64, f64)>),
-    /// Values that hold.
+    /// Values that stay until they change.
     Steps(Steps),
 }
 
@@ -143,7 +143,7 @@ pub struct Recording {
     pub channels: Vec<Channel>,
     /// Rows that were read.
     pub rows: usize,
-    /// What stands between cells.
+    /// The separator of cells.
     pub delimiter: char,
     /// The decimal mark; `None` if no number has decimals.
     pub decimal: Option<char>,
@@ -168,8 +168,8 @@ impl fmt::Display for Recording {
 /// Reads the wanted columns.
 ///
 /// # Errors
-/// Columns that are missing or twice, rows that are cut short, cells that cannot be read as requested,
-/// times that do not rise; with line and column.
+/// Columns that are missing or not unique, rows that are cut short, cells that cannot be read as requested, times
+/// that do not rise; with line and column.
 pub fn read(text: &str, layout: &Layout, wanted: &[Wanted]) -> Result<Recording, ReadError> {
     let table = Table::find(text, layout, wanted)?;
     let mut marks = Marks::new(layout.decimal, table.delimiter);

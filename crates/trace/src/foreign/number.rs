@@ -74,7 +74,7 @@ impl Marks {
             .ok_or_else(|| cell.error("more than 73 years lie between this time and the first"))
     }
 
-    /// A value that holds, as traces write it.
+    /// A value that stays until it changes, in the form of traces.
     pub fn step(&mut self, cell: &Cell<'_>, reading: &Reading) -> Result<String, ReadError> {
         match reading {
             Reading::Curve | Reading::Whole => {

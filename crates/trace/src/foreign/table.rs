@@ -9,7 +9,7 @@ use crate::read::ReadError;
 /// The preference if two delimiters explain a file equally well, because commas may be decimal ones.
 const TRIED: [char; 4] = ['\t', ';', '|', ','];
 
-/// Names a message lists at most.
+/// Largest number of names that a message lists.
 const NAMES_LISTED: usize = 12;
 
 /// The columns of a requested signal, from 0.
@@ -155,8 +155,7 @@ fn is_value(text: &str) -> bool {
     number::is_number(text) || text.eq_ignore_ascii_case("TRUE") || text.eq_ignore_ascii_case("FALSE")
 }
 
-/// Finds the delimiter and the line of names: the one with most of the requested names, the lowest of
-/// such.
+/// Finds the delimiter and the line of names: the line with most of the requested names, of equal ones the lowest.
 fn names<'t>(lines: &[&'t str], layout: &Layout, wanted: &[Wanted]) -> Result<Names<'t>, ReadError> {
     let time = match &layout.times {
         Times::Column { place, .. } => Some(place),
@@ -190,7 +189,7 @@ fn names<'t>(lines: &[&'t str], layout: &Layout, wanted: &[Wanted]) -> Result<Na
                 sought.iter().filter(held).count()
             };
             let line = (!sought.is_empty()).then_some(at);
-            // Within one delimiter the lowest line; over all of them the first delimiter.
+            // Within one delimiter the lowest line counts; among the delimiters the first.
             let better = best.as_ref().is_none_or(|(most, names)| {
                 found > *most
                     || (found == *most && found > 0 && names.delimiter == delimiter && line.is_some())

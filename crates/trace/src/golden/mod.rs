@@ -28,10 +28,10 @@ use crate::trace::Trace;
 
 pub use text::text;
 
-/// Most lines of a text difference that are shown.
+/// Largest number of lines of a text difference that are shown.
 const DIFF_LINES_SHOWN: usize = 60;
 
-/// Most lines of each text that are compared.
+/// Largest number of lines of each text that are compared.
 const DIFF_LINES_MOST: usize = 4000;
 
 /// The result of comparing a run with its golden.
@@ -79,7 +79,7 @@ pub enum GoldenError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The message of the system.
         source: io::Error,
     },
     /// The snapshot is not in insta's form.
@@ -113,10 +113,10 @@ pub fn judge(snap: &Path, trace: &Trace) -> Result<Verdict, GoldenError> {
     judge_by(snap, trace, Yardstick::Exact)
 }
 
-/// As [`judge`], by a yardstick. A run equal to the bit is [`Verdict::Same`] by all of them.
+/// The same as [`judge`], by a yardstick. A run that is equal to the bit is [`Verdict::Same`] by all of them.
 ///
 /// # Errors
-/// As [`judge`].
+/// Those of [`judge`].
 pub fn judge_by(snap: &Path, trace: &Trace, yardstick: Yardstick) -> Result<Verdict, GoldenError> {
     let Some(reviewed) = reviewed(snap)? else {
         return Ok(Verdict::Missing);
@@ -168,11 +168,11 @@ pub fn judge_by(snap: &Path, trace: &Trace, yardstick: Yardstick) -> Result<Verd
     })))
 }
 
-/// The reviewed run of this path (`x.snap`) from its companion, for comparison with `run`. None if there
-/// is no golden, no companion that belongs to it, or one that is far larger than the run.
+/// The reviewed run of this path (`x.snap`) from its companion, for comparison with `run`. None if there is no
+/// golden, no companion that belongs to it, or one that is far larger than the run.
 ///
 /// # Errors
-/// As [`judge`].
+/// Those of [`judge`].
 pub fn expected(snap: &Path, run: &Trace) -> Result<Option<Trace>, GoldenError> {
     let Some(reviewed) = reviewed(snap)? else {
         return Ok(None);
@@ -181,9 +181,8 @@ pub fn expected(snap: &Path, run: &Trace) -> Result<Option<Trace>, GoldenError> 
     Ok(expected_trace(&reviewed, companion.as_deref(), run).ok())
 }
 
-/// Makes this run the golden of this path: writes `x.snap` and `x.exact` unless they have this content
-/// already, and returns whether it wrote. The caller decides whether a run may become one (its claims
-/// hold, this is no CI).
+/// Makes this run the golden of this path: writes `x.snap` and `x.exact` unless they have this content already.
+/// Returns whether it wrote. The caller decides whether a run may become one (its claims hold, this is no CI).
 ///
 /// # Errors
 /// A file that cannot be read or written.
@@ -223,7 +222,7 @@ pub fn proposal_path(snap: &Path) -> PathBuf {
 /// Writes this run as a proposal for the golden of this path, for review.
 ///
 /// # Errors
-/// What the system says.
+/// An error of the system.
 pub fn propose(snap: &Path, trace: &Trace) -> Result<(), GoldenError> {
     let path = proposal_path(snap);
     write(&path, snap::file(snap, &text(trace)).as_bytes())
@@ -232,7 +231,7 @@ pub fn propose(snap: &Path, trace: &Trace) -> Result<(), GoldenError> {
 /// Removes the proposal beside a snapshot, if there is one.
 ///
 /// # Errors
-/// What the system says.
+/// An error of the system.
 pub fn withdraw(snap: &Path) -> Result<(), GoldenError> {
     let path = proposal_path(snap);
     match fs::remove_file(&path) {
@@ -282,7 +281,7 @@ fn expected_trace(reviewed: &str, companion: Option<&[u8]>, run: &Trace) -> Resu
     kept_trace(reviewed, companion, most_cells(run)).map(|kept| kept.completed_as(run))
 }
 
-/// As [`expected_trace`], with the stored columns only.
+/// The same as [`expected_trace`], with the stored columns only.
 fn kept_trace(reviewed: &str, companion: Option<&[u8]>, most: usize) -> Result<Trace, String> {
     let file = companion.ok_or("there is no exact trace")?;
     let stated = exact::digest_of(file).map_err(|error: ExactError| error.to_string())?;

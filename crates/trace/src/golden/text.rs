@@ -190,7 +190,7 @@ fn table_scans(trace: &Trace, events: &[usize]) -> Vec<usize> {
     chosen
 }
 
-/// The least of 1, 2, 5, 10, 20, 50 .. that is not below `least`.
+/// The least number of 1, 2, 5, 10, 20, 50 .. that is not below `least`.
 fn round_step(least: usize) -> usize {
     let mut power = 1;
     loop {

@@ -14,8 +14,7 @@ pub fn is_it(reviewed: &str) -> bool {
     reviewed.contains("\ndigest per 64 scans\n")
 }
 
-/// Compares a run with a golden of version 1. Of the snapshot its digest counts, and if that differs its
-/// events.
+/// Compares a run with a golden of version 1. Its digest counts; if that differs, its events count.
 pub fn judge(reviewed: &str, companion: Option<&[u8]>, run: &Trace, yardstick: Yardstick) -> Verdict {
     let kept = kept_trace(reviewed, companion, most_cells(run));
     let run = match &kept {

@@ -107,7 +107,7 @@ pub enum Offset {
 #[error("{0}")]
 pub struct NotComparable(pub String);
 
-/// What came out.
+/// The result of a comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// The offset and how it was found.
@@ -118,7 +118,7 @@ pub struct Comparison {
     pub scans_of_trace: usize,
     /// The cycle (ns).
     pub cycle_ns: u64,
-    /// The length (ns) of the recording, and the parts of it before and behind what was compared.
+    /// The length (ns) of the recording, and the lengths of its parts before and behind the compared one.
     pub recorded: (i64, i64, i64),
     /// One for each signal of the map.
     pub signals: Vec<Compared>,
@@ -129,9 +129,9 @@ pub struct Comparison {
 pub struct Compared {
     /// Its name in the trace.
     pub name: String,
-    /// By how much its times may differ (ns).
+    /// The permitted difference of its times (ns).
     pub time_tolerance: i64,
-    /// What was found.
+    /// The finding.
     pub finding: Finding,
 }
 
@@ -140,7 +140,7 @@ pub struct Compared {
 pub enum Finding {
     /// A curve.
     Curve {
-        /// What may lie between.
+        /// The permitted difference.
         tolerance: f64,
         /// The scan with the largest deviation.
         worst: Deviation,
@@ -153,7 +153,7 @@ pub enum Finding {
     Edges {
         /// Number of edges with a counterpart.
         matched: usize,
-        /// The largest distance (ns) of two that belong together.
+        /// The largest distance (ns) of two edges that belong together.
         farthest: i64,
         /// Edges without a counterpart, in order of time, and a wrong value at the start.
         wrong: Vec<EdgeFault>,
@@ -165,7 +165,7 @@ pub enum Finding {
 pub struct Deviation {
     /// The scan.
     pub scan: usize,
-    /// What the trace has.
+    /// The value of the trace.
     pub found: f64,
     /// The nearest recorded value within the tolerance of time, in units of the trace.
     pub recorded: f64,
@@ -182,15 +182,15 @@ impl Deviation {
 /// An edge without a counterpart.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EdgeFault {
-    /// When, in times of the trace (ns).
+    /// Its time, in times of the trace (ns).
     pub at_ns: i64,
     /// The value from then on.
     pub to: String,
-    /// Whose edge it is.
+    /// The side that has the edge.
     pub of: Side,
 }
 
-/// Whose an edge is.
+/// The side that has an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// It was recorded, and the trace has none.

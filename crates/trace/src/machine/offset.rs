@@ -4,10 +4,10 @@ use super::{Map, NotComparable, Offset, Pair, curve, edges, scan_ns, show};
 use crate::foreign::Channel;
 use crate::trace::Trace;
 
-/// Most whole scans that a fit tries.
+/// Largest number of whole scans that a fit tries.
 pub const FIT_SCANS: i64 = 4000;
 
-/// Most rows that a fit uses; of a longer trace every n-th.
+/// Largest number of rows that a fit uses; of a longer trace every n-th.
 pub const FIT_ROWS: usize = 2000;
 
 /// Rounds of the search between whole scans; each makes the step ten times smaller.
@@ -144,7 +144,7 @@ impl<'f> Fit<'f> {
             )));
         };
         let first = costs.first().map_or(0.0, |(_, cost)| cost.mean);
-        // A curve that repeats itself except for rounding has no information about time.
+        // A curve that repeats itself except for rounding gives no information about time.
         let largest = costs.iter().map(|(_, cost)| cost.mean).fold(0.0, f64::max);
         let flat = costs
             .iter()
@@ -176,7 +176,7 @@ impl<'f> Fit<'f> {
     }
 }
 
-/// The least cost; among equal ones that of the smallest offset, then of the earlier.
+/// The least cost; among equal ones that of the smallest offset, then of the earlier one.
 fn least(costs: impl Iterator<Item = (i64, Cost)>) -> Option<(i64, Cost)> {
     costs.min_by(|(a, cost_a), (b, cost_b)| {
         let by_cost = cost_a.mean.total_cmp(&cost_b.mean);

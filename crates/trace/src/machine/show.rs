@@ -5,7 +5,7 @@ use std::fmt;
 use super::{Compared, Comparison, Deviation, EdgeFault, Finding, Side, scan_ns};
 use crate::number::{shortest, time_literal};
 
-/// Most edges that are named for one signal.
+/// Largest number of edges that are named for one signal.
 const EDGES_SHOWN: usize = 4;
 
 /// A time as a TIME literal, with its sign.

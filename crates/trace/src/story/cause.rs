@@ -1,8 +1,8 @@
 //! The likely cause of the difference between two traces.
 //!
-//! It is found from the traces alone: from the differences of their headers, from what differs first and
-//! the order of its computation, and from the relation of the events from there on. In a scan, a cause
-//! that comes before the others is listed before them.
+//! It is found from the traces alone: from the differences of their headers, from the first differences and the
+//! order of their computation, and from the relation of the events from there on. In a scan, an earlier cause is
+//! listed before later ones.
 
 use crate::column::{Column, Kind, Role};
 use crate::compare::{Difference, ScanDifference, SignalDifference};
@@ -28,35 +28,35 @@ pub enum Cause {
     Subjects(Vec<String>, Vec<String>),
     /// The same blocks are called in another order.
     Order {
-        /// The first block that is called in another place.
+        /// The first block that is called at another position.
         expected: String,
         /// The block that is called there instead.
         found: String,
     },
     /// An input variable gets another value, or gets it in another scan.
     Variable {
-        /// What differs first.
+        /// The first difference.
         signal: SignalDifference,
         /// The found run has the expected value this many scans later, if it has it at all.
         later: Option<i64>,
     },
-    /// An input pin is given another value.
+    /// An input pin gets another value.
     Parameter(Vec<SignalDifference>),
     /// A fault or a refusal in only one of the runs.
     Fault {
-        /// Where and what.
+        /// The fault or refusal.
         event: Event,
-        /// It is in the found run.
+        /// Whether it is in the found run.
         in_found: bool,
     },
     /// The drive responds differently to the same set-points.
     Feedback(String),
-    /// The same events in the same scans, and numbers that differ by rounding: relative, and in ULPs at
-    /// first.
+    /// The same events in the same scans; numbers differ by rounding. The difference is given relative, and in ULPs
+    /// at first.
     Rounding {
         /// Largest difference as a share of the largest value of its column.
         share: f64,
-        /// ULPs between the first values that differ; the most of that scan.
+        /// ULPs between the first values that differ; the largest number of that scan.
         ulps: Option<u64>,
     },
     /// The same events in the same scans, but other set-points between them.
@@ -79,9 +79,9 @@ pub enum Cause {
 pub struct Setting {
     /// Its key in a script.
     pub name: &'static str,
-    /// As it should be.
+    /// The expected value.
     pub expected: Option<f64>,
-    /// As it is.
+    /// The found value.
     pub found: Option<f64>,
 }
 
@@ -201,8 +201,8 @@ fn of_rows(expected: &Trace, found: &Trace, first: &ScanDifference, extent: &Ext
             later: later(expected, found, &signal.name, first.scan),
         };
     }
-    // Columns of pins are in the order of their computation. If both runs compute in the same order, an
-    // input that differs before any output was given that value.
+    // Columns of pins are in the order of their computation. If both runs compute in the same order, and an input
+    // differs before any output, it received another value.
     let pins = first
         .signals
         .iter()
@@ -269,14 +269,14 @@ fn reads(column: &Column) -> bool {
     column.role == Role::Output && column.kind == Kind::Real
 }
 
-/// By how many scans later `found` first has the value that `expected` has in `scan`; negative if earlier.
+/// The number of scans after which `found` first has the value that `expected` has in `scan`; negative if earlier.
 fn later(expected: &Trace, found: &Trace, name: &str, scan: usize) -> Option<i64> {
     let (at, other) = (expected.column(name)?, found.column(name)?);
     let distance = |from: usize, to: usize| i64::try_from(to.checked_sub(from)?).ok();
     let (wanted, got) = (expected.cell(scan, at)?, found.cell(scan, other)?);
     let before = scan.checked_sub(1).and_then(|scan| expected.cell(scan, at));
     if before == Some(got) {
-        // Nothing has happened yet where an event was expected.
+        // No event has happened yet where one was expected.
         let come = found.cells(other).skip(scan).position(|cell| cell == wanted)?;
         return distance(scan, scan + come);
     }

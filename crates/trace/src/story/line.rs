@@ -8,7 +8,7 @@ use crate::header::Written;
 use crate::number::cell_text;
 use crate::trace::Trace;
 
-/// Most places that are shown.
+/// Largest number of places that are shown.
 const PLACES_MOST: usize = 3;
 
 /// The variable of a program that differs first, and the statements that wrote it.
@@ -18,9 +18,9 @@ pub struct Line {
     pub scan: usize,
     /// The variable: `cell.State`.
     pub signal: String,
-    /// What it should be.
+    /// The expected value.
     pub expected: String,
-    /// What it is.
+    /// The found value.
     pub found: String,
     /// Statements that may have written it, at most three; those that write this value as a constant come
     /// first.
@@ -39,8 +39,8 @@ fn written(trace: &Trace) -> BTreeMap<String, &[Written]> {
     pins.collect()
 }
 
-/// The first one in the text, among the variables that differ in the first scan that differs. If anything
-/// else differs in an earlier scan, the program only follows, and there is none.
+/// The first one in the text, among the variables that differ in the first scan that differs. None if anything else
+/// differs in an earlier scan: the program is then not the cause.
 pub(super) fn line(expected: &Trace, found: &Trace, difference: &Difference) -> Option<Line> {
     let first = difference.first.as_ref()?;
     let (before, after) = (written(expected), written(found));

@@ -18,7 +18,7 @@ use crate::trace::Trace;
 /// How two traces differ, and the likely reasons.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Story {
-    /// Where they part.
+    /// The first difference.
     pub difference: Difference,
     /// The extent of the difference; `None` if the common rows are equal.
     pub extent: Option<Extent>,
@@ -50,9 +50,9 @@ pub struct Furthest {
     pub signal: String,
     /// The scan.
     pub scan: usize,
-    /// What it should be.
+    /// The expected value.
     pub expected: f64,
-    /// What it is.
+    /// The found value.
     pub found: f64,
     /// The distance over the largest magnitude of the column.
     pub share: f64,

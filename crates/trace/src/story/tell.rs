@@ -6,7 +6,7 @@ use super::cause::Cause;
 use crate::compare::SignalDifference;
 use crate::number::{shortest, time_literal};
 
-/// Most names that a sentence lists.
+/// Largest number of names that a sentence lists.
 const NAMED: usize = 4;
 
 impl Cause {
