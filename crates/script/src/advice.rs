@@ -4,8 +4,8 @@ use standstill_axis::{HomeDirection, Homing, Procedure};
 use standstill_drives::switches::Switches;
 use standstill_trace::shortest;
 
-/// The place of a homing's reference, seen from where the search begins (u). `None` if there is no single
-/// place to search for, or on a modulo axis.
+/// The position of a homing's reference relative to the start of the search (u). `None` on a modulo axis, or if the
+/// search has no single target.
 struct Way {
     what: &'static str,
     from: f64,
@@ -60,7 +60,7 @@ pub(crate) fn reference(axis: &str, start: f64, homing: &Homing, switches: &Swit
     ))
 }
 
-/// As [`reference`], only where the reference is behind the search.
+/// The same as [`reference`], but only if the reference is behind the search.
 pub(crate) fn reference_behind(
     axis: &str,
     start: f64,

@@ -20,7 +20,7 @@ pub struct Bare<'a> {
     pub program: Option<&'a str>,
     /// Length of a scan (ns), above 0.
     pub cycle_ns: i64,
-    /// How many.
+    /// Number of scans.
     pub scans: u64,
 }
 

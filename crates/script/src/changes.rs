@@ -1,4 +1,4 @@
-//! A script with the changes that were made while it was watched.
+//! A script with the changes that were made while its run was watched.
 
 use crate::error::ScriptError;
 use crate::format::format;

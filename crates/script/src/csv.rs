@@ -1,4 +1,4 @@
-//! Tables as text: rows of numbers under the names of their fields, as a spreadsheet saves them.
+//! Tables as text: rows of numbers under the names of their fields, as spreadsheets save them.
 //!
 //! The first line names the fields in any order; absent fields are 0. Without such a line two columns are
 //! the first two fields. Empty lines and lines that begin with `#` are skipped. Commas or semicolons
@@ -15,7 +15,7 @@ pub const CAM_TABLE: &str = "MC_CAM_REF";
 /// The required columns of a cam.
 const CAM_NEEDS: [&str; 2] = ["Master", "Slave"];
 
-/// Headers of other systems, by column, and the law that rows with these have: of CODESYS (XYVA), and of the motion points of TwinCAT.
+/// Headers of other systems by column, and the law of their rows: CODESYS (XYVA), and the motion points of TwinCAT.
 const OTHERS: [(&[(&str, &str)], i32); 2] = [
     (
         &[
@@ -47,7 +47,7 @@ pub struct CsvFault {
     pub column: usize,
     /// The fault, one sentence without a full stop.
     pub message: String,
-    /// What to do about it.
+    /// The remedy.
     pub help: String,
 }
 
@@ -61,7 +61,7 @@ impl fmt::Display for CsvFault {
     }
 }
 
-/// A cell, and where it begins.
+/// A cell and its place.
 #[derive(Clone, Copy)]
 struct Cell<'a> {
     text: &'a str,
@@ -88,7 +88,7 @@ pub fn read(bytes: &[u8], info: &TableInfo) -> Result<Vec<Vec<f64>>, CsvFault> {
     read_with_lines(bytes, info).map(|(rows, _)| rows)
 }
 
-/// As [`read`]; the line of each row, from 1, too.
+/// The same as [`read`]; also returns the line of each row, from 1.
 ///
 /// # Errors
 /// As [`read`].
@@ -341,7 +341,7 @@ fn boolean(text: &str) -> Option<bool> {
         .map(|(_, value)| value)
 }
 
-/// Places of the master rise from row to row, and there are two rows at least.
+/// Checks that the positions of the master rise from row to row, and that there are at least two rows.
 fn check_cam(rows: &[Vec<f64>], lines: &[usize], places: &[usize]) -> Result<(), CsvFault> {
     let master = |row: &Vec<f64>| row.first().copied().unwrap_or_default();
     let column = places.iter().position(|place| *place == 0).unwrap_or_default() + 1;

@@ -94,20 +94,20 @@ codes! {
     TooLarge = "too_large",
 }
 
-/// One thing that is wrong.
+/// One fault.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// What kind.
+    /// Its kind.
     pub code: Code,
-    /// What is wrong, one sentence without a full stop.
+    /// The fault, one sentence without a full stop.
     pub message: String,
     /// The place in the text; `None` if the cause is not in the text.
     pub span: Option<Span>,
-    /// A few words under the carets, possibly none.
+    /// A few words under the carets; may be empty.
     pub label: String,
-    /// Another place that matters, with a few words; in a box because few have one.
+    /// Another relevant place with a few words, in a box because few have one.
     pub related: Option<Box<(Span, String)>>,
-    /// What to do about it.
+    /// The remedy.
     pub help: Option<String>,
 }
 
@@ -172,7 +172,7 @@ impl File {
         }
     }
 
-    /// As given.
+    /// The name as given.
     pub(crate) fn name(&self) -> &str {
         &self.name
     }
@@ -181,7 +181,7 @@ impl File {
         &self.text
     }
 
-    /// Its folder with the `/` behind it, empty if none.
+    /// Its folder with the `/` behind it; empty if there is none.
     pub(crate) fn folder(&self) -> &str {
         let end = self.name.rfind('/').map_or(0, |slash| slash + 1);
         self.name.get(..end).unwrap_or_default()
@@ -198,7 +198,7 @@ impl File {
         Snippet::source(without_joiners(&self.text)).path(printable(&self.name))
     }
 
-    /// A place of all files as one of this file.
+    /// A place of all files as a place of this file.
     fn inner(&self, span: Span) -> std::ops::Range<usize> {
         span.start.saturating_sub(self.start)..span.end.saturating_sub(self.start)
     }
@@ -214,13 +214,13 @@ pub struct ScriptError {
     reports: Vec<standstill_st::Report>,
 }
 
-/// Most diagnostics that are rendered in full; the rest is only counted.
+/// Largest number of diagnostics that are rendered in full; the rest is only counted.
 pub const DIAGNOSTICS_SHOWN: usize = 20;
 
-/// Most bytes of a line that is shown with its message: drawing it takes a time of its length.
+/// Largest number of bytes of a line that is shown with its message. The time to draw it grows with its length.
 const LINE_SHOWN: usize = 20_000;
 
-/// Most characters of a name or value that a message quotes.
+/// Largest number of characters of a name or value that a message quotes.
 const SHOWN_CHARS: usize = 60;
 
 impl ScriptError {
@@ -250,12 +250,12 @@ impl ScriptError {
         &self.reports
     }
 
-    /// The file a place is in.
+    /// The file that a place is in.
     fn file(&self, place: Span) -> &File {
         file(&self.files, place)
     }
 
-    /// Name of the file a place is in, as given.
+    /// Name of the file that a place is in, as given.
     pub fn file_of(&self, place: Span) -> &str {
         &self.file(place).name
     }
@@ -304,7 +304,7 @@ pub(crate) fn rendered(
     kind: &str,
     diagnostic: &Diagnostic,
 ) -> String {
-    // They contain pieces of the script, which must not reach a terminal as they are.
+    // They contain pieces of the script, which must not reach a terminal unchanged.
     let title = level
         .clone()
         .primary_title(printable_lines(&diagnostic.message))
@@ -355,7 +355,7 @@ pub(crate) fn rendered(
     Renderer::plain().term_width(140).render(&[group])
 }
 
-/// The file a place is in.
+/// The file that a place is in.
 pub(crate) fn file(files: &[File], place: Span) -> &File {
     let later = files.partition_point(|file| file.start <= place.start);
     &files[later.saturating_sub(1)]

@@ -5,7 +5,7 @@ use crate::read::json::{self, Json, Node};
 use crate::read::without_mark;
 use std::fmt::Write;
 
-/// Longest line (characters) an object or list is kept together on.
+/// Longest line (characters) for an object or list on one line.
 const WIDTH: usize = 110;
 
 /// Spaces per level.

@@ -1,4 +1,4 @@
-//! Goldens: whether a run is as it was reviewed, and who may accept a new one.
+//! Goldens: whether a run is equal to the reviewed one, and who may accept a new one.
 //!
 //! The golden of `x.scan.json` is the insta snapshot `x.snap` beside it, with every exact bit in
 //! `x.exact`. A golden is a record of a reviewed version, never a claim; a script whose claims fail gets
@@ -12,7 +12,7 @@ use standstill_trace::story::{Cause, story};
 use standstill_trace::{Role, Trace};
 use std::path::{Path, PathBuf};
 
-/// What may be done to goldens.
+/// The permitted changes of goldens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// Writes nothing, as in continuous integration.
@@ -57,9 +57,9 @@ impl Mode {
 pub enum Standing {
     /// Every bit is as reviewed.
     Same,
-    /// Events are as reviewed, and set-points within the requested tolerance: their distance.
+    /// Events are as reviewed, and set-points within the requested tolerance. It has their distance.
     Close(Option<Closeness>),
-    /// Every bit that the golden knows is as reviewed, but it is of version 1: what to do about it.
+    /// Every bit that the golden knows is as reviewed, but it is of version 1. It has the remedy.
     Old(String),
     /// No golden is required: only the claims decide.
     Unasked,
@@ -152,7 +152,7 @@ pub fn judge(
         Ok(()) => "review the proposal (.snap.new), then accept it: `standstill test --accept` with the script's path, or \
              `cargo insta review`"
             .to_owned(),
-        // What differs is worth more than the file, in a folder that nobody may write to.
+        // The differences are worth more than the file, in a folder that may not be written to.
         Err(error) => format!("there is no proposal: {error}"),
     };
     Ok(Standing::Failed(format!("{}\n{hint}", what.trim_end())))

@@ -20,7 +20,7 @@ pub struct Script {
     pub covers: Vec<String>,
     /// Length of a scan (ns).
     pub cycle_ns: i64,
-    /// Rows of the trace at most.
+    /// Largest number of rows of the trace.
     pub scans: u64,
     /// Axes in script order; the index is their [`AxisId`](standstill_axis::AxisId).
     pub axes: Vec<Axis>,
@@ -28,7 +28,7 @@ pub struct Script {
     pub inputs: Vec<Input>,
     /// The numbers of all tables, one after the other.
     pub tables: Vec<f64>,
-    /// The tables under `tables`.
+    /// The tables in the section `tables`.
     pub named_tables: Vec<NamedTable>,
     /// The store of cams: slots, and pieces in all.
     pub cams: (usize, usize),
@@ -48,7 +48,7 @@ pub struct Script {
     pub stop_when: Option<(Conditions, u64)>,
     /// Values of the script's parameters, after overrides.
     pub parameters: BTreeMap<String, f64>,
-    /// Whether a golden counts beside the claims.
+    /// Whether a golden counts in addition to the claims.
     pub golden: bool,
     /// Values above the limits are intended.
     pub clamps_expected: bool,
@@ -61,13 +61,13 @@ pub struct Script {
 /// The place of an item in a script, and whether it may test nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Place {
-    /// Where.
+    /// The place.
     pub span: Span,
     /// `"vacuous": "allowed"`
     pub may_be_vacuous: bool,
 }
 
-/// A table under `tables`.
+/// A table in the section `tables`.
 #[derive(Clone, Debug)]
 pub struct NamedTable {
     /// Name as written.
@@ -89,14 +89,14 @@ pub struct Axis {
     pub config: AxisConfig,
     /// Its drive.
     pub drive: DriveSetup,
-    /// The most masters that a block with it at its `Slave` pin gives it: 0 for none, 2 for
+    /// The largest number of masters that a block with this axis at its `Slave` pin gives it: 0 for none, 2 for
     /// MC_CombineAxes.
     pub masters: usize,
     /// It has a master, and a block with it at its `Axis` pin superimposes motions.
     pub superimposed: bool,
     /// MC_CamIn has it at its `Slave` pin.
     pub on_cam: bool,
-    /// Where it stands.
+    /// Its place.
     pub place: Place,
 }
 
@@ -107,7 +107,7 @@ pub struct Input {
     pub name: String,
     /// Value before any step: `Bool` or `Lreal`.
     pub initial: Value,
-    /// Where it stands.
+    /// Its place.
     pub place: Place,
 }
 
@@ -126,7 +126,7 @@ pub struct Instance {
     pub wires: Vec<(usize, Wire)>,
     /// Never called; only in a mutant.
     pub(crate) left_out: bool,
-    /// Where it stands.
+    /// Its place.
     pub place: Place,
 }
 
@@ -156,11 +156,11 @@ pub struct Program {
     pub name: String,
     /// When it runs; at least one.
     pub calls: Vec<Call>,
-    /// What was compiled.
+    /// The compiled program.
     pub guest: standstill_guest::Program,
     /// Its variables that are signals; the first is `Fault`, which the runtime writes.
     pub symbols: Vec<Symbol>,
-    /// Where it stands.
+    /// Its place.
     pub place: Place,
     /// Data of a program in Structured Text.
     pub text: Option<Arc<ProgramText>>,
@@ -171,7 +171,7 @@ pub struct Program {
 pub struct Call {
     /// Index of the task in [`Script::tasks`]; `None` runs once a scan, after all tasks.
     pub task: Option<usize>,
-    /// The function that does it; `plc_scan` if absent.
+    /// The function that it calls; `plc_scan` if absent.
     pub entry: Option<String>,
 }
 
@@ -180,7 +180,7 @@ pub struct Call {
 pub struct Doubt {
     /// `cell.st:12:5: ` and the doubt, in one line.
     pub message: String,
-    /// What to do about it.
+    /// The remedy.
     pub help: String,
 }
 
@@ -195,7 +195,7 @@ pub struct ProgramText {
     pub doubtful: Vec<Doubt>,
     /// Its files: their names in messages, and their text without a byte order mark.
     pub sources: Vec<(String, String)>,
-    /// The script's folder, which the names of its files begin with.
+    /// The script's folder, with which the names of its files begin.
     pub folder: String,
 }
 
@@ -206,7 +206,7 @@ pub struct Symbol {
     pub name: String,
     /// Type of its signal.
     pub ty: PinType,
-    /// Its own type, which that of its signal holds.
+    /// The type of the variable itself, which the type of its signal can hold.
     pub own: standstill_guest::SymbolType,
     /// Its address; if absent, the address that the guest exports.
     pub address: Option<u32>,
@@ -221,7 +221,7 @@ pub struct Symbol {
 pub struct Formula {
     /// As written, with its `=`.
     pub text: String,
-    /// Where it stands.
+    /// Its place.
     pub span: Span,
     /// Whether it belongs to a condition, which reads rows; otherwise it belongs to a wire.
     pub in_rows: bool,
@@ -229,22 +229,22 @@ pub struct Formula {
     pub guest: standstill_guest::Program,
     /// The signals it reads.
     pub inputs: Vec<FormulaInput>,
-    /// Where its value stands.
+    /// The place of its value.
     pub result: standstill_guest::Symbol,
     /// The type of its value.
     pub ty: PinType,
-    /// The possible errors in it, by the number of the place.
+    /// The possible errors in it, by the number of their place.
     pub places: Vec<standstill_st::FaultKind>,
 }
 
 /// A signal that an expression reads.
 #[derive(Clone, Debug)]
 pub struct FormulaInput {
-    /// Which.
+    /// The signal.
     pub signal: Signal,
     /// The variable that holds it.
     pub symbol: standstill_guest::Symbol,
-    /// What the variable is.
+    /// The properties of the variable.
     pub variable: Variable,
     /// Names and numbers of the elements, if it has some.
     pub names: Vec<(String, i128)>,
@@ -266,7 +266,7 @@ pub enum Point {
 /// The source of an input pin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Wire {
-    /// The value as it is; also numeric.
+    /// The value unchanged; also numeric.
     From(Point),
     /// Negated.
     Not(Point),
@@ -277,7 +277,7 @@ pub enum Wire {
 }
 
 impl Wire {
-    /// What it reads.
+    /// The points that it reads.
     #[must_use]
     pub fn points(&self) -> &[Point] {
         match self {
@@ -328,9 +328,9 @@ pub enum When {
     At(u64),
     /// `after` scans later than the latch that follows a row on which all conditions hold.
     Holds {
-        /// What must hold.
+        /// The conditions.
         conditions: Conditions,
-        /// Further scans.
+        /// Additional scans.
         after: u64,
         /// Re-arms once the conditions have been false.
         every: bool,
@@ -350,15 +350,15 @@ impl When {
 /// One step.
 #[derive(Clone, Debug)]
 pub struct Step {
-    /// When.
+    /// Its time.
     pub when: When,
-    /// What, in file order.
+    /// Its actions, in file order.
     pub actions: Vec<Action>,
-    /// Where it stands.
+    /// Its place.
     pub place: Place,
 }
 
-/// What a step does.
+/// An action of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
     /// Writes a variable or an input pin that is not wired.
@@ -367,9 +367,9 @@ pub enum Action {
     Fault {
         /// Index of the axis.
         axis: usize,
-        /// What fails.
+        /// The kind of the fault.
         kind: FaultKind,
-        /// Code it shows.
+        /// The code that the axis or drive shows.
         code: u16,
     },
     /// The cause of the axis's fault is gone.
@@ -377,16 +377,16 @@ pub enum Action {
         /// Index of the axis.
         axis: usize,
     },
-    /// Does something to the drive.
+    /// Changes the drive.
     Drive {
         /// Index of the axis.
         axis: usize,
-        /// What.
+        /// The change.
         change: DriveChange,
     },
 }
 
-/// What fails.
+/// The kinds of faults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaultKind {
     /// The drive reports a fault and switches off.
@@ -416,7 +416,7 @@ pub enum Signal {
     Formula(usize),
 }
 
-/// Which of the masters of a slave.
+/// The masters of a slave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WhichMaster {
     /// The only one, or the first of two.
@@ -440,20 +440,20 @@ pub enum AxisNumber {
     Snap,
     /// Actual position.
     ActualPosition,
-    /// How far a slave is off the law.
+    /// Distance of a slave from the law.
     Deviation,
-    /// By how much a slave sees its master further on.
+    /// Phase shift: the distance by which a slave sees its master further ahead.
     Phase,
-    /// By how much a slave of two masters sees the second one further on.
+    /// The distance by which a slave of two masters sees the second one further ahead.
     Phase2,
     /// The motion that is superimposed on the law of a slave.
     Superimposed,
-    /// The place of the master where a slave on a cam is.
+    /// The position of the master at which a slave on a cam is.
     Shadow,
 }
 
 impl AxisNumber {
-    /// The least number of masters that an axis needs to have it.
+    /// The least number of masters that an axis needs for this column.
     pub(crate) const fn least_masters(self) -> usize {
         match self {
             Self::Deviation | Self::Phase | Self::Superimposed | Self::Shadow => 1,
@@ -473,9 +473,9 @@ pub struct Condition {
     pub text: String,
     /// The signal.
     pub signal: Signal,
-    /// What it must be.
+    /// The required value.
     pub test: Test,
-    /// Where it stands.
+    /// Its place.
     pub span: Span,
 }
 
@@ -525,7 +525,7 @@ pub enum Comparison {
     Lt(f64),
     /// `>`
     Gt(f64),
-    /// Different; the test inside must not hold.
+    /// Different: the test inside must not hold.
     Ne(Box<Test>),
     /// Magnitude `<=`
     AbsLe(f64),
@@ -535,7 +535,7 @@ pub enum Comparison {
     Whole(Relation, i128),
 }
 
-/// How two whole numbers are to each other.
+/// The relation of two whole numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum Relation {
@@ -548,7 +548,7 @@ pub enum Relation {
 }
 
 impl Relation {
-    /// Whether `value` is so to `bound`.
+    /// Whether `value` has this relation to `bound`.
     #[must_use]
     pub const fn holds(self, value: i128, bound: i128) -> bool {
         match self {
@@ -567,17 +567,17 @@ impl Relation {
 pub struct Claim {
     /// Path in the script, such as `expect[2]`.
     pub path: String,
-    /// Where it stands.
+    /// Its place.
     pub span: Span,
     /// `"vacuous": "allowed"`
     pub may_be_vacuous: bool,
     /// The scans it covers, if conditions define them.
     pub window: Window,
-    /// What it says.
+    /// Its statement.
     pub kind: ClaimKind,
 }
 
-/// Where the scans begin and end that a claim speaks of, instead of the range in it.
+/// The begin and the end of the scans that a claim covers, instead of the range in it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Window {
     /// The first row in which these hold.
@@ -618,15 +618,15 @@ pub struct Follow {
     pub slave: usize,
     /// Index of the master.
     pub master: usize,
-    /// The slave moves `num` / `den` times as far.
+    /// The slave moves `num` / `den` times the distance of its master.
     pub num: i16,
     /// Above 0.
     pub den: u16,
-    /// A position of the master (u), and where the slave is then (u).
+    /// A position of the master (u), and the position of the slave then (u).
     pub anchor: Option<[f64; 2]>,
 }
 
-/// What a claim says.
+/// The statement of a claim.
 #[derive(Clone, Debug)]
 pub enum ClaimKind {
     /// Holds in this scan.
@@ -639,7 +639,7 @@ pub enum ClaimKind {
         range: Range,
         /// `while`
         during: Conditions,
-        /// What holds.
+        /// The conditions that hold.
         that: Conditions,
     },
     /// Holds in no scan of the range in which `during` holds.
@@ -648,7 +648,7 @@ pub enum ClaimKind {
         range: Range,
         /// `while`
         during: Conditions,
-        /// What does not hold.
+        /// The conditions that do not hold together.
         that: Conditions,
     },
     /// Holds in exactly one scan of the range.
@@ -664,7 +664,7 @@ pub enum ClaimKind {
         /// Factor on every limit.
         factor: f64,
     },
-    /// The slave is where the law puts it, to the bit.
+    /// The slave is at the position of the law, to the bit.
     Follows {
         /// Scans.
         range: Range,
@@ -673,19 +673,19 @@ pub enum ClaimKind {
         /// The law.
         follow: Follow,
     },
-    /// After each rising (or the first) `that` holds in some row, at most `within` scans later.
+    /// After each rising edge (or the first) `that` holds in some row, at most `within` scans later.
     Answered {
-        /// Scans in which risings count.
+        /// Scans in which rising edges count.
         range: Range,
         /// `while`
         during: Conditions,
-        /// What rises.
+        /// The conditions whose rising edge counts.
         when: Conditions,
-        /// Scans until the answer at most.
+        /// Largest number of scans until the answer.
         within: u64,
         /// The answer.
         that: Conditions,
-        /// Only the first rising.
+        /// Only the first rising edge.
         first: bool,
     },
     /// Does not hold in `scans` rows in a row.
@@ -694,14 +694,14 @@ pub enum ClaimKind {
         range: Range,
         /// `while`
         during: Conditions,
-        /// What does not hold.
+        /// The conditions that do not hold together.
         that: Conditions,
         /// Rows.
         scans: u64,
     },
-    /// The scans from a rising of the first to the next one of the second are within the bounds.
+    /// The scans from a rising edge of the first to the next one of the second are within the bounds.
     Duration {
-        /// Scans in which risings of the first count.
+        /// Scans in which rising edges of the first count.
         range: Range,
         /// `while`
         during: Conditions,
@@ -709,16 +709,16 @@ pub enum ClaimKind {
         ends: [Conditions; 2],
         /// Scans.
         bounds: Bounds,
-        /// Every rising of the first, not only the first one.
+        /// Every rising edge of the first, not only the first one.
         each: bool,
     },
-    /// How often it becomes true is within the bounds.
+    /// The number of rising edges is within the bounds.
     Count {
         /// Scans.
         range: Range,
         /// `while`
         during: Conditions,
-        /// What rises.
+        /// The conditions whose rising edge counts.
         that: Conditions,
         /// Times.
         bounds: Bounds,
@@ -759,7 +759,7 @@ impl ClaimKind {
         }
     }
 
-    /// The scans it speaks of.
+    /// The scans that it covers.
     pub fn range_mut(&mut self) -> Option<&mut Range> {
         match self {
             Self::At(..) => None,
@@ -777,7 +777,7 @@ impl ClaimKind {
         }
     }
 
-    /// The largest number of reads of a row that its judgement takes in a scan.
+    /// The largest number of reads of a row that judging takes in a scan.
     pub(crate) fn looks(&self) -> u64 {
         let looks = match self {
             Self::At(_, that) | Self::By(_, that) | Self::Once(_, that) => that.len(),
@@ -797,7 +797,7 @@ impl ClaimKind {
             } => during.len() + 2 * (first.len() + second.len()),
             // Positions of four differences.
             Self::WithinLimits { .. } => 14,
-            // Two positions and the phase, and the arithmetic of some more.
+            // Two positions and the phase, and the arithmetic, which counts as further ones.
             Self::Follows { during, .. } => during.len() + 14,
         };
         looks as u64

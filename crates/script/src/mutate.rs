@@ -17,7 +17,7 @@ const FACTORS: [f64; 2] = [0.9, 1.1];
 /// A change of a script's program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mutant {
-    /// JSON path of what is changed, such as `blocks[2].pins.Velocity`.
+    /// JSON path of the change, such as `blocks[2].pins.Velocity`.
     pub path: String,
     /// The old and the new value, in a few words.
     pub says: String,
@@ -28,7 +28,7 @@ pub struct Mutant {
 enum Change {
     /// Another constant at a pin.
     Constant(usize, usize, Value),
-    /// Another number in a table: its place among the numbers of all tables.
+    /// Another number in a table: its index among the numbers of all tables.
     Cell(usize, f64),
     /// Another wire to a pin.
     Wire(usize, usize, Wire),
@@ -43,7 +43,7 @@ enum Change {
 pub enum Fate {
     /// This claim failed, the first in file order.
     Killed(String),
-    /// No claim noticed.
+    /// No claim detected it.
     Survived,
     /// The run does not differ, except for the changed value itself; there is nothing to detect.
     Same,

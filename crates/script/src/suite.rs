@@ -95,7 +95,7 @@ pub enum SuiteError {
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// What the system said.
+        /// The message of the system.
         source: io::Error,
     },
     /// The script is no UTF-8 text.
@@ -105,7 +105,7 @@ pub enum SuiteError {
         path: PathBuf,
         /// The number of bytes that are text.
         valid: usize,
-        /// What it looks like.
+        /// The probable encoding.
         like: &'static str,
     },
     /// The script is not valid.
@@ -116,7 +116,7 @@ pub enum SuiteError {
     Run {
         /// The script.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: RunError,
     },
     /// The golden could not be read or written.
@@ -133,16 +133,14 @@ impl SuiteError {
     }
 }
 
-/// Permissions of a command's scripts beyond those of any script.
+/// Permissions of a command for its scripts, beyond those of any script.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Allowed {
-    /// Folders from which files may be read, and from the folders in them, in addition to the script's
-    /// own.
+    /// Folders from which files may be read, with the folders in them, in addition to the script's own.
     pub folders: Vec<PathBuf>,
     /// Memory that all guest programs of a script may have together (bytes).
     pub guest_memory: u64,
-    /// Whether runs may have more cells than fit into one trace: for a command that does not keep their
-    /// rows.
+    /// Whether runs may have more cells than one trace can hold: for a command that does not keep their rows.
     pub long: bool,
 }
 
@@ -156,10 +154,10 @@ impl Default for Allowed {
     }
 }
 
-/// Reads and runs the script at `path`, and judges it by its claims and, with this yardstick, by its
-/// golden. Without a golden, or with `"golden": false` in the script, only the claims decide. `progress`
-/// is called from time to time with the number of scans done. Files that it includes must be below its
-/// folder or where `allowed` says.
+/// Reads and runs the script at `path`. Judges it by its claims and, with this yardstick, by its golden. Without a
+/// golden, or with `"golden": false` in the script, only the claims decide. `progress` is called from time to time
+/// with the number of scans done. Files that it includes must be below its folder or in a folder that `allowed`
+/// permits.
 ///
 /// # Errors
 /// [`SuiteError`]. Claims and goldens that fail are no error; they are in the report.
@@ -193,7 +191,7 @@ pub fn judge_file(
     })
 }
 
-/// Reads and runs the script at `path`, with these values replacing its own parameters; `allowed` as for
+/// Reads and runs the script at `path`, with these values in place of its own parameters; `allowed` as for
 /// [`judge_file`].
 ///
 /// # Errors
@@ -207,10 +205,10 @@ pub fn run_file(
     run_script(path, parameters, allowed, progress).map(|(_, outcome)| outcome)
 }
 
-/// As [`run_file`]; also returns the script.
+/// The same as [`run_file`]; also returns the script.
 ///
 /// # Errors
-/// As [`run_file`].
+/// Those of [`run_file`].
 pub fn run_script(
     path: &Path,
     parameters: &[(String, f64)],
@@ -241,7 +239,7 @@ pub fn read_file(
 /// `.scan.json` is a script itself.
 ///
 /// # Errors
-/// As [`read_file`].
+/// Those of [`read_file`].
 pub fn read_axes(path: &Path, allowed: &Allowed) -> Result<Script, SuiteError> {
     if path.to_string_lossy().ends_with(EXTENSION) {
         return Ok(read_file(path, &[], allowed)?.0);
@@ -284,11 +282,11 @@ pub fn read_axes(path: &Path, allowed: &Allowed) -> Result<Script, SuiteError> {
     )?)
 }
 
-/// As [`read_file`]; the statements of its programs in Structured Text are counted, and may take more
+/// The same as [`read_file`]; the statements of its programs in Structured Text are counted, and may take more
 /// fuel.
 ///
 /// # Errors
-/// As [`read_file`].
+/// Those of [`read_file`].
 pub fn read_counted(
     path: &Path,
     parameters: &[(String, f64)],
@@ -344,12 +342,11 @@ fn read_at(
     read_within(text, &shown(path), parameters, &mut load, &mut guest, terms)
 }
 
-/// The execution counts of the statements and branches of the script's programs in Structured Text:
-/// `None` if it has no such program. They are counted in a run of their own, so the judged run is the
-/// same with and without.
+/// The execution counts of the statements and branches of the script's programs in Structured Text: `None` if it
+/// has no such program. They are counted in a run of their own, so the judged run is the same with and without.
 ///
 /// # Errors
-/// As [`run_file`].
+/// Those of [`run_file`].
 pub fn coverage(path: &Path, allowed: &Allowed) -> Result<Option<Vec<Counted>>, SuiteError> {
     let (script, _) = read_counted(path, &[], allowed)?;
     if script.programs.iter().all(|program| program.text.is_none()) {
@@ -370,7 +367,7 @@ pub struct Texts {
     parsed: Parsed,
     terms: Terms,
     guests: BTreeMap<String, Vec<u8>>,
-    /// Parameters that are used elsewhere than in axes.
+    /// Parameters that are used outside the axes.
     beside_axes: BTreeSet<String>,
 }
 
@@ -403,11 +400,11 @@ impl Texts {
         Ok((texts, script))
     }
 
-    /// Gives `script`, which is that of [`Texts::read`] or was varied before, these values of its parameters, of which each call
-    /// names the same.
+    /// Gives `script`, which is that of [`Texts::read`] or was varied before, these values of its parameters. Each
+    /// call must name the same parameters.
     ///
     /// # Errors
-    /// [`ScriptError`] if it is not valid with them; `script` is then of no use until it gets others.
+    /// [`ScriptError`] if it is not valid with them; `script` is then unusable until it gets valid values.
     pub fn vary(&self, script: &mut Script, parameters: &[(String, f64)]) -> Result<(), ScriptError> {
         let mut names = parameters.iter().map(|(name, _)| name);
         let are_in_axes = names.all(|name| !self.beside_axes.contains(name));
@@ -417,7 +414,7 @@ impl Texts {
         Ok(())
     }
 
-    /// The script with these values replacing its own parameters.
+    /// The script with these values in place of its own parameters.
     fn script(&self, parameters: &[(String, f64)]) -> Result<Script, ScriptError> {
         let mut guest = |inner: &str| {
             let bytes = self.guests.get(inner).cloned();
@@ -516,7 +513,7 @@ fn why(error: io::Error) -> String {
     }
 }
 
-/// All scan scripts and machine files in a folder, as [`find`].
+/// All scan scripts and machine files in a folder, found like those of [`find`].
 ///
 /// # Errors
 /// A folder that cannot be read.
@@ -533,8 +530,7 @@ pub fn find_texts(path: &Path) -> Result<Vec<PathBuf>, SuiteError> {
     Ok(files)
 }
 
-/// All scan scripts in a folder and the folders in it, sorted by path; a path that is a file is taken as it
-/// is.
+/// All scan scripts in a folder and the folders in it, sorted by path. A path that is a file is taken unchanged.
 ///
 /// # Errors
 /// A folder that cannot be read.
@@ -555,7 +551,7 @@ pub fn find(path: &Path) -> Result<Vec<PathBuf>, SuiteError> {
 /// A folder that cannot be read.
 pub fn orphans(folder: &Path) -> Result<Vec<PathBuf>, SuiteError> {
     let files = walk(folder)?;
-    // A script of another name has a golden, too, where it is tested by its own.
+    // A script of another name also has a golden if a test of its own judges it.
     let has_script = |stem: &str| {
         let is_there = |ending| {
             files

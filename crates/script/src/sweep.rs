@@ -8,7 +8,7 @@ use crate::model::{Script, Span};
 use crate::read::names::suggestion;
 use standstill_trace::{Column, Kind, Trace};
 
-/// Most cases of one sweep.
+/// Largest number of cases of one sweep.
 pub const CASES_MAX: u64 = 10_000_000;
 
 /// A sweep file, read and checked; it is not yet compared with the script that it names.
@@ -37,7 +37,7 @@ pub(crate) struct Varied {
 /// The values of a parameter.
 #[derive(Clone, Debug)]
 pub(crate) enum Values {
-    /// These.
+    /// These values.
     List(Vec<f64>),
     /// From the first to the second, both included; a number of them in a grid, any in a sample.
     Range {
@@ -58,19 +58,19 @@ pub(crate) enum Scale {
 }
 
 impl Scale {
-    /// The value at `place`, 0 to 1, on the way.
+    /// The value at `place`, 0 to 1, between the two.
     fn at(self, from: f64, to: f64, place: f64) -> f64 {
         let value = match self {
             Self::Linear => from + (to - from) * place,
             // In software, so that it has the same bits on every machine.
             Self::Log => from * libm::pow(to / from, place),
         };
-        // Rounding must not lead outside.
+        // Rounding must not exceed the ends.
         value.clamp(from.min(to), from.max(to))
     }
 }
 
-/// Which cases there are.
+/// The cases of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Draw {
     /// Every value of a parameter with every one of the others; the last parameter varies fastest.
@@ -79,13 +79,13 @@ pub(crate) enum Draw {
     Sample { seed: u64, count: u64 },
 }
 
-/// A figure that is taken of every run.
+/// A figure that every run gives.
 #[derive(Clone, Debug)]
 pub struct Measure {
     /// Its column.
     pub name: String,
     pub(crate) place: Span,
-    /// The figure that is taken.
+    /// The kind of the figure.
     pub take: Take,
     /// The signal: a column of the trace.
     pub signal: String,
@@ -133,7 +133,7 @@ impl Take {
 }
 
 impl Sweep {
-    /// How many cases there are: 1 to [`CASES_MAX`].
+    /// The number of cases: 1 to [`CASES_MAX`].
     pub fn count(&self) -> u64 {
         match self.draw {
             Draw::Sample { count, .. } => count,
@@ -186,8 +186,8 @@ impl Sweep {
         ScriptError::new(&self.file.0, &self.file.1, vec![diagnostic])
     }
 
-    /// Checks the names in the file against the script and the trace of its run, and that no two columns
-    /// of a table with these have one name.
+    /// Checks the names in the file against the script and the trace of its run. Also checks that no two columns of
+    /// a table with these have one name.
     ///
     /// # Errors
     /// [`ScriptError`] with every name that does not exist or is ambiguous.
@@ -249,7 +249,7 @@ impl Values {
         }
     }
 
-    /// The value at this place of a grid; both ends to the bit.
+    /// The value at this index of a grid; both ends to the bit.
     fn step(&self, index: u64) -> f64 {
         match self {
             Self::List(list) => usize::try_from(index)

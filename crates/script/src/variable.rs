@@ -54,7 +54,7 @@ impl Variable {
         }
     }
 
-    /// How its bytes are read. Numbers of 64 bits are read as a TIME, which has 64 bits, too.
+    /// The form in which its bytes are read. Numbers of 64 bits are read as a TIME, which has 64 bits, too.
     pub(crate) const fn read_as(&self) -> SymbolType {
         match self.ty {
             Elementary::Bool => SymbolType::Bool,

@@ -9,7 +9,7 @@ use standstill_script::suite::read_text;
 use standstill_script::{Outcome, read, run};
 use std::path::Path;
 
-/// Of so many broken programs at least this many are named.
+/// The least number of broken programs whose fault is named.
 const NAMED_LEAST: usize = 37;
 const OF: usize = 41;
 

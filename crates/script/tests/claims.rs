@@ -1,4 +1,5 @@
-//! Claims: each kind holds, and fails with its path, the scan, the values and the nearest scan where it holds.
+//! Claims: each kind is fulfilled, or fails with its path, the scan, the values and the nearest scan in which it is
+//! fulfilled.
 //!
 //! The run under judgement has a BOOL `a`, TRUE in scans 3 to 5 and 8, and a number `v` that is 0, then 1.5
 //! from scan 4 on; axis X moves 3 -> 5 in three scans from scan 1 on (3, 3.5, 4.5, 5, ..).
@@ -223,8 +224,8 @@ fn verdicts_stand_in_the_header_of_the_trace() {
     );
 }
 
-/// Seventy axes, more than the ring of records holds records: each moves 1 mm from scan 2 on, if asked to, and is called
-/// 1000 mm more, at once or once it stands.
+/// Seventy axes, more than the number of records in the ring. With `moves` each moves 1 mm from scan 2 on. The
+/// position of each is increased by 1000 mm, at once or when it is at rest.
 fn seventy_axes(moves: bool, mode: &str) -> String {
     let each = |text: &dyn Fn(usize) -> String| (0..70).map(text).collect::<Vec<_>>().join(", ");
     let axes = each(&|axis| {
@@ -254,7 +255,7 @@ fn seventy_axes(moves: bool, mode: &str) -> String {
     )
 }
 
-/// The run of seventy axes, whose claims hold, also judged on the trace alone.
+/// The run of seventy axes. Its claims are fulfilled, and are also judged on the trace alone.
 fn run_of_seventy(moves: bool, mode: &str) -> Trace {
     let script = read(&seventy_axes(moves, mode), "test.scan.json", &[]).expect("it is a script");
     let outcome = run(&script).expect("it runs");
@@ -281,7 +282,7 @@ fn no_note_is_lost_however_many_axes_are_called_in_a_scan() {
     let trace = run_of_seventy(false, "mcImmediately");
     assert_eq!(notes_with(&trace, "coordinates"), 70);
     assert_eq!(notes_with(&trace, "are lost"), 0);
-    // A plan and a shift of each: 140 records of calls in scan 2.
+    // A plan and a shift for each: 140 records of calls in scan 2.
     let trace = run_of_seventy(true, "mcImmediately");
     assert_eq!(notes_with(&trace, "plan for"), 70);
     assert_eq!(notes_with(&trace, "coordinates"), 70);
@@ -290,7 +291,7 @@ fn no_note_is_lost_however_many_axes_are_called_in_a_scan() {
 
 #[test]
 fn coordinates_that_move_are_no_motion_where_records_are_lost() {
-    // All shifts are of one motion step, at whose end the moves are.
+    // All shifts are in one motion step, at the end of the moves.
     let trace = run_of_seventy(true, "mcQueued");
     assert_eq!(notes_with(&trace, "plan for"), 70);
     assert_eq!(notes_with(&trace, "coordinates"), 70);

@@ -5,10 +5,10 @@
 
 use std::path::Path;
 
-/// What happens, and the scripts that show it.
+/// An event, and the scripts that show it.
 type Row = (&'static str, &'static [&'static str]);
 
-/// What ends, begins or leaves alone the state of a slave.
+/// Events that begin, end or keep the state of a slave.
 const STATES: &[Row] = &[
     (
         "taken from Standstill",
@@ -98,7 +98,7 @@ const STATES: &[Row] = &[
     ("the end of a cam without periods", &["cams/without_periods"]),
 ];
 
-/// What the master does, and its slave by set values.
+/// Events at the master, and the reaction of its slave by set values.
 const BY_SET_VALUES: &[Row] = &[
     (
         "any command, an override, MC_Stop, buffering, blending",
@@ -173,7 +173,7 @@ const BY_ACTUAL_VALUES: &[Row] = &[
     ("a torque", &["a_master_under_a_torque_is_followed"]),
 ];
 
-/// Commands on the slave that do not end its coupling, and what bars its way.
+/// Commands to the slave that do not end its coupling, and obstacles on its path.
 const ON_THE_SLAVE: &[Row] = &[
     (
         "MC_SetOverride",

@@ -121,7 +121,7 @@ fn claims_conditions_and_expressions_read_them() {
         .flat_map(|verdict| &verdict.failures)
         .map(ToString::to_string)
         .collect();
-    // The way at 100 u/s is 5 u behind after some 60 ms; the last claim is there to show a value.
+    // At 100 u/s the distance is 5 u behind after some 60 ms; the last claim is there to show a value.
     assert_eq!(failures.len(), 1, "{failures:#?}");
     assert!(
         failures[0].starts_with("expect[6].never: S.Deviation -5."),
@@ -158,8 +158,8 @@ fn others_are_told_what_they_lack() {
     }
 }
 
-/// The header tells how a cam lay, so that a picture can draw the curve of its table: here behind a master with turns, of which a
-/// period is no part, and as an axis joins it at 30.
+/// The header has the position of a cam, so that a picture can draw the curve of its table. Here the master has
+/// turns that are no multiple of the period, and the axis joins the cam at 30.
 #[test]
 fn the_header_tells_how_cams_lay() {
     let text = r#"{"standstill": 1, "cycle": "T#1ms", "scans": 4000, "inputs": {"OFF": false},
@@ -184,7 +184,8 @@ fn the_header_tells_how_cams_lay() {
     in_sync_on_the_curve(&trace, 100.0, 3000);
 }
 
-/// A cam that is counted from where its master is at the edge, and that begins two turns later: it lies two turns back.
+/// The cam's positions count from the position of its master at the edge, and the cam begins two turns later. So
+/// its position is two turns back.
 #[test]
 fn the_header_tells_how_a_cam_lies_that_was_laid_turns_before() {
     let text = r#"{"standstill": 1, "cycle": "T#1ms", "scans": 4000,
@@ -206,7 +207,8 @@ fn the_header_tells_how_a_cam_lies_that_was_laid_turns_before() {
     in_sync_on_the_curve(&outcome.trace, 50.0, 4000);
 }
 
-/// In sync the slave is on the curve of the one cam of the header, in every period up to the scan `end`; its master has turns of this length.
+/// In sync the slave is on the curve of the only cam of the header, in every period up to the scan `end`. The
+/// master has turns of the length `turn`.
 fn in_sync_on_the_curve(trace: &Trace, turn: f64, end: usize) {
     let cam = &trace.header().cams[0];
     let rise = cam.points[128] - cam.points[0];

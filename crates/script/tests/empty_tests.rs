@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 use std::thread;
 
-/// A script that tests something in all that it has.
+/// A script in which every item tests something.
 const SOUND: &str = r#"{"standstill": 1, "cycle": "T#1ms", "scans": 100, "inputs": {"go": false, "stop": false},
 "axes": {"X": {"limits": {"velocity": 100, "acceleration": 10000}, "state": "Standstill"}},
 "blocks": [{"name": "move", "type": "MC_MoveAbsolute", "pins": {"Axis": "X", "Execute": {"from": "go"}, "Position": 4, "Velocity": 100}},
@@ -36,7 +36,7 @@ fn told(find: &str, replace: &str, path: &str, words: &str) {
     assert!(warnings.count());
 }
 
-/// A claim more.
+/// Adds a claim.
 #[track_caller]
 fn claim(claim: &str, words: &str) {
     told(
@@ -231,7 +231,7 @@ fn the_numbers_of_a_table_are_changed_and_claims_notice() {
     }
 }
 
-/// A note, for which no strict test fails: the homing may be meant to turn at a limit switch.
+/// This is a note, for which no strict test fails: the homing may be intended to reverse at a limit switch.
 #[test]
 fn a_reference_behind_the_search_is_a_note() {
     let gallery = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests/gallery");
@@ -257,7 +257,7 @@ fn a_reference_behind_the_search_is_a_note() {
     );
 }
 
-/// The gallery is what others begin with, so its claims have to be good.
+/// Users start from the gallery, so its claims must be good.
 #[test]
 fn every_script_of_the_gallery_kills_four_of_five_mutants() {
     let gallery = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests/gallery");

@@ -1,6 +1,7 @@
-//! A run that leaves out the programs where they rest is, to the bit, the run scan by scan: the same rows, notes and verdicts.
-//! Random scripts over ideal drives and mechanisms, with software limits, turns, overrides, blended moves, vibration, masters,
-//! timers, faults, steps that wait for rows and an early end. What an axis is left with shows in the steps that follow.
+//! A run that leaves out idle programs equals the run scan by scan, to the bit: the same rows, notes and verdicts.
+//! Random scripts over ideal drives and mechanisms, with software limits, turns, overrides, blended moves,
+//! vibration, masters, timers, faults, steps that wait for rows and an early end. The steps that follow show the
+//! remaining state of an axis.
 
 use serde_json::{Value, json};
 use standstill_script::model::Script;
@@ -10,7 +11,7 @@ use standstill_testkit::Random;
 use standstill_trace::{Note, digest, extremes_text};
 use std::path::Path;
 
-/// What is compared of a run.
+/// The compared data of a run.
 #[derive(Debug, PartialEq)]
 struct Told {
     scans: usize,
@@ -20,7 +21,7 @@ struct Told {
     verdicts: Verdicts,
 }
 
-/// Whether each claim held, and what speaks against it.
+/// Whether each claim is fulfilled, and the reasons against it.
 type Verdicts = Vec<(bool, Vec<String>)>;
 
 fn told(outcome: &Outcome) -> Told {
@@ -44,7 +45,7 @@ fn by_scan(script: &Script) -> Outcome {
     session.finish()
 }
 
-/// The run far ahead, and how many scans had no programs.
+/// The run far ahead, and the number of scans without programs.
 fn far(script: &Script, random: &mut Random) -> Option<(Told, u64)> {
     let mut session = Session::new(script).unwrap_or_else(|error| panic!("{error}"));
     let mut left_out = 0;
@@ -62,8 +63,8 @@ fn far(script: &Script, random: &mut Random) -> Option<(Told, u64)> {
     Some((told(&session.finish()), left_out))
 }
 
-/// The run far ahead with all columns but actual positions, whose drives need not be served: verdicts and what differs, and how
-/// many scans had no programs.
+/// The run far ahead with all columns except actual positions, whose drives need not be served. Returns the
+/// verdicts and differences, and the number of scans without programs.
 fn far_without_drives(
     script: &Script,
     whole: &Outcome,
@@ -144,7 +145,7 @@ fn axis(random: &mut Random) -> Value {
     axis
 }
 
-/// A step at a scan that changes some of what there is.
+/// A step at a scan that changes some of the items.
 fn step(random: &mut Random, scan: u64, axes: usize) -> Value {
     let when = match random.below(12) {
         0 => json!({"when": {format!("{}.Velocity", AXES[random.place(axes)]): {"gt": 10}}}),
@@ -330,7 +331,8 @@ fn random_runs_far_ahead_are_the_runs_scan_by_scan() {
     assert!(broken <= count / 50, "{broken} runs of {count} are broken off");
 }
 
-/// An endless motion over 180 scans, after which positions leave the range of numbers: the axis fails in a scan without programs.
+/// An endless motion over 180 scans. Then positions leave the range of numbers, and the axis fails in a scan
+/// without programs.
 #[test]
 fn a_run_that_is_broken_off_is_done_again_scan_by_scan() {
     let text = json!({

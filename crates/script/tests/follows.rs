@@ -6,8 +6,8 @@ use standstill_script::{Outcome, judge_recording, read, run, warnings};
 use standstill_testkit::Random;
 use standstill_trace::{Cell, Trace};
 
-/// M runs at 90 u/s from scan 5 on, S is coupled in scan 40, so that it has to come up to M's velocity first. Numbers at
-/// the axes are odd on purpose.
+/// M runs at 90 u/s from scan 5 on. S is coupled in scan 40, so it must first accelerate to M's velocity. The
+/// numbers of the axes are deliberately not round.
 fn text(ratio: (i16, u16), turns: [&str; 2], claims: &str) -> String {
     let (num, den) = ratio;
     let [master, slave] = turns;
@@ -54,7 +54,7 @@ fn claim(ratio: (i16, u16), more: &str) -> String {
     )
 }
 
-/// The trace with other cells, where `change` gives some: scan, name of the column, cell.
+/// The trace with other cells where `change` returns some: scan, name of the column, cell.
 fn changed(trace: &Trace, change: impl Fn(usize, &str, f64) -> f64) -> Trace {
     let mut other = Trace::new(trace.header().clone());
     for scan in 0..trace.scans() {
@@ -80,7 +80,7 @@ fn number(trace: &Trace, name: &str, scan: usize) -> f64 {
     }
 }
 
-/// The first row with InGear, and the anchor that the runtime froze, in the row before.
+/// The first row with InGear, and the anchor that the runtime fixed, in the row before.
 fn locked(trace: &Trace) -> (usize, String) {
     let in_gear = trace.column("gear.InGear").unwrap();
     let first = (0..trace.scans()).find(|scan| trace.cell(*scan, in_gear) == Some(Cell::Bool(true)));
@@ -139,7 +139,7 @@ fn has_gear(outcome: &Outcome) -> bool {
     (0..outcome.trace.scans()).any(|scan| outcome.trace.cell(scan, in_gear) == Some(Cell::Bool(true)))
 }
 
-/// Without an anchor the first rows leave room for what they were rounded from: there one of the rows fails.
+/// Without an anchor the first rows leave a range for the unrounded values. One of the rows then fails.
 #[test]
 fn one_unit_in_the_last_place_is_too_much() {
     for (ratio, turns) in [
@@ -247,7 +247,7 @@ fn coordinates_that_move_begin_a_law_anew() {
     let jump = number(&judged.trace, "M.Position", 400) - number(&judged.trace, "M.Position", 399);
     assert!(jump < -10.0, "{jump}");
     assert_eq!(failures(&judged), Vec::<String>::new());
-    // Not told of it, the judge finds the jump.
+    // Without that note the judge finds the jump.
     let mut silent = Trace::new(judged.trace.header().clone());
     for scan in 0..judged.trace.scans() {
         silent.push_cells(judged.trace.row(scan)).unwrap();

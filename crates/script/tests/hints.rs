@@ -8,7 +8,7 @@ const SCRIPT: &str = r#"{"standstill": 1, "cycle": "T#1ms", "scans": 9, "inputs"
 {"name": "speed", "type": "MC_ReadActualVelocity", "pins": {"Axis": "X", "Enable": true}}],
 "steps": [{"at": 1, "set": {"GO": true, "b": true}}], "expect": [{"by": 8, "that": {"X.Position": {"ge": 0}}}]}"#;
 
-/// What is said of the script with one piece replaced.
+/// The message for the script with one piece replaced.
 #[track_caller]
 fn said(find: &str, replace: &str) -> String {
     assert_eq!(SCRIPT.matches(find).count(), 1, "{find}");
@@ -99,7 +99,7 @@ fn all_missing_keys_are_told_at_once() {
     }
 }
 
-/// The codes of all that is wrong with a script.
+/// The codes of all faults of a script.
 fn codes(script: &str) -> Vec<&'static str> {
     let error = read(script, "a.scan.json", &[]).unwrap_err();
     let of = |diagnostic: &Diagnostic| diagnostic.code.name();

@@ -1,6 +1,6 @@
-//! A run that drops its rows on the way equals a run that keeps them: the same verdicts in the same
-//! words, the same digest, extremes and events; one that keeps few columns has the same verdicts. Half of
-//! the claims of every scan test are broken on purpose, so that there are words to compare.
+//! A run that drops its rows on the way equals a run that keeps them: the same verdicts in the same words, the same
+//! digest, extremes and events. A run that keeps few columns has the same verdicts. Half of the claims of every
+//! scan test are broken on purpose, so that there are words to compare.
 
 use serde_json::{Value, json};
 use standstill_script::model::Script;
@@ -10,7 +10,7 @@ use standstill_testkit::Random;
 use standstill_trace::{Event, EventLog, Extremes, digest, events, extremes_text};
 use std::path::Path;
 
-/// What a run is, as far as one with all rows and one without can be compared.
+/// The data of a run that can be compared with and without all rows.
 #[derive(Debug, PartialEq)]
 struct Told {
     verdicts: Vec<Verdict>,
@@ -33,12 +33,12 @@ fn whole(script: &Script) -> Option<Told> {
     })
 }
 
-/// The same, rows being forgotten after every `every` scans.
+/// The same, with rows forgotten after every `every` scans.
 fn streamed(script: &Script, every: u64) -> Option<Told> {
     streamed_by(script, every, |session, _| session.advance().ok().map(u64::from))
 }
 
-/// The same, with programs left out where they rest.
+/// The same, without idle programs.
 fn streamed_far(script: &Script, every: u64) -> Option<Told> {
     streamed_by(script, every, |session, room| {
         match session.advance_far(room).ok()? {
@@ -48,7 +48,7 @@ fn streamed_far(script: &Script, every: u64) -> Option<Told> {
     })
 }
 
-/// `advance` is told how many scans it may do at most.
+/// `advance` receives the largest number of scans that it may do.
 fn streamed_by<'s>(
     script: &'s Script,
     every: u64,
@@ -85,7 +85,8 @@ fn streamed_by<'s>(
     })
 }
 
-/// Scans and verdicts of a run that keeps the columns alone that claims and steps read, and forgets rows as [`streamed`] does.
+/// Scans and verdicts of a run that keeps only the columns that claims and steps read, and forgets rows as
+/// [`streamed`] does.
 fn lean(script: &Script, every: u64) -> Option<(usize, Vec<Verdict>)> {
     let mut session = Session::keeping(script, Kept::read(script, &[])).ok()?;
     while session.advance().ok()? {
@@ -97,7 +98,7 @@ fn lean(script: &Script, every: u64) -> Option<(usize, Vec<Verdict>)> {
     Some((trace.scans(), verdicts))
 }
 
-/// Turns truth values round and moves numbers, about half of them.
+/// Inverts truth values and changes numbers, about half of them.
 fn breaks(value: &mut Value, random: &mut Random) {
     match value {
         Value::Bool(truth) if random.bits() & 1 == 0 => *truth = !*truth,
@@ -127,7 +128,8 @@ fn claims_are_judged_the_same_with_few_rows_at_a_time() {
         let mut random = Random(seed);
         let json: Value = serde_json::from_str(text.trim_start_matches('\u{feff}'))
             .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        // A range that ends before it begins, for example, is not readable: other breaks may be.
+        // The result may be unreadable, for example a range that ends before it begins. Other changes are then
+        // tried.
         let broken = (0..4).find_map(|_| {
             let mut json = json.clone();
             if let Some(expect) = json.get_mut("expect") {
@@ -177,7 +179,8 @@ const ENDLESS: &str = r#"{"standstill": 1, "cycle": "T#1ms", "scans": SCANS, "ax
     {"name": "t", "type": "TON", "pins": {"IN": {"not": "t.Q"}, "PT": "T#3ms"}}],
   "expect": [EXPECT]}"#;
 
-/// The failures of a claim on a timer that is TRUE in scans 3, 8, 13 .. of 100, with all rows, which are those with a few.
+/// The failures of a claim on a timer that is TRUE in scans 3, 8, 13 .. of 100. They are the same with all rows and
+/// with a few.
 fn failures(claim: &str) -> Vec<String> {
     let text = ENDLESS.replace("SCANS", "100").replace("EXPECT", claim);
     let script = standstill_script::read(&text, "t.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));

@@ -5,8 +5,8 @@ use standstill_script::{judge_recording, run};
 use standstill_testkit::stride;
 use std::path::Path;
 
-/// Written to a file and read again, the trace of a run is judged as the run was. What differs is what nobody knows of
-/// a recording: how the axes moved before its first row.
+/// If the trace of a run is written to a file and read again, it is judged as the run was. The only difference is
+/// unknown in a recording: the motion of the axes before its first row.
 #[test]
 fn a_recording_of_a_run_is_judged_as_the_run() {
     // Shifted and unwrapped positions, differences from the first scan on, variables of guests, names of enumerations.

@@ -6,7 +6,7 @@ use standstill_testkit::Random;
 
 const PAGE: &str = include_str!("../../../docs/claims.md");
 
-/// Whether the claims hold of a run in which the inputs `a`, `b` and `w` are these.
+/// Whether the claim is fulfilled in a run in which the inputs `a`, `b` and `w` have these values.
 fn judged(claim: &str, rows: &[[bool; 3]]) -> bool {
     let steps: Vec<String> = (0..)
         .zip(rows)
@@ -129,7 +129,7 @@ impl Scope {
     }
 }
 
-/// Rows of `values` that rise, count in the window and lie in `while`.
+/// Rows in which `values` rise, inside the window and the `while`.
 fn risings(values: &[bool], inside: &[bool]) -> Vec<usize> {
     let all = 0..values.len();
     all.filter(|row| values[*row] && (*row == 0 || !values[row - 1]) && inside[*row])
@@ -140,7 +140,7 @@ fn next_rising(values: &[bool], from: usize) -> Option<usize> {
     (from..values.len()).find(|row| values[*row] && (*row == 0 || !values[row - 1]))
 }
 
-/// A claim as text, and whether it holds by its definition.
+/// A claim as text, and whether it is fulfilled by its definition.
 fn drawn(random: &mut Random, rows: &[[bool; 3]]) -> (String, bool) {
     let n = rows.len();
     let a: Vec<bool> = rows.iter().map(|row| row[0]).collect();
@@ -216,7 +216,7 @@ fn random_claims_on_random_traces_are_judged_by_their_definition() {
     assert!(held > 500 && failed > 500, "{held} held, {failed} failed");
 }
 
-/// What is said of a claim that cannot be.
+/// The message for a claim that is not valid.
 fn refused(claim: &str) -> String {
     let text = format!(
         r#"{{"standstill": 1, "cycle": "T#2ms", "scans": 9, "axes": {{}}, "blocks": [],

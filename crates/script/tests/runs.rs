@@ -5,7 +5,7 @@
 use standstill_script::{Outcome, RunError, read, read_with_programs, run};
 use standstill_trace::Cell;
 
-/// A script of so many scans of 1 ms with a powered axis X and these further keys.
+/// A script of `scans` scans of 1 ms with a powered axis X and these additional keys.
 fn script(scans: u64, keys: &str) -> String {
     format!(
         r#"{{"standstill": 1, "cycle": "T#1ms", "scans": {scans},
@@ -22,7 +22,7 @@ fn runs(text: &str) -> Outcome {
     try_run(text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A column of a run as text, one word a scan.
+/// A column of a run as text, one word for each scan.
 fn column(outcome: &Outcome, name: &str) -> Vec<String> {
     let column = outcome
         .trace
@@ -141,7 +141,7 @@ fn a_slow_task_leaves_its_pins_as_they_were() {
     assert_eq!(words(&outcome, "edge.Q"), "0 0 0 0 1 1");
 }
 
-/// A move of 3 scans, and what the trace shows of it with this drive.
+/// A move of 3 scans with this drive, and its trace.
 fn short_move(drive: &str) -> Outcome {
     runs(&format!(
         r#"{{"standstill": 1, "cycle": "T#1ms", "scans": 12, "inputs": {{"go": false}}, "steps": [{{"at": 1, "set": {{"go": true}}}}],

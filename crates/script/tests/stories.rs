@@ -27,7 +27,7 @@ fn trace(script: &str) -> Trace {
     jsonl::read(&text).expect("our own").trace
 }
 
-/// The story of the script and of what it is with `from` replaced.
+/// The story of the script and of a copy in which `from` is replaced.
 fn changed(from: &str, to: &str) -> Story {
     assert!(SCRIPT.contains(from), "{from}");
     told(&trace(SCRIPT), &trace(&SCRIPT.replace(from, to)))
@@ -219,7 +219,7 @@ fn a_cycle_and_a_length() {
 
 #[test]
 fn an_event_that_never_comes() {
-    // An output that one run does not raise, with nothing else to tell why.
+    // An output that one run does not raise, without any other evidence.
     let before = trace(SCRIPT);
     let done = before.column("back.Done").expect("there");
     let mut after = Trace::new(before.header().clone());
@@ -287,7 +287,7 @@ fn trace_of_program(source: &str) -> Trace {
         .trace
 }
 
-/// Where it began, after a change of the program.
+/// The line where the difference began, after a change of the program.
 fn line_of(from: &str, to: &str) -> Option<String> {
     assert!(CELL.contains(from), "{from}");
     let story = told(
@@ -299,7 +299,7 @@ fn line_of(from: &str, to: &str) -> Option<String> {
 
 #[test]
 fn the_line_of_a_program_whose_change_came_first() {
-    // Another value, written by the one statement there is.
+    // Another value, written by the only statement.
     assert_eq!(
         line_of("* 0.5", "* 0.25").unwrap(),
         "cell.Level in scan 0: 0.25 instead of 0.5, written at cell.st:19:1"
@@ -309,7 +309,7 @@ fn the_line_of_a_program_whose_change_came_first() {
         line_of("c.Value >= 10", "c.Value >= 8").unwrap(),
         "cell.State in scan 7: Ready instead of Feeding, written at cell.st:14:33"
     );
-    // What does not happen any more is told by where it happened.
+    // An event that no longer happens is reported by the place where it happened.
     assert_eq!(
         line_of("c.Value >= 10", "c.Value >= 12").unwrap(),
         "cell.State in scan 9: it stays Feeding; what was expected makes it Ready at cell.st:14:34"
@@ -318,7 +318,8 @@ fn the_line_of_a_program_whose_change_came_first() {
         line_of("IF NOT Go THEN", "IF FALSE THEN").unwrap(),
         "cell.State in scan 30: it stays Ready; what was expected makes it Idle at cell.st:16:5"
     );
-    // An array whose element is chosen at work, and an input that a call gives; the first line of several goes first.
+    // An array whose element is chosen at run time, and an input that a call gives; of several lines the first
+    // comes first.
     assert_eq!(
         line_of("i * 4", "i * 5").unwrap(),
         "cell.Marks[1] in scan 4: it stays FALSE; what was expected makes it TRUE at cell.st:20:20"

@@ -113,7 +113,7 @@ fn a_run_that_differs_names_scan_signal_and_values() {
     assert_eq!(folder.files(), ["x.exact", "x.scan.json", "x.snap"]);
 }
 
-/// What an upgrade may change without a machine noticing: an ULP of a set-point passes, a scan of an edge does not.
+/// A change by an upgrade that no machine notices: an ULP of a set-point passes, a scan of an edge does not.
 #[test]
 fn by_events_a_golden_admits_close_set_points_and_nothing_else() {
     let folder = Folder::new("by_events");
@@ -155,7 +155,7 @@ fn by_events_a_golden_admits_close_set_points_and_nothing_else() {
         relative: 1e-5,
     });
     assert!(judged_by(&path, Mode::Check, wider).passed());
-    // A scan later is another behaviour, however wide the tolerance.
+    // One scan later is another behaviour, for any tolerance.
     let late = script(10.0)
         .replace("\"pins\"", "\"task\": \"main\", \"pins\"")
         .replace(
@@ -170,7 +170,7 @@ fn by_events_a_golden_admits_close_set_points_and_nothing_else() {
     assert!(why.contains("m.Done    expected TRUE   found FALSE"), "{why}");
     assert!(why.contains("events: - golden, + this run\n"), "{why}");
     assert!(!why.contains("digest"), "only events are told: {why}");
-    // Accepting writes what a machine would notice.
+    // Accepting writes a change that a machine would notice.
     assert_eq!(judged_by(&path, Mode::Accept, wider).golden, Standing::Accepted);
     // Without its companion a golden has no set-points to compare with.
     fs::remove_file(folder.0.join("x.exact")).expect("it was written");
@@ -198,7 +198,7 @@ fn a_script_whose_claims_fail_gets_no_golden() {
     }
 }
 
-/// As cargo-insta accepts: the proposal becomes the snapshot, and nothing is done to the exact trace.
+/// This is how cargo-insta accepts: the proposal becomes the snapshot, and the exact trace is not changed.
 #[test]
 fn a_snapshot_accepted_elsewhere_gets_its_exact_trace_outside_ci() {
     let folder = Folder::new("insta");
@@ -293,7 +293,8 @@ fn the_scripts_of_the_suite_are_in_the_canonical_layout() {
     }
 }
 
-/// Goldens as version 1 wrote them, kept beside this test: they pass, with the command that renews them, and that renews them.
+/// Goldens as version 1 wrote them, kept beside this test. They pass and show the command that renews them. That
+/// command renews them.
 #[test]
 fn goldens_of_version_1_are_met_and_say_how_they_are_renewed() {
     let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/version_1");
@@ -332,7 +333,7 @@ fn goldens_of_version_1_are_met_and_say_how_they_are_renewed() {
     }
 }
 
-/// Makes each number below a node the use of a parameter.
+/// Replaces each number below a node by the use of a parameter.
 fn name_numbers(node: &mut Value, parameters: &mut Vec<(String, f64)>) {
     match node {
         Value::Number(number) => {
@@ -348,7 +349,7 @@ fn name_numbers(node: &mut Value, parameters: &mut Vec<(String, f64)>) {
     }
 }
 
-/// With every number of the axes of every script as a parameter, and again with every number of its blocks.
+/// Replaces every number of the axes of every script by a parameter, and then every number of its blocks.
 #[test]
 fn a_script_with_other_values_is_what_reading_it_with_them_gives() {
     let folder = Folder::new("other_values");
@@ -377,11 +378,11 @@ fn a_script_with_other_values_is_what_reading_it_with_them_gives() {
             .collect();
         let text = script.to_string();
         let path = folder.write("a.scan.json", &text);
-        // Scripts with files beside them are left out, and those with numbers that are no places of parameters.
+        // Scripts with files beside them are left out, and so are those with numbers that cannot be parameters.
         let Ok((texts, mut varied)) = Texts::read(&path, &Allowed::default()) else {
             continue;
         };
-        // What is compiled tells where it lies in memory.
+        // A compiled program contains its place in memory.
         if !varied.formulas.is_empty() {
             continue;
         }

@@ -4,7 +4,7 @@ use standstill_script::{Outcome, read, run};
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
-/// Two axes; X is on, Y is not. What is in `inputs`, `blocks`, `steps` and `expect` is the test's.
+/// Two axes; X is on, Y is not. The test gives `inputs`, `blocks`, `steps` and `expect`.
 fn outcome(inputs: &str, blocks: &str, steps: &str, expect: &str) -> Outcome {
     let text = format!(
         r#"{{"standstill": 1, "cycle": "T#1ms", "scans": 200, "inputs": {{{inputs}}},
@@ -117,8 +117,8 @@ fn a_number_from_an_expression_leads_to_the_block_it_goes_to() {
     assert!(all.contains("Position 8.0"), "{all}");
 }
 
-/// Blocks in a ring, each started by the one before it, over many scans: the walk back ends in time, and says nothing
-/// that is not so.
+/// Blocks in a ring over many scans; each is started by the one before it. The walk back ends in time and reports
+/// nothing untrue.
 fn ring(blocks: usize, scans: usize, claims: usize, claim: &str) -> Outcome {
     let mut all = String::new();
     for index in 0..blocks {
@@ -149,7 +149,7 @@ fn ring(blocks: usize, scans: usize, claims: usize, claim: &str) -> Outcome {
     run(&script).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Twenty claims, each at another place of a ring of 2,000 blocks: the walks end, together, in the time that a few runs take.
+/// Twenty claims, each at another place of a ring of 2,000 blocks: all walks together take the time of a few runs.
 #[test]
 fn a_ring_of_many_blocks_over_many_scans_is_walked_within_its_bound() {
     let timed = |claim: &str| {

@@ -6,10 +6,10 @@ use standstill_axis::{
     Anchor, CAM_ROWS_PER_CALL, Cam, CamHead, CamLaw, CamPiece, CamSelection, CamSlot, Cams, Place, Setpoint,
 };
 
-/// Number of moments of a stretch that are drawn.
+/// Number of points of a stretch that are drawn.
 const STEPS: u32 = 32;
 
-/// The place of a cam in its own numbers, without axes.
+/// A cam in its own numbers, without axes.
 const AS_IT_IS: CamLaw = CamLaw {
     master_scaling: 1.0,
     slave_scaling: 1.0,
@@ -80,17 +80,17 @@ impl Curve {
         }
     }
 
-    /// Where piece `index`, from 0, begins and ends (u of the master).
+    /// The begin and the end of piece `index`, from 0 (u of the master).
     #[must_use]
     pub fn ends_of(&self, index: usize) -> (f64, f64) {
         self.cam().ends_of(u16::try_from(index).unwrap_or(u16::MAX))
     }
 
-    /// The place of the slave for its master at `place` (u), and its derivatives by the master, as
-    /// position to snap.
+    /// The position of the slave for its master at `place` (u), and its derivatives by the master, as position to
+    /// snap.
     #[must_use]
     pub fn at(&self, place: f64) -> [f64; 5] {
-        // The origin is the first row, so that no rounding occurs on the way to it.
+        // The first row is the origin, so no rounding occurs there.
         let master = Place {
             position: place,
             ..Place::default()
@@ -105,8 +105,8 @@ impl Curve {
         [at.position, at.velocity, at.acceleration, at.jerk, at.snap]
     }
 
-    /// The whole cam, piece by piece: place of the master, of the slave, four derivatives. Where a
-    /// derivative jumps, two moments have the same place.
+    /// The whole cam, piece by piece: position of the master, of the slave, four derivatives. Where a derivative
+    /// jumps, two points have the same position.
     #[must_use]
     pub fn course(&self) -> Vec<[f64; 6]> {
         let pieces = 0..self.pieces.len();

@@ -10,13 +10,13 @@ use standstill_axis::{
 /// The cycle of axes that are not run (s): no property of a cam depends on it.
 const CYCLE: f64 = 1e-3;
 
-/// Samples of a stretch to find its worst place.
+/// Samples of a stretch in the search for its worst position.
 const LOOKS: u32 = 256;
 
 /// Values this close, relative to their size, are equal; the first one is reported.
 const SAME: f64 = 1e-9;
 
-/// Steps towards the worst place from the best sample.
+/// Steps towards the worst position from the best sample.
 const STEPS: u32 = 48;
 
 /// The axes that a cam is checked against.
@@ -26,9 +26,9 @@ pub struct Asked<'a> {
     pub slave: &'a Axis,
     /// The master, up to whose velocity limit the slave must follow.
     pub master: Option<&'a Axis>,
-    /// Behind its last row the cam goes on as at its first.
+    /// The cam continues with its first row after its last one.
     pub periodic: bool,
-    /// Places of the slave are those of the axis.
+    /// Positions of the slave are those of the axis.
     pub slave_absolute: bool,
 }
 
@@ -49,7 +49,7 @@ impl Limiting {
     /// All, by order of the derivative.
     pub const ALL: [Self; 4] = [Self::Velocity, Self::Acceleration, Self::Jerk, Self::Snap];
 
-    /// As limits are called.
+    /// The name of the limit.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -88,7 +88,7 @@ impl Limiting {
 /// A stretch of a cam, from one row to the next.
 #[derive(Clone, Copy, Debug)]
 pub struct Stretch {
-    /// Places of the master (u).
+    /// Positions of the master (u).
     pub ends: (f64, f64),
     /// IEC name of its law.
     pub law: &'static str,
@@ -96,8 +96,8 @@ pub struct Stretch {
     pub bounds: CamBounds,
     /// The highest constant velocity of the master on it (u/s).
     pub highest: f64,
-    /// The deciding limit, the place of the master where the derivative is largest, and its value there;
-    /// none for a stretch that does not move the slave.
+    /// The deciding limit, the position of the master where the derivative is largest, and its value there. None
+    /// for a stretch that does not move the slave.
     pub worst: Option<(Limiting, f64, f64)>,
 }
 
@@ -114,9 +114,9 @@ pub struct Finding {
     pub message: String,
     /// The value.
     pub value: f64,
-    /// The largest permitted value, or the limit it breaks.
+    /// The largest permitted value, or the exceeded limit.
     pub limit: f64,
-    /// What to do about it.
+    /// The remedy.
     pub remedy: String,
 }
 
@@ -127,20 +127,20 @@ pub struct Fit {
     pub curve: Curve,
     /// The number of derivatives that the slave needs to be continuous.
     pub needed: usize,
-    /// The number that are continuous, where the slave needs them.
+    /// The number of continuous derivatives, at the rows where the slave needs them.
     pub continuity: usize,
-    /// The rows, from 1, at which it comes to rest because a derivative jumps that its limits do not
-    /// permit to jump.
+    /// The rows, from 1, at which the slave comes to rest because a derivative jumps that its limits do not permit
+    /// to jump.
     pub stops_at: Vec<usize>,
-    /// Whether all places are inside its software limits, if it has some.
+    /// Whether all positions are inside the software limits of the slave, if it has some.
     pub inside: bool,
     /// The highest constant velocity of the master (u/s): MaxMasterVelocity.
     pub highest: f64,
-    /// From row to row.
+    /// One for each stretch from row to row.
     pub stretches: Vec<Stretch>,
     /// The faults; a cam without findings can be followed.
     pub findings: Vec<Finding>,
-    /// What MC_CamTableSelect would show.
+    /// The error that MC_CamTableSelect would show.
     pub refused: Option<ErrorId>,
 }
 
@@ -238,7 +238,7 @@ fn rough(table: &CamTable, curve: &Curve, fits: &CamFit, asked: Asked<'_>) -> Op
     })
 }
 
-/// It leaves the software limits of the slave.
+/// The cam leaves the software limits of the slave.
 fn outside(table: &CamTable, fits: &CamFit, asked: Asked<'_>) -> Option<Finding> {
     let (place, limit, error) = fits.outside?;
     let side = if place > limit { "upper" } else { "lower" };
@@ -305,7 +305,7 @@ fn stretch(curve: &Curve, index: usize, law: CamCurve, limits: &Limits) -> Stret
     }
 }
 
-/// The place of the largest magnitude of a derivative of this order in a stretch, and its value there.
+/// The position of the largest magnitude of a derivative of this order in a stretch, and its value there.
 fn largest(curve: &Curve, (from, to): (f64, f64), order: usize) -> (f64, f64) {
     let last = to.next_down();
     let value = |place: f64| {

@@ -39,7 +39,7 @@ impl Law {
         Self::Trapezoid,
     ];
 
-    /// As the command line calls it.
+    /// Its name on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -51,7 +51,7 @@ impl Law {
         }
     }
 
-    /// The first half of a law with sines, the second is its mirror; none of a polynomial.
+    /// The first half of a law with sines; the second half is its mirror. None for a polynomial.
     fn half(self) -> &'static [Part] {
         match self {
             Self::Sinoid => const { &[sine(0.5, 2.0 * PI, 0.0)] },
@@ -75,7 +75,8 @@ impl Law {
     }
 }
 
-/// The acceleration of a law up to a place, where its largest is 1: a sine of this frequency and phase, or 1 throughout.
+/// A part of a law's acceleration, up to a position; the largest acceleration is 1. It is a sine of this frequency
+/// and phase, or constantly 1.
 struct Part {
     until: f64,
     sine: Option<(f64, f64)>,
@@ -92,7 +93,7 @@ const fn sine(until: f64, frequency: f64, phase: f64) -> Part {
 type At = [f64; 4];
 
 impl Part {
-    /// Its value `way` behind `from`; the law had reached `before` there.
+    /// Its value at the distance `way` behind `from`; the law had reached `before` there.
     fn on(&self, from: f64, before: At, way: f64) -> At {
         let [y, v, ..] = before;
         match self.sine {
@@ -113,7 +114,7 @@ impl Part {
     }
 }
 
-/// The law at `x` in its first half, with a lift that is not scaled to 1 yet.
+/// The law at `x` in its first half, with a lift that is not yet scaled to 1.
 fn along(half: &[Part], x: f64) -> At {
     let (mut from, mut at) = (0.0, [0.0; 4]);
     for part in half {
@@ -127,16 +128,16 @@ fn along(half: &[Part], x: f64) -> At {
     at
 }
 
-/// Where a law begins and ends.
+/// The begin and the end of a law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lift {
-    /// First place of the master (u).
+    /// First position of the master (u).
     pub begin: f64,
-    /// Way of the master, above 0 (u).
+    /// Travel of the master, above 0 (u).
     pub width: f64,
-    /// First place of the slave (y).
+    /// First position of the slave (y).
     pub from: f64,
-    /// Way of the slave (y), in either direction.
+    /// Travel of the slave (y), in either direction.
     pub lift: f64,
 }
 
@@ -225,7 +226,7 @@ fn rows(law: Law, lift: &Lift) -> Result<Vec<(CamRow, CamCurve)>, String> {
 /// The rows of a law as a CSV file that `tables` reads.
 ///
 /// # Errors
-/// What of the lift is no good, with its value and what to do.
+/// The fault of the lift, with its value and the remedy.
 pub fn csv(law: Law, lift: &Lift) -> Result<String, String> {
     let rows = rows(law, lift)?;
     let mut text = format!(

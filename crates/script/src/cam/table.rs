@@ -13,7 +13,7 @@ const FIELDS: usize = 6;
 /// The rows of a cam, and their places in the text.
 #[derive(Clone, Debug)]
 pub struct CamTable {
-    /// What messages call it.
+    /// Its name in messages.
     pub name: String,
     /// The rows.
     pub rows: Vec<CamRow>,
@@ -34,7 +34,7 @@ pub enum CamError {
         place: String,
         /// The fault, without a full stop.
         message: String,
-        /// What to do about it.
+        /// The remedy.
         help: String,
     },
 }
@@ -165,7 +165,7 @@ impl CamTable {
         self.lines.get(row.checked_sub(1)?).copied()
     }
 
-    /// What messages about a row, from 1, begin with.
+    /// The begin of messages about a row, from 1.
     pub(super) fn place(&self, row: usize) -> String {
         match self.line(row) {
             Some(line) => format!("{}:{line}: row {row}", self.name),

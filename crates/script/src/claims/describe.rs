@@ -125,7 +125,7 @@ pub(super) fn axis_name<'a>(rows: &Rows<'a>, axis: usize) -> &'a str {
     rows.script.axes.get(axis).map_or("", |axis| &axis.name)
 }
 
-/// `3 to 5`, `at most 5`, as far as the bounds say so.
+/// `3 to 5`, `at most 5`; only for bounds that are given.
 pub(super) fn bounded(bounds: Bounds) -> String {
     match (bounds.ge, bounds.le) {
         (Some(ge), Some(le)) if ge == le => format!("exactly {ge}"),
@@ -212,8 +212,8 @@ fn comparison(rows: &Rows<'_>, signal: &Signal, comparison: &Comparison) -> Stri
     }
 }
 
-/// Whether a signal is an expression without a value in a scan, which counts as FALSE. Another failure of its claim says
-/// why it has none.
+/// Whether a signal is an expression without a value in a scan, which counts as FALSE. Another failure of its claim
+/// gives the reason.
 fn faulted(rows: &Rows<'_>, signal: &Signal, scan: u64) -> bool {
     let Signal::Formula(formula) = *signal else {
         return false;
@@ -221,7 +221,7 @@ fn faulted(rows: &Rows<'_>, signal: &Signal, scan: u64) -> bool {
     rows.truths.faults(formula).any(|(fault, _)| fault == scan)
 }
 
-/// The values a condition uses in a scan: `X.Velocity 50.1`, and the value it is compared with.
+/// The values that a condition uses in a scan: `X.Velocity 50.1`, and the value that it is compared with.
 pub(super) fn values(rows: &Rows<'_>, condition: &Condition, scan: u64) -> String {
     let text = |signal: &Signal| match rows.cell(signal, scan) {
         None => "nothing".to_owned(),

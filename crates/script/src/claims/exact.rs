@@ -43,7 +43,7 @@ impl Exact {
         if value < 0.0 { -Self(words) } else { Self(words) }
     }
 
-    /// So many times this.
+    /// This number, `by` times.
     pub(super) fn times(self, by: i64) -> Self {
         let mut words = [0; WORDS];
         let mut carry = 0;

@@ -1,4 +1,4 @@
-//! The claim that a slave is at the place that the law of a gear gives, judged on published positions
+//! The claim that a slave is at the position that the law of a gear gives. It is judged on published positions
 //! alone, to the bit.
 //!
 //! The law, rounded once, is y = c + s + (num/den)(m + phase), where s is the superimposed distance. The
@@ -8,9 +8,9 @@
 //! of c; if no value is left, a row is wrong. All of this uses integers ([`Exact`]), times 2 den, so
 //! nothing here is rounded, and no code is shared with the code that moves the axes.
 //!
-//! A master with turns is unwrapped from row to row by the shorter way round, because no axis goes half a
-//! turn in a scan. A slave with turns may differ from y by any whole number of them; a value that rounds
-//! to a whole turn is 0 of the next one.
+//! A master with turns is unwrapped from row to row in the shorter direction, because no axis moves half a turn in
+//! a scan. A slave with turns may differ from y by any whole number of them; a value that rounds to a whole turn is
+//! 0 of the next one.
 
 use super::exact::Exact;
 use super::judge::{Listed, failure};
@@ -31,7 +31,7 @@ struct Room {
 /// The law, as far as the rows define it so far.
 struct Law {
     room: Room,
-    /// Whole turns of the master since it is known.
+    /// Whole turns of the master since the begin of the law.
     turns: i64,
     /// Position of the master in the row before.
     master: f64,
@@ -41,12 +41,12 @@ struct Law {
 pub(super) struct Follows<'a> {
     during: &'a [Condition],
     follow: &'a Follow,
-    /// The first scan that was not read: a row is judged once the next one exists.
+    /// The first scan that was not read. A row is judged once the next one exists.
     next: u64,
     /// The anchor, until it is used.
     anchor: Option<[f64; 2]>,
     law: Option<Law>,
-    /// The first wrong row, the place of the slave in it, and the right place.
+    /// The first wrong row, the position of the slave in it, and the right position.
     first: Option<(u64, f64, String)>,
     broken: Listed,
 }
@@ -156,12 +156,12 @@ pub(super) fn judged<'a>(
     })
 }
 
-/// Its neighbours are numbers, too, and their products with turns are.
+/// Whether its neighbours are numbers, and their products with turns, too.
 fn is_usual(position: f64) -> bool {
     position.abs() < 1e300
 }
 
-/// The rows, and the law that they are compared with.
+/// The rows, and the law to which they are compared.
 struct Rules<'a> {
     rows: &'a Rows<'a>,
     follow: &'a Follow,
@@ -172,7 +172,7 @@ impl Rules<'_> {
         self.rows.script.axes.get(axis)?.config.modulo
     }
 
-    /// The coordinates of either axis moved in this scan.
+    /// Whether the coordinates of either axis were shifted in this scan.
     fn is_renamed(&self, scan: u64) -> bool {
         let shifts = self.rows.shifts;
         let first = shifts.partition_point(|shift| shift.scan < scan);
@@ -180,7 +180,7 @@ impl Rules<'_> {
         there.any(|shift| [self.follow.master, self.follow.slave].contains(&shift.axis))
     }
 
-    /// Whole turns that the master has made from one row to the next.
+    /// Whole turns of the master from one row to the next.
     fn turns_between(&self, before: f64, now: f64) -> i64 {
         match self.turn_of(self.follow.master) {
             Some(turn) if now - before > turn / 2.0 => -1,
@@ -189,7 +189,7 @@ impl Rules<'_> {
         }
     }
 
-    /// A number that the slave has in a row.
+    /// A number of the slave in a row.
     fn number(&self, number: AxisNumber, scan: u64) -> Exact {
         match self.rows.cell(&Signal::Axis(self.follow.slave, number), scan) {
             Some(Cell::Real(value)) if is_usual(value) => Exact::of(value),
@@ -197,8 +197,7 @@ impl Rules<'_> {
         }
     }
 
-    /// The place where the slave sees its master, times 2 num, and the superimposed distance, times 2
-    /// den.
+    /// The position at which the slave sees its master, times 2 num, and the superimposed distance, times 2 den.
     fn seen(&self, law: &Law, scan: u64) -> Exact {
         let phase = self.number(AxisNumber::Phase, scan);
         let superimposed = self.number(AxisNumber::Superimposed, scan);
@@ -207,7 +206,8 @@ impl Rules<'_> {
         seen.times(2 * i64::from(self.follow.num)) + superimposed.times(2 * i64::from(self.follow.den))
     }
 
-    /// The law from this row on: through the anchor, where the master was nearest to that, or through this row.
+    /// The law from this row on. It goes through the anchor at the master position nearest to it, or through this
+    /// row.
     fn begin(&self, anchor: Option<[f64; 2]>, master: f64, slave: f64, scan: u64) -> Law {
         let mut law = Law {
             room: Room {
@@ -238,19 +238,19 @@ impl Rules<'_> {
         value.times(2 * i64::from(self.follow.den))
     }
 
-    /// The range of c if the law is rounded to `slave`, this many turns of it further on.
+    /// The range of c if the law is rounded to `slave`, `turns` turns of the slave further on.
     fn room(&self, law: &Law, slave: f64, turns: i64, scan: u64) -> Room {
         let turn = self.turn_of(self.follow.slave);
         let den = i64::from(self.follow.den);
-        // Twice the middles between it and its neighbours. A value that rounds to a whole turn is 0 of
-        // the next one.
+        // Twice the midpoints between it and its neighbours. A value that rounds to a whole turn is 0 of the next
+        // one.
         let (below, even_below) = match turn {
             Some(turn) if slave == 0.0 => (Exact::of(turn.next_down()) - Exact::of(turn), is_even(turn)),
             _ => (Exact::of(slave.next_down()) + Exact::of(slave), is_even(slave)),
         };
         let above = Exact::of(slave) + Exact::of(slave.next_up());
         let at = self.widened(Exact::of(turn.unwrap_or(0.0)).times(turns)) - self.seen(law, scan);
-        // Of two that are equally near it is the even one; c is a whole number here.
+        // Of two equally near values the even one is taken; c is a whole number here.
         let open = |is_even: bool| if is_even { Exact::ZERO } else { Exact::LEAST };
         Room {
             least: below.times(den) + at + open(even_below),
@@ -258,8 +258,7 @@ impl Rules<'_> {
         }
     }
 
-    /// The rest of the range if the law is rounded to `slave` in this row, or the right place of the
-    /// slave.
+    /// The remaining range if the law is rounded to `slave` in this row, or the right position of the slave.
     fn narrowed(&self, law: &Law, slave: f64, scan: u64) -> Result<Room, f64> {
         let target = law.room.least + self.seen(law, scan);
         let whole = 2 * u64::from(self.follow.den);

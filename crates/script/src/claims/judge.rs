@@ -1,4 +1,4 @@
-//! Claims about single rows, judged while rows come. A judge's memory does not grow with the rows.
+//! Claims about single rows, judged as rows arrive. The memory of a judge does not grow with the rows.
 
 use super::place::{Stretch, within_run};
 use super::{Failure, Judge, describe};
@@ -7,7 +7,7 @@ use crate::run::Rows;
 use standstill_trace::Cell;
 use std::ops;
 
-/// Most scans that are named if a claim fails in several.
+/// Largest number of scans that are named if a claim fails in several.
 const SCANS_NAMED: usize = 5;
 
 /// All conditions hold in `scan`; each that does not is a failure of its own.
@@ -36,7 +36,7 @@ impl Judge for At<'_> {
             if stretch.next.contains(&self.scan) && !rows.holds(demand.condition, self.scan) {
                 demand.unmet = Some((self.scan, demand.values(rows, self.scan)));
             }
-            // If it held there is nothing to report.
+            // A claim that is fulfilled has nothing to report.
             if demand.unmet.is_some() || self.scan >= stretch.next.end {
                 demand.seek(rows, &stretch.next);
             }

@@ -1,10 +1,9 @@
 //! The claim that an axis stays within its limits, judged on published positions alone.
 //!
-//! A backward difference of order k over cycle^k is a mean of the k-th derivative, so where the continuous
-//! plan keeps a limit the difference keeps it too. The published positions are roundings of that plan. Each
-//! is taken to be off by at most one unit in the last place of the largest position P of the run (a move
-//! from far away towards 0 carries the rounding of where it began), and the k-th difference adds 2^k of
-//! them. So in every scan
+//! A backward difference of order k over cycle^k is a mean of the k-th derivative. So where the continuous plan
+//! keeps a limit, the difference keeps it too. The published positions are roundings of that plan. Each may be off
+//! by at most one unit in the last place of the largest position P of the run: a move from far away towards 0
+//! carries the rounding of its start. The k-th difference adds 2^k of these units. So in every scan
 //!
 //! ```text
 //! |d_k| <= limit_k * factor * (1 + 1e-9) + 2^k * ulp(P) / cycle^k
@@ -57,7 +56,7 @@ impl WithinLimits {
         }
     }
 
-    /// Those of an order that are outside at this unit.
+    /// The scans of an order that are outside at this unit.
     fn outside(&self, order: usize, unit: f64) -> Option<Broken> {
         let above = self.broken.get(order)?.range(unit.to_bits() + 1..);
         above.map(|(_, broken)| *broken).reduce(|one, other| Broken {
@@ -130,9 +129,9 @@ impl Judge for WithinLimits {
     }
 }
 
-/// The limits of d1 to d4 in a scan. While the speed falls the deceleration limit applies. If the
-/// velocity changes sign or begins, the larger one applies, because the difference is a mean over both.
-/// This may happen within a scan; its mean there is at most the change by one scan of acceleration.
+/// The limits of d1 to d4 in a scan. While the speed falls the deceleration limit applies. If the velocity begins
+/// or changes its sign, the larger limit applies, because the difference is a mean over both. The sign may change
+/// within a scan; its mean there is at most the change by one scan of acceleration.
 fn limits(rows: &Rows<'_>, axis: usize, derivatives: &Derivatives) -> [f64; 4] {
     let Some(axis) = rows.script.axes.get(axis) else {
         return [0.0; 4];

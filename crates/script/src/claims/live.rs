@@ -1,4 +1,4 @@
-//! Claims during the run: which are already decided, and how.
+//! Claims during the run: which ones are already decided, and how.
 //!
 //! A claim is decided in the scan after which no other can change its verdict. Only
 //! [`judge`](super::judge) gives the verdicts, at the end; this module predicts them.
@@ -7,25 +7,25 @@ use super::judge::raised;
 use crate::model::{Claim, ClaimKind, Range, Script, Window};
 use crate::run::Rows;
 
-/// Rows still to come decide.
+/// The state of a claim during the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
     /// Later rows decide.
     Open,
-    /// It holds, since this scan.
+    /// It is fulfilled since this scan.
     Held(u64),
-    /// It fails, since this scan.
+    /// It has failed since this scan.
     Failed(u64),
 }
 
 /// The state of the claims of a script after some scans.
 #[derive(Clone, Debug)]
 pub(crate) struct Standings {
-    /// Scans looked at.
+    /// Number of scans that were read.
     scans: u64,
     /// Per claim.
     all: Vec<Standing>,
-    /// Per claim how often its conditions held, for those that count.
+    /// For each claim the number of times its conditions held, if it counts them.
     times: Vec<u32>,
     ended: bool,
 }
@@ -40,7 +40,7 @@ impl Standings {
         }
     }
 
-    /// Reads the rows that have come; `over` says that no more will.
+    /// Reads the rows that have arrived; `over` means that no more will arrive.
     pub(crate) fn look(&mut self, rows: &Rows<'_>, over: bool) -> &[Standing] {
         while self.scans < rows.count() {
             let scan = self.scans;
@@ -74,13 +74,13 @@ fn after(rows: &Rows<'_>, claim: &Claim, scan: u64, times: &mut u32) -> Standing
     let inside = |range: &Range| range.from <= scan && range.to.is_none_or(|to| scan <= to);
     // A range that ends before it begins is judged at the end.
     let ends = |range: &Range| range.to == Some(scan) && range.from <= scan;
-    // A claim that may fail in every scan of its range, and holds when the range is over.
+    // A claim that may fail in every scan of its range, and is fulfilled at the end of the range.
     let unless = |range: &Range, fails: bool| match (fails, ends(range)) {
         (true, _) => Standing::Failed(scan),
         (false, true) => Standing::Held(scan),
         (false, false) => Standing::Open,
     };
-    // The scan where its range begins may be still to come.
+    // The first scan of its range may be still to come.
     if claim.window != Window::default() {
         return Standing::Open;
     }
@@ -114,8 +114,8 @@ fn after(rows: &Rows<'_>, claim: &Claim, scan: u64, times: &mut u32) -> Standing
         ClaimKind::Exclusive(range, points) => {
             unless(range, inside(range) && raised(rows, points, scan).len() > 1)
         }
-        // The resolution of positions depends on the largest one, which may be still to come. A row of
-        // `follows` is judged when the next one has come. The others are judged at the end.
+        // The resolution of positions depends on the largest one, which may be still to come. A row of `follows` is
+        // judged when the next one has arrived. The others are judged at the end.
         ClaimKind::WithinLimits { .. }
         | ClaimKind::Follows { .. }
         | ClaimKind::Answered { .. }

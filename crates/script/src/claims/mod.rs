@@ -22,33 +22,33 @@ use std::ops;
 pub struct Verdict {
     /// Path in the script, such as `expect[2]`.
     pub path: String,
-    /// Where it stands in the script.
+    /// Its place in the script.
     pub span: Span,
     /// The claim in one line; empty after [`Session::verdicts_untold`](crate::Session::verdicts_untold).
     pub says: String,
     /// The first and the last scan of the run that it covers.
     pub scans: Option<[u64; 2]>,
-    /// The scan in which a claim that needs only one came true.
+    /// The scan in which a claim that needs only one was fulfilled.
     pub held: Option<u64>,
-    /// What spoke against it; empty if it held.
+    /// The reasons against it; empty if it is fulfilled.
     pub failures: Vec<Failure>,
 }
 
 impl Verdict {
-    /// Whether the claim held.
+    /// Whether the claim is fulfilled.
     pub fn passed(&self) -> bool {
         self.failures.is_empty()
     }
 }
 
-/// One thing that speaks against a claim.
+/// One reason against a claim.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
     /// Path of the claim or of the condition in it, such as `expect[2].that.second.Done`.
     pub path: String,
     /// The scan it refers to; `None` if it is about the run as a whole.
     pub scan: Option<u64>,
-    /// The actual values, the expected ones, and the nearest scan in which it held.
+    /// The actual values, the expected ones, and the nearest scan in which the claim was fulfilled.
     pub text: String,
 }
 
@@ -67,8 +67,7 @@ pub(crate) fn judge(rows: &Rows<'_>) -> Vec<Verdict> {
     judges.verdicts(rows)
 }
 
-/// The judge of a kind of claim. It gets every row once, in order, and its memory does not grow with
-/// their number.
+/// The judge of a kind of claim. It receives every row once, in order. Its memory does not grow with their number.
 trait Judge {
     /// Reads the next rows. A few rows before them are still held, enough for every condition.
     fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch);
@@ -77,15 +76,15 @@ trait Judge {
     /// it covers.
     fn failures(&self, rows: &Rows<'_>, path: &str, range: Range) -> Vec<Failure>;
 
-    /// The scan in which a claim that needs only one came true.
+    /// The scan in which a claim that needs only one was fulfilled.
     fn held(&self) -> Option<u64> {
         None
     }
 }
 
-/// The claims of a script, judged while the rows of its run come.
+/// The claims of a script, judged as the rows of its run arrive.
 pub(crate) struct Judges<'a> {
-    /// Scans looked at.
+    /// Number of scans that were read.
     scans: u64,
     /// In file order.
     claims: Vec<Judged<'a>>,
@@ -219,8 +218,7 @@ impl Faults<'_> {
         self.asked = self.asked.take().or_else(|| of(&asked?));
     }
 
-    /// An expression without a value is a failure of its claim; in a step or a wire it is a failure by
-    /// itself.
+    /// An expression without a value is a failure of its claim. In a step or a wire it is a failure by itself.
     fn tell(&self, rows: &Rows<'_>, verdicts: &mut Vec<Verdict>) {
         let formula = self.formula;
         let verdict = self.claim.and_then(|claim| verdicts.get_mut(claim));

@@ -1,4 +1,4 @@
-//! The scans that a claim covers, found while rows come.
+//! The scans that a claim covers, found as rows arrive.
 
 use super::judge::beyond;
 use super::{Failure, judge};
@@ -9,9 +9,9 @@ use std::ops::{self, RangeInclusive};
 /// The scans that a claim covers, as far as the rows define them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
-    /// The first one; `None` while the condition that begins it has not held.
+    /// The first one; `None` before the condition that begins it has held.
     from: Option<u64>,
-    /// The last one; `None` is the end of the run, or while the condition that ends it has not held.
+    /// The last one; `None` is the end of the run, or until the condition that ends it has held.
     to: Option<u64>,
 }
 
@@ -36,7 +36,7 @@ impl Place {
         }
     }
 
-    /// These rows, and which of them are among the claim's scans.
+    /// The new rows, and which of them are among the claim's scans.
     pub(super) fn stretch(&self, next: ops::Range<u64>) -> Stretch {
         let end = self.to.map_or(next.end, |to| next.end.min(to.saturating_add(1)));
         let inside = match self.from {
@@ -69,9 +69,9 @@ impl Place {
 /// Rows that come one after the other.
 #[derive(Clone, Debug)]
 pub(super) struct Stretch {
-    /// Their scans; those before were looked at.
+    /// The new scans.
     pub(super) next: ops::Range<u64>,
-    /// Those of them that the claim speaks of.
+    /// Those of them that the claim covers.
     pub(super) inside: ops::Range<u64>,
     /// The first scan that the claim covers, once it is known.
     pub(super) from: Option<u64>,
@@ -79,7 +79,7 @@ pub(super) struct Stretch {
     pub(super) deadline: Option<u64>,
 }
 
-/// The scans that a claim names itself.
+/// The scans that the claim itself names.
 fn range(kind: &ClaimKind) -> Range {
     match kind {
         ClaimKind::At(scan, _) => Range {

@@ -92,11 +92,11 @@ fn may_rise(rows: &Rows<'_>, conditions: &[Condition], scans: &ops::Range<u64>) 
         .iter()
         .map(|condition| rows.same_since(condition))
         .max();
-    // What rises has changed; in row 0 there is nothing before it.
+    // Something that rises has changed; row 0 has no row before it.
     scans.start == 0 || since.unwrap_or(0) >= scans.start
 }
 
-/// After each rising, or the first, there is an answer in time.
+/// After each rising edge, or after the first, there is an answer in time.
 pub(super) struct Answered<'a> {
     during: &'a [Condition],
     when: &'a [Condition],
@@ -104,9 +104,9 @@ pub(super) struct Answered<'a> {
     that: &'a [Condition],
     only_first: bool,
     rose: bool,
-    /// Risings whose answer may still come in time: those of the last `within` scans.
+    /// Rising edges whose answer may still come in time: those of the last `within` scans.
     waiting: VecDeque<u64>,
-    /// The first rising without an answer, and how many more there are.
+    /// The first rising edge without an answer, and the number of further ones.
     unanswered: Option<(u64, u64)>,
     nearest: Nearest,
 }
@@ -172,7 +172,7 @@ impl Judge for Answered<'_> {
     }
 
     fn failures(&self, rows: &Rows<'_>, path: &str, _: Range) -> Vec<Failure> {
-        // A rising that still waits has no answer before the end of the run.
+        // A rising edge that still waits has no answer before the end of the run.
         let waiting = self.waiting.len() as u64;
         let (rose, more) = match (self.unanswered, self.waiting.front()) {
             (Some((rose, more)), _) => (rose, more + waiting),
@@ -248,16 +248,16 @@ impl Judge for NeverFor<'_> {
     }
 }
 
-/// The time from each rising of one thing, or the first, to the next of another.
+/// The time from each rising edge of one condition, or from the first, to the next one of another.
 pub(super) struct Duration<'a> {
     during: &'a [Condition],
     ends: &'a [Vec<Condition>; 2],
     bounds: Bounds,
     each: bool,
     rose: bool,
-    /// Risings that wait for the end: the first one, and those of the last `ge` scans.
+    /// Rising edges that wait for the end: the first one, and those of the last `ge` scans.
     waiting: VecDeque<u64>,
-    /// The first rising whose time is wrong, and its end.
+    /// The first rising edge whose time is wrong, and its end.
     wrong: Option<[u64; 2]>,
 }
 
@@ -279,8 +279,8 @@ impl<'a> Duration<'a> {
         }
     }
 
-    /// Drops those behind the first one that will not be too short at any end: if one of them is too
-    /// long, the first one is, too.
+    /// Drops the edges behind the first one that can no longer be too short. If one of them is too long, the first
+    /// one is, too.
     fn forget(&mut self, scan: u64) {
         let least = self.bounds.ge.unwrap_or(0);
         while self

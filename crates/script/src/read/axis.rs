@@ -23,7 +23,7 @@ impl Reader {
     }
 
     fn axis(&mut self, index: usize, key: &Key, node: &Node) -> Option<Axis> {
-        // Without limits no check below is possible, but the mistakes in its other keys still show.
+        // Without limits no check below is possible, but mistakes in the other keys are still reported.
         let mut config = AxisConfig::new(Limits::NONE);
         let good = self.keys(node, &keys::AXIS, &OTHERS, &mut config);
         let Json::Map(members) = &node.json else {
@@ -63,7 +63,7 @@ impl Reader {
         })
     }
 
-    /// The place of the state that an axis starts in among those in which it can.
+    /// The index of the start state of an axis among those that are permitted.
     pub(super) fn start_state(&mut self, node: &Node, names: &[&'static str]) -> Option<usize> {
         if let Json::Text(text) = &node.json
             && AxisState::ALL.iter().any(|state| state.name() == text)
@@ -81,7 +81,7 @@ impl Reader {
         names.iter().position(|known| *known == name)
     }
 
-    /// An axis that moves half a turn in a scan could have moved either way.
+    /// An axis that moves half a turn in a scan could have moved in either direction.
     fn check_turn(&mut self, axis: &Fields<'_>, config: &AxisConfig) -> Option<()> {
         let (Some(node), Some(length), Some(cycle_ns)) = (axis.get("modulo"), config.modulo, self.cycle_ns)
         else {

@@ -10,8 +10,8 @@ use crate::model::{Instance, Span, Task};
 use standstill_fb::{BlockInfo, Direction, Pin, PinType};
 use std::collections::BTreeMap;
 
-/// Whether a pin must be connected: in_outs that refer to something existing. Others have a variable of
-/// their own.
+/// Whether a pin must be connected. This is so for in_outs that refer to something existing. Others have a variable
+/// of their own.
 pub(crate) fn is_needed(pin: &Pin) -> bool {
     pin.direction == Direction::InOut && matches!(pin.ty, PinType::Axis(_))
 }
@@ -85,7 +85,7 @@ impl Reader {
                 );
                 good = false;
             }
-            // Of every pin of every case of a sweep: `format!` would take several times as long.
+            // This runs for every pin of every case of a sweep: `format!` would take several times as long.
             let what = [&quoted(pin.name), " (", pin.ty.iec_name(), ")"].concat();
             if !is_wire(node) {
                 let value = self.value(node, pin.ty, &what);

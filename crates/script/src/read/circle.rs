@@ -1,8 +1,8 @@
 //! Circles of wires.
 //!
-//! A wire reads its source at the time when its block is called. So a circle through a block's outputs is
-//! an ordinary feedback that takes a scan, and a circle of inputs that a variable or an output also feeds
-//! is a latch. A circle of inputs that nothing feeds is neither: it never gets a value.
+//! A wire reads its source at the time when its block is called. So a circle through the outputs of a block is an
+//! ordinary feedback that takes a scan. A circle of inputs that also read a variable or an output is a latch. A
+//! circle of inputs that read nothing else is neither: it never gets a value.
 
 use crate::error::{Code, Diagnostic};
 use crate::model::{Instance, Point, Span, Wire};
@@ -14,7 +14,7 @@ type Place = (usize, usize);
 /// The wired inputs, their sources, and the place of their name.
 pub(super) type Wires = BTreeMap<Place, (Vec<Point>, Span)>;
 
-/// What a wire reads.
+/// The points that a wire reads.
 pub(super) fn sources(wire: &Wire) -> Vec<Point> {
     match wire {
         Wire::From(point) | Wire::Not(point) => vec![*point],

@@ -188,7 +188,7 @@ impl Reader {
         }
     }
 
-    /// A number a numeric signal is compared with; TIME in nanoseconds.
+    /// A number to which a numeric signal is compared; TIME in nanoseconds.
     fn scalar(&mut self, node: &Node, kind: Kind, what: &str) -> Option<f64> {
         if let Some(variable) = self.variable_of(kind) {
             return self.variable_number(node, &variable, what);

@@ -85,7 +85,7 @@ impl Reader {
         let (setup, fields) = self.simulated(node, &keys::PLANT, PlantSetup::NONE, |setup| setup.switches)?;
         let cycle = self.cycle_ns? as f64 / 1e9;
         let setup = setup.with_gains(cycle);
-        // Its faults show when it is made.
+        // Its faults show when it is created.
         let made = Mechanism::new(setup.plant, 0.0, cycle)
             .and_then(|made| setup.stops.map_or(Ok(made), |stops| made.between(stops, cycle)))
             .and_then(|made| Servo::new(made, setup.gains, cycle));

@@ -169,7 +169,7 @@ impl Reader {
         }
     }
 
-    /// What follows what, and while what holds.
+    /// The law of a slave, and the conditions under which it holds.
     fn follows(&mut self, node: &Node) -> Option<(Follow, Conditions)> {
         let fields = self.fields(node, &shape::FOLLOWS)?;
         let what = shape::FOLLOWS.what;
@@ -204,7 +204,7 @@ impl Reader {
         Some((follow, during?))
     }
 
-    /// A position of the master, and the place of the slave then.
+    /// A position of the master, and the position of the slave then.
     fn anchor(&mut self, node: &Node) -> Option<[f64; 2]> {
         let fields = self.fields(node, &shape::ANCHOR)?;
         let master = self.require(&fields, "master", shape::ANCHOR.what);

@@ -12,13 +12,13 @@ use standstill_fb::{EnumInfo, PinType};
 use standstill_guest::{LoadError, Settings};
 use standstill_st::{self as st, Options, Reference, Source};
 
-/// Most expressions of a script; each has a page of memory of its own.
+/// Largest number of expressions of a script; each has a page of memory of its own.
 const FORMULAS_MAX: usize = 1000;
 
-/// What an expression begins with.
+/// The begin of an expression.
 const SIGN: char = '=';
 
-/// Where an expression stands.
+/// The use of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reads {
     /// In a wire: the value at the call of its block.
@@ -191,7 +191,7 @@ impl Reader {
         good.then_some(body)
     }
 
-    /// What an expression reads by this name.
+    /// The signal that an expression reads by this name.
     fn formula_signal(&mut self, path: &str, span: Span, reads: Reads) -> Option<(Signal, Kind)> {
         let (signal, kind) = self.signal(path, span)?;
         if let (Signal::Difference(..), Reads::Now) = (&signal, reads) {
@@ -240,7 +240,7 @@ impl Reader {
                 let variable = self.variable_of(kind)?;
                 match variable.elements() {
                     None => (variable.elementary().name().to_owned(), Vec::new()),
-                    // Those of the library are known.
+                    // Enumerations of the library are known.
                     Some(elements) if is_library(variable.type_name()) => {
                         (variable.type_name().to_owned(), elements.to_vec())
                     }
@@ -317,7 +317,7 @@ struct Declared {
     types: String,
     /// Types of the variables.
     declarations: Vec<String>,
-    /// Names and numbers of their elements, where they have some.
+    /// Signals, with names and numbers of their elements if they have some.
     inputs: Vec<(Signal, Vec<(String, i128)>)>,
     /// Their names in the script.
     paths: Vec<String>,
@@ -375,7 +375,7 @@ impl Place {
         Self { span, plain }
     }
 
-    /// A piece of the text behind its sign.
+    /// A part of the text behind its sign.
     fn of(self, start: usize, end: usize) -> Span {
         if !self.plain {
             return self.span;

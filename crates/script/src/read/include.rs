@@ -11,7 +11,7 @@ use crate::model::Span;
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, VecDeque};
 
-/// Most files of one script.
+/// Largest number of files of one script.
 pub(super) const FILES_MAX: usize = 64;
 
 /// The keys of a script that a machine file may have.
@@ -19,20 +19,20 @@ const SECTIONS: [&str; 5] = ["parameters", "axes", "inputs", "tasks", "blocks"];
 
 type Members = Vec<(Key, Node)>;
 
-/// The names of `override`, with their places, by the name in capitals; those of one name in their order.
+/// The names of `override`, with their places, by the name in capitals; entries of one name in their order.
 type Overrides = BTreeMap<String, VecDeque<(String, Span)>>;
 
 /// Returns the text of a file, named relative to the script's folder, or the reason why not.
 pub(super) type Load<'a> = &'a mut dyn FnMut(&str) -> Result<String, String>;
 
-/// The texts of a script. Places count on through all of them.
+/// The texts of a script. Places are counted through all of them.
 pub(super) struct Files<'a> {
     load: Load<'a>,
     /// The script first.
     pub(super) read: Vec<File>,
     /// Paths of `read` except the first, relative to the script's folder.
     paths: Vec<String>,
-    /// The files that lead to the one being read.
+    /// The chain of files that leads to the one being read.
     open: Vec<String>,
 }
 
@@ -225,8 +225,7 @@ impl Reader {
                     }
                 }
             }
-            // It has the wrong type, or is about to be laid over something that has: the reader reports
-            // it.
+            // It has the wrong type, or would be laid over something that has: the reader reports it.
             (there, json @ (Json::Map(_) | Json::List(_)))
                 if !matches!(there, Json::Map(_) | Json::List(_)) =>
             {
@@ -259,7 +258,7 @@ impl Reader {
     }
 }
 
-/// Places of entries by name, without regard to case.
+/// Indices of entries by name, without regard to case.
 #[derive(Default)]
 struct Places(BTreeMap<String, usize>);
 
@@ -273,7 +272,7 @@ impl Places {
         places
     }
 
-    /// The place of a name. A name without a place gets the place `free`.
+    /// The index of a name. A name without an index gets the index `free`.
     fn of(&mut self, name: &str, free: usize) -> Option<usize> {
         match self.0.entry(name.to_ascii_uppercase()) {
             Entry::Occupied(place) => Some(*place.get()),
@@ -297,7 +296,7 @@ fn name_of(node: &Node) -> Option<(&str, Span)> {
     }
 }
 
-/// Keys that are given replace those of the entry, pins one by one; the others stay.
+/// Keys of `by` replace those of the entry, pins one by one; the others stay.
 fn replace(entry: &mut Node, by: Node) {
     replace_members(entry, by, |key, there, node| match key {
         "pins" => replace_members(there, node, |_, pin, node| *pin = node),

@@ -10,7 +10,7 @@ use standstill_axis::keys::{Bounds, Holds, Key, Object};
 /// The name of a key in messages: with its object.
 fn called<T>(key: &Key<T>) -> String {
     match key.path.rsplit_once('.') {
-        // The place of an object in a list.
+        // The index of an object in a list.
         Some((above, name)) if above.ends_with(|last: char| last.is_ascii_digit()) => format!("`{name}`"),
         Some((above, name)) => format!("`{}.{name}`", above.rsplit('.').next().unwrap_or(above)),
         None => format!("`{}`", key.path),
@@ -67,7 +67,7 @@ impl Reader {
             Holds::Bool { set, .. } => set(to, self.boolean(node, &what())?),
             Holds::Word { words, set, .. } => set(to, self.word(node, key.path, &what(), words)?),
             Holds::Number { set, .. } => {
-                // In every case of a sweep, nearly all of them are in order and need no name.
+                // In a sweep nearly all of them are valid in every case and need no name.
                 let plain = self.plain_number(node).filter(|value| value.is_finite());
                 set(to, plain.or_else(|| self.finite(node, &what()))?);
             }
@@ -102,7 +102,7 @@ impl Reader {
         Some(())
     }
 
-    /// The place of a word among those that a key takes.
+    /// The index of a word among those that a key permits.
     fn word(&mut self, node: &Node, path: &str, what: &str, words: &[&'static str]) -> Option<usize> {
         if path == "state" {
             return self.start_state(node, words);
@@ -111,8 +111,8 @@ impl Reader {
         self.choice(node, what, &places)
     }
 
-    /// Refuses numbers and scans outside the ranges of their keys. An axis has its own messages for that,
-    /// a drive has not.
+    /// Refuses numbers and scans outside the ranges of their keys. An axis has its own messages for that; a drive
+    /// does not.
     pub(super) fn in_range<T>(&mut self, fields: &Fields<'_>, object: &Object<T>, of: &T) -> Option<()> {
         let mut good = Some(());
         for key in object.keys {

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 /// The version of the format that is read.
 pub(crate) const MAP_VERSION: u32 = 1;
 
-/// Most columns of a recording that are searched.
+/// Largest number of columns of a recording that are searched.
 pub(crate) const COLUMNS_MAX: i64 = 10_000;
 
 /// Units of a column of times.

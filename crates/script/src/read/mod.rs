@@ -1,9 +1,8 @@
 //! From text to a checked [`Script`].
 //!
-//! There are two passes over the parsed text. The first declares the names of axes, inputs and instances;
-//! the second reads the rest, so that a wire may refer to a block further down. Every function reports
-//! the errors it finds and continues, so that one run shows all errors. A script is returned only if
-//! there were none.
+//! There are two passes over the parsed text. The first declares the names of axes, inputs and instances. The
+//! second reads the rest, so that a wire may refer to a block further down. Every function reports the errors that
+//! it finds and continues, so that one run shows all errors. A script is returned only if there were none.
 
 pub(crate) mod axis;
 pub(crate) mod block;
@@ -45,23 +44,23 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use value::Fields;
 
-/// Most scans of one run; 10^7 are 2 h 46 min at 1 ms.
+/// Largest number of scans of one run; 10^7 are 2 h 46 min at 1 ms.
 pub const SCANS_MAX: u64 = 1_000_000_000;
 
-/// Most cells (rows times columns) of one run's trace.
+/// Largest number of cells (rows times columns) of one run's trace.
 pub const CELLS_MAX: u64 = 100_000_000;
 
-/// Most reads of rows by the conditions of a script's claims and steps, each in every scan: some minutes
-/// of computing.
+/// Largest number of reads of rows by the conditions of a script's claims and steps, each in every scan: some
+/// minutes of computing.
 pub const LOOKS_MAX: u64 = 10_000_000_000;
 
-/// Most slots of the store of cams, and most pieces; a million of those take 120 MB.
+/// Largest number of slots of the store of cams. The largest number of pieces is a million, which take 120 MB.
 pub const CAM_SLOTS_MOST: usize = 65_000;
 
 /// See [`CAM_SLOTS_MOST`].
 pub const CAM_PIECES_MOST: usize = 1_000_000;
 
-/// Most axes, inputs or instances of one script each: their numbers are 16 bits wide.
+/// Largest number of axes, inputs or instances of one script each: their numbers are 16 bits wide.
 pub const ENTITIES_MAX: usize = 65_000;
 
 /// The version of the format that is read.
@@ -76,22 +75,22 @@ struct Reader {
     task_places: BTreeMap<String, usize>,
     cycle_ns: Option<i64>,
     scan_count: Option<u64>,
-    /// The drives of the axes, where they could be read, and whether they count increments.
+    /// The drives of the axes, if they could be read, and whether they count increments.
     drives: Vec<Option<(DriveSetup, bool)>>,
     /// The wires read so far.
     wires: circle::Wires,
     /// The numbers of the tables read so far.
     tables: Vec<f64>,
-    /// Those of the script by name; none for a table that was refused.
+    /// The script's tables by name; none for a table that was refused.
     named_tables: BTreeMap<String, (Option<TableRef>, TableInfo)>,
     /// The guest programs read so far.
     programs: Vec<Option<Program>>,
     terms: Terms,
-    /// Names may be missing because of another mistake, so an unknown name is no evidence.
+    /// Some names may be missing because of another mistake, so an unknown name is no evidence.
     lacks_names: bool,
     /// The script's folder, with the `/` behind it; empty if none.
     folder: String,
-    /// The axes as the script has them.
+    /// The names of the axes as the script spells them.
     axis_names: Vec<String>,
     /// Those at a `Slave` pin.
     slaves: BTreeMap<usize, usize>,
@@ -101,31 +100,29 @@ struct Reader {
     on_cams: BTreeSet<usize>,
     /// The expressions read so far.
     formulas: Vec<Formula>,
-    /// What is wrong with sources in Structured Text.
+    /// Faults of sources in Structured Text.
     reports: Vec<standstill_st::Report>,
     errors: Vec<Diagnostic>,
 }
 
 /// Reads a scan script.
 ///
-/// `file_name` is used in messages only. `overrides` replace values of the script's parameters; the last
-/// one of a name counts. A byte order mark and CRLF are accepted. The work is bounded by the length of
-/// the text.
+/// `file_name` is used in messages only. `overrides` replace values of the script's parameters; the last one of a
+/// name counts. A byte order mark and CRLF are accepted. The work is bounded by the length of the text.
 ///
 /// # Errors
-/// [`ScriptError`] with everything that is wrong; after a syntax error only that.
+/// [`ScriptError`] with all faults; after a syntax error only that one.
 pub fn read(text: &str, file_name: &str, overrides: &[(String, f64)]) -> Result<Script, ScriptError> {
     read_with(text, file_name, overrides, &mut |_| {
         Err("there are no files here".to_owned())
     })
 }
 
-/// As [`read`], for a script that may include machine files. `load` returns the text of a file, named
-/// relative to the script's folder, or the reason why not. It is called once for each file, and for at
-/// most 63.
+/// The same as [`read`], for a script that may include machine files. `load` returns the text of a file, named
+/// relative to the script's folder, or the reason why not. It is called once for each file, and for at most 63.
 ///
 /// # Errors
-/// As [`read`]; messages about an included file name that file.
+/// Those of [`read`]; messages about an included file name that file.
 pub fn read_with(
     text: &str,
     file_name: &str,
@@ -137,11 +134,11 @@ pub fn read_with(
     })
 }
 
-/// As [`read_with`], for a script that may have guest programs. `guest` returns the bytes of one, named
+/// The same as [`read_with`], for a script that may have guest programs. `guest` returns the bytes of one, named
 /// relative to the script's folder, or the reason why not. Together they may have [`GUEST_MEMORY`].
 ///
 /// # Errors
-/// As [`read_with`].
+/// Those of [`read_with`].
 pub fn read_with_programs(
     text: &str,
     file_name: &str,
@@ -159,8 +156,7 @@ pub(crate) struct Terms {
     pub guest_memory: u64,
     /// Whether programs in Structured Text count their statements.
     pub coverage: bool,
-    /// Whether the rows of the run are dropped on the way, so that they may be more than the cells of one
-    /// trace.
+    /// Whether the rows of the run are dropped on the way. There may then be more cells than one trace can have.
     pub long: bool,
 }
 
@@ -174,7 +170,7 @@ impl Default for Terms {
     }
 }
 
-/// As [`read_with_programs`], under other conditions.
+/// The same as [`read_with_programs`], under other conditions.
 ///
 /// # Errors
 /// As [`read_with`].
@@ -281,7 +277,7 @@ impl Reader {
         guest: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
     ) -> Option<Script> {
         let fields = self.fields(root, &shape::SCRIPT)?;
-        // A missing key is not the only one.
+        // There may be other faults beside a missing key.
         if self.version(&fields, "a script").is_none() && fields.get("standstill").is_some() {
             return None;
         }
@@ -457,7 +453,7 @@ impl Reader {
         None
     }
 
-    /// Removes the consequences of other mistakes: unknown names, if some names could not be read.
+    /// Removes errors that follow from other mistakes: unknown names, if some names could not be read.
     fn leave_out_what_follows(&mut self) {
         let follows = |error: &Diagnostic| matches!(error.code, Code::UnknownSignal | Code::UnknownAxis);
         if self.lacks_names && !self.errors.iter().all(follows) {
@@ -557,7 +553,7 @@ impl Reader {
         }
     }
 
-    /// The most masters that a block of the script gives an axis.
+    /// The largest number of masters that a block of the script gives an axis.
     fn masters_of(&self, axis: usize) -> usize {
         self.slaves.get(&axis).copied().unwrap_or(0)
     }
@@ -580,7 +576,7 @@ impl Reader {
         slots.zip(pieces)
     }
 
-    /// It has a master, and motions may be superimposed on it.
+    /// Whether it has a master, and motions may be superimposed on it.
     fn is_superimposed(&self, axis: usize) -> bool {
         self.masters_of(axis) > 0 && self.superimposed.contains(&axis)
     }
@@ -658,7 +654,7 @@ impl Reader {
         inputs.into_iter().collect()
     }
 
-    /// Whether the author says that this item may test nothing.
+    /// Whether the author permits this item to test nothing.
     fn may_be_vacuous(&mut self, fields: &Fields<'_>) -> bool {
         fields
             .get("vacuous")
@@ -743,7 +739,7 @@ impl Reader {
     }
 }
 
-/// What `clamps` may say.
+/// The permitted values of `clamps`.
 pub(crate) const CLAMPS: [(&str, bool); 1] = [("expected", true)];
 
 /// The initial value of an input variable that is declared by an object.
@@ -755,7 +751,7 @@ fn initial_of(node: &Node) -> Option<&Node> {
     members.find(|(key, _)| key.text == "value").map(|(_, node)| node)
 }
 
-/// The note of a map of names, which is not a name. By the contract any object may have one.
+/// Whether this is the note of a map of names, which is not a name. By the contract any object may have one.
 fn is_note(key: &Key, node: &Node) -> bool {
     key.text == "note" && matches!(node.json, Json::Text(_))
 }

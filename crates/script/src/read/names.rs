@@ -1,9 +1,9 @@
-//! Names: which are legal, what they refer to, and which was probably meant.
+//! Names: which are permitted, what they refer to, and which one was probably meant.
 
 use standstill_fb::{BlockInfo, PinType};
 use std::collections::BTreeMap;
 
-/// Keywords of IEC 61131-3 and the elementary type names, which no axis, input or instance may be called; in order.
+/// Keywords of IEC 61131-3 and the elementary type names, sorted. No axis, input or instance may have such a name.
 pub(crate) const KEYWORDS: &[&str] = &[
     "ABSTRACT",
     "ACTION",
@@ -217,8 +217,8 @@ fn nearest_of(name: &str, candidates: &[&str]) -> Option<String> {
     if length > NAME_WITH_SLIPS {
         return None;
     }
-    // One wrong letter in three still allows a guess, also one in a word of less than three letters. A
-    // single letter that differs allows none.
+    // One wrong letter in three still gives a guess; so does one in a word of less than three letters. A different
+    // single letter gives none.
     let slips = if length < 2 { 0 } else { (length / 3).max(1) };
     candidates
         .iter()

@@ -11,20 +11,20 @@ use crate::model::{Claim, ClaimKind, Condition, Place, Program, Range, Signal, S
 use standstill_fb::{PinType, Value};
 use standstill_guest::{INSTANCES_MOST, LoadError, Settings, SymbolType};
 
-/// Whether programs and expressions are run. If not, none is compiled either, so that a build without
-/// them does not contain the compiler.
+/// Whether programs and expressions are run. If not, none is compiled, so that a build without them does not
+/// contain the compiler.
 pub(super) const ARE_RUN: bool = cfg!(feature = "guest");
 
-/// Most guest programs of a script; their instances have numbers of 16 bits with those of the script.
+/// Largest number of guest programs of a script. Their instances share numbers of 16 bits with those of the script.
 pub(crate) const PROGRAMS_MAX: usize = 16;
 
-/// Most variables of a program that are signals.
+/// Largest number of variables of a program that are signals.
 const SYMBOLS_MAX: usize = 256;
 
-/// Most fuel of a call.
+/// Largest fuel of a call.
 pub(crate) const FUEL_MAX: i64 = 1_000_000_000;
 
-/// Most bytes of memory: the range of 32 bits.
+/// Largest number of bytes of memory: the range of 32 bits.
 pub(crate) const MEMORY_MAX: i64 = 1 << 32;
 
 /// Memory that all guest programs of a script may have together unless the caller allows more (bytes).
@@ -79,8 +79,8 @@ impl Reader {
         self.programs.iter().all(Option::is_some).then_some(())
     }
 
-    /// The memory of a program that does not say how much it needs (bytes): the usual amount, or an equal
-    /// share of the rest. All together may have no more than the caller allows.
+    /// The memory of a program that does not state its need (bytes): the usual amount, or an equal share of the
+    /// rest. All together may have no more than the caller permits.
     fn memory_share(&mut self, members: &Fields<'_>, node: &Node) -> Option<u64> {
         let said = |node: &Node| match &node.json {
             Json::Map(inner) => inner

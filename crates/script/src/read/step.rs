@@ -272,7 +272,7 @@ impl Reader {
         })
     }
 
-    /// The value a drive reports instead of the measured one.
+    /// The value that a drive reports instead of the measured one.
     fn drive_report(&mut self, node: &Node, axis: Option<usize>) -> Option<Vec<DriveChange>> {
         let fields = self.fields(node, &shape::DRIVE_REPORT)?;
         let drive = axis.and_then(|axis| self.drives.get(axis).copied().flatten());

@@ -18,7 +18,7 @@ pub(crate) const SCALES: [(&str, Scale); 2] = [("linear", Scale::Linear), ("log"
 /// `file_name` is used in messages only. The work is bounded by the length of the text.
 ///
 /// # Errors
-/// [`ScriptError`] with everything that is wrong; after a syntax error only that.
+/// [`ScriptError`] with all faults; after a syntax error only that one.
 pub fn read_sweep(text: &str, file_name: &str) -> Result<Sweep, ScriptError> {
     let plain = without_mark(text);
     let error = |diagnostics| ScriptError::new(file_name, plain, diagnostics);

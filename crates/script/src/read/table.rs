@@ -12,7 +12,7 @@ use standstill_fb::{TableInfo, TableRef, Value};
 use standstill_trace::printable;
 
 impl Reader {
-    /// The records at a pin of a table's type; they join the numbers of all tables.
+    /// The records at a pin of a table's type; they are appended to the numbers of all tables.
     pub(super) fn table(&mut self, node: &Node, info: TableInfo, what: &str) -> Option<TableRef> {
         if let Json::Map(_) = &node.json {
             return self.named_table(node, info, what);
@@ -118,7 +118,7 @@ impl Reader {
         }
     }
 
-    /// Records join the numbers of all tables.
+    /// Appends records to the numbers of all tables.
     fn placed(&mut self, records: Vec<Vec<f64>>) -> Option<TableRef> {
         let place = TableRef {
             first: u32::try_from(self.tables.len()).ok()?,

@@ -13,20 +13,19 @@ use standstill_guest::Settings;
 use standstill_st::{self as st, Compiled, Options, Source, Symbols};
 use std::sync::Arc;
 
-/// A program that counts its statements has at least this many times the fuel: counting one takes six
-/// instructions.
+/// Factor on the fuel of a program that counts its statements: counting one takes six instructions.
 const COUNTING: u64 = 16;
 
-/// Most files of a program.
+/// Largest number of files of a program.
 const FILES_MAX: usize = 64;
 
-/// Most variables of a program that are columns.
+/// Largest number of variables of a program that are columns.
 const COLUMNS_MAX: usize = 4096;
 
-/// Most instances of blocks whose names are known; a guest has fewer.
+/// Largest number of instances of blocks whose names are known; a guest has fewer.
 const BLOCKS_MAX: usize = 4096;
 
-/// Most variables that are searched for a suggestion.
+/// Largest number of variables that are searched for a suggestion.
 const GUESSES_MAX: usize = 2000;
 
 /// Without a byte order mark.
@@ -35,7 +34,7 @@ fn text(bytes: &[u8]) -> String {
     text.strip_prefix('\u{FEFF}').unwrap_or(&text).to_owned()
 }
 
-/// The warnings of a report. A warning about other compilers is no doubt about this run.
+/// The warnings of a report. A warning about other compilers says nothing about this run.
 fn doubtful(report: &st::Report) -> Vec<Doubt> {
     let each = report.diagnostics().iter();
     let each = each.filter(|it| it.code != st::Code::Portability);
@@ -233,7 +232,7 @@ impl Reader {
         Some(columns)
     }
 
-    /// The variable of a program in Structured Text at a path. It becomes a column if it is none yet.
+    /// The variable of a program in Structured Text at a path. It becomes a column if it is not one yet.
     pub(super) fn variable_point(
         &mut self,
         index: usize,
@@ -289,8 +288,8 @@ impl Reader {
         self.report(diagnostic);
     }
 
-    /// When the programs run: the tasks of a CONFIGURATION become the script's, and its programs without one run after
-    /// all of them.
+    /// The times at which the programs run. The tasks of a CONFIGURATION become tasks of the script, and its
+    /// programs without one run after all of them.
     pub(super) fn program_calls(&mut self, fields: &Fields<'_>, tasks: &mut Option<Vec<Task>>) {
         let Some(Json::Map(members)) = fields.get("programs").map(|node| &node.json) else {
             return;
@@ -379,7 +378,7 @@ impl Reader {
         let nobody =
             fields.get("tasks").is_none() && matches!(blocks, Some(Json::List(items)) if items.is_empty());
         if nobody && there.interval == Some(1) {
-            // The predefined task, in which nothing of the script runs.
+            // The predefined task; it has no part of the script.
             there.interval = interval;
             return Some(place);
         }
@@ -408,8 +407,7 @@ pub(super) fn fault_symbol() -> Symbol {
     }
 }
 
-/// A variable as a signal. If the runtime's own has the same name, the variable is named by its whole
-/// path.
+/// A variable as a signal. If the runtime's own signal has the same name, the variable is named by its whole path.
 fn column(symbols: &Symbols, symbol: &st::Symbol) -> Symbol {
     let short = symbols.short(&symbol.path);
     let own = short.eq_ignore_ascii_case(FAULT);

@@ -229,7 +229,7 @@ impl Reader {
         value
     }
 
-    /// A number of the configuration: NaN and infinities are not permitted there.
+    /// A number of the configuration: NaN and infinities are not permitted.
     pub(super) fn finite(&mut self, node: &Node, what: &str) -> Option<f64> {
         let value = self.number(node, what)?;
         if value.is_finite() {

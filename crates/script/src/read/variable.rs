@@ -133,7 +133,8 @@ impl Reader {
         }
     }
 
-    /// A number that a variable of up to 32 bits, or of a time, is compared with, rounded to its type; a time in ns.
+    /// A number to which a variable of up to 32 bits, or of a time, is compared. It is rounded to the variable's
+    /// type; a time in ns.
     pub(super) fn variable_number(&mut self, node: &Node, variable: &Variable, what: &str) -> Option<f64> {
         match variable.elementary() {
             Elementary::Time | Elementary::Ltime => self.duration(node, what).map(|ns| ns as f64),

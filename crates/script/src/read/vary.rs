@@ -1,4 +1,4 @@
-//! Other values of a script's parameters, without reading all of it again.
+//! Other values of a script's parameters, without reading the whole script again.
 
 use super::json::{Json, Node};
 use super::value::Fields;
@@ -7,7 +7,7 @@ use crate::model::Script;
 use std::collections::BTreeSet;
 
 impl Parsed {
-    /// The names of the parameters that are used elsewhere than in `axes`.
+    /// The names of the parameters that are used outside `axes`.
     pub(crate) fn parameters_beside_axes(&self) -> BTreeSet<String> {
         let mut names = BTreeSet::new();
         if let Json::Map(members) = &self.root.json {
@@ -17,9 +17,9 @@ impl Parsed {
         names
     }
 
-    /// Gives `script`, which was read from this text, other values of parameters that are used in its axes only. Whatever else
-    /// looks at an axis looks at which keys it has, not at its numbers, so nothing else changes. FALSE if something is wrong
-    /// with these values; `script` is then of no use until it gets others.
+    /// Gives `script`, which was read from this text, other values of parameters that are used in its axes only.
+    /// The rest of the script depends on the keys of an axis and not on its numbers, so nothing else changes.
+    /// Returns FALSE if these values are invalid; `script` is then unusable until it gets valid ones.
     pub(crate) fn vary_axes(&self, script: &mut Script, parameters: &[(String, f64)]) -> bool {
         let Json::Map(members) = &self.root.json else {
             return false;

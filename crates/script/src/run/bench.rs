@@ -33,7 +33,7 @@ pub(crate) fn instance_id(index: usize) -> InstanceId {
 pub(crate) fn machine(script: &Script) -> Result<ScriptMachine, RunError> {
     let mut machine = Machine::new();
     machine.tables_mut().clone_from(&script.tables);
-    // Nobody else puts a cam there.
+    // No other block puts a cam there.
     let selects = script
         .blocks
         .iter()
@@ -79,7 +79,7 @@ fn fail(axis: usize, kind: FaultKind, code: u16, time: ScanTime, machine: &mut S
 /// The instances of a task, and its calls of guest programs: the program, and the number of the call.
 type OfTask = (Vec<usize>, Vec<(usize, usize)>);
 
-/// What runs in each task, and then what runs without one.
+/// The instances and calls of each task; the last entry is for those without a task.
 fn by_task(script: &Script) -> Vec<OfTask> {
     let mut tasks = vec![(Vec::new(), Vec::new()); script.tasks.len() + 1];
     let called = script.blocks.iter().enumerate();
@@ -102,7 +102,7 @@ fn by_task(script: &Script) -> Vec<OfTask> {
 /// The reason why the resource stops if an expression fails.
 const WIRE_FAULT: &str = "an expression in a wire has no value";
 
-/// The values of an axis that expressions see.
+/// The values of an axis that expressions read.
 fn reading(axis: &Axis<Standard>) -> Reading {
     Reading {
         state: axis.state(),
@@ -126,18 +126,18 @@ fn variable(script: &Script, point: Point) -> Option<&Variable> {
         .as_ref()
 }
 
-/// A script at work.
+/// A script that is running.
 pub(crate) struct Bench<'a> {
     script: &'a Script,
     layout: Arc<Layout>,
     values: Values,
-    /// What runs in each task, and then what runs without one, in file order.
+    /// The instances and calls of each task, then those without one, in file order.
     tasks: Vec<OfTask>,
     writer: RowWriter,
     schedule: Schedule,
-    /// Whether the programs rest; none if they may do something new in any scan.
+    /// Whether the programs are idle; none if they may do something new in any scan.
     rest: Option<Rest>,
-    /// While they were taken to rest something happened that nobody could foresee.
+    /// An event occurred that could not be foreseen, while the programs were assumed to be idle.
     rest_broken: bool,
     /// Axis states after all blocks were called, before the motion step.
     states: Vec<AxisState>,
@@ -145,16 +145,16 @@ pub(crate) struct Bench<'a> {
     guests: Guests,
     formulas: Formulas,
     truths: Truths,
-    /// The values of the axes that expressions in a task's wire see: as latched.
+    /// The values of the axes that expressions in a task's wire read: those latched.
     readings: Vec<Reading>,
     /// The current scan.
     time: ScanTime,
     trace: Trace,
     /// The columns of a whole trace.
     columns: usize,
-    /// The moves of coordinates, for differences of positions.
+    /// The shifts of coordinates, for differences of positions.
     shifts: Vec<Shift>,
-    /// The places of the cams that axes are on.
+    /// The positions of the cams that axes are on.
     cams: Cams,
     /// The values that the next latch writes after its steps.
     changes: Vec<(Point, Value)>,
@@ -225,7 +225,7 @@ impl<'a> Bench<'a> {
         self.guests.counted(self.script)
     }
 
-    /// Whether a guest program has had a fault, or an expression in a wire.
+    /// Whether a guest program, or an expression in a wire, has had a fault.
     pub(crate) fn has_fault(&self) -> bool {
         self.guests.has_fault() || self.wire_fault
     }
@@ -287,8 +287,7 @@ impl<'a> Bench<'a> {
         self.values.read(point)
     }
 
-    /// The next latch makes an axis or its drive fail, after its steps; without a fault it removes the
-    /// cause.
+    /// Makes an axis or its drive fail at the next latch, after its steps. Without a fault it removes the cause.
     pub(crate) fn fail(&mut self, axis: usize, fault: Option<(FaultKind, u16)>) {
         self.faults.push(match fault {
             Some((kind, code)) => Action::Fault { axis, kind, code },
@@ -296,7 +295,7 @@ impl<'a> Bench<'a> {
         });
     }
 
-    /// The next latch writes a value, after its steps.
+    /// Writes a value at the next latch, after its steps.
     pub(crate) fn change(&mut self, point: Point, value: Value) {
         self.changes.push((point, value));
     }
@@ -306,7 +305,7 @@ impl<'a> Bench<'a> {
         (self.trace, self.shifts, self.truths)
     }
 
-    /// What the run keeps of its rows.
+    /// The data that the run keeps of its rows.
     pub(crate) fn into_kept(self) -> Kept {
         Kept {
             layout: self.layout,
@@ -325,7 +324,7 @@ impl<'a> Bench<'a> {
         self.shifts.drain(..old);
     }
 
-    /// How many scans after the last one, `scan`, the programs would rest, as far as is known.
+    /// Number of scans after the last one, `scan`, in which the programs would be idle, as far as is known.
     pub(crate) fn rests_after(&mut self, scan: u64, machine: &ScriptMachine) -> u64 {
         let Some(rest) = &mut self.rest else { return 0 };
         let is_disturbed = !self.faults.is_empty() || !self.changes.is_empty();
@@ -336,19 +335,19 @@ impl<'a> Bench<'a> {
         self.schedule.free_from(scan + 1).min(left)
     }
 
-    /// So many scans were done without the programs.
+    /// Counts scans that were done without the programs.
     pub(crate) fn went_on(&mut self, scans: u64) {
         if let Some(rest) = &mut self.rest {
             rest.went_on(scans);
         }
     }
 
-    /// Whether all axes rest.
+    /// Whether all axes are at rest and have no command to process.
     pub(crate) fn is_still(&self) -> bool {
         self.rest.as_ref().is_some_and(Rest::is_still)
     }
 
-    /// How many of the next scans could be left to the axes, without their drives.
+    /// Number of the next scans that the axes can do alone, without their drives.
     pub(crate) fn moves_alone(&self, machine: &ScriptMachine) -> u64 {
         let shown = (0..self.script.axes.len()).any(|axis| {
             let column = self.layout.number(axis, AxisNumber::ActualPosition);
@@ -361,25 +360,25 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// The axes go on by themselves for so many scans, of which `first` is the first.
+    /// Advances the axes alone for `scans` scans; `first` is the first of them.
     pub(crate) fn go_along(&mut self, scans: u64, first: ScanTime, machine: &mut ScriptMachine) {
         let scans = usize::try_from(scans).unwrap_or_default();
         self.writer.write_along(scans, first, machine, &mut self.trace);
-        // Nothing mends what drives would report of another scan.
+        // The reports of drives for another scan cannot be corrected.
         self.rest_broken |= !self.rest.as_ref().is_some_and(|rest| rest.lasts(machine));
     }
 
-    /// Adds rows that are all as the last one.
+    /// Adds rows that are equal to the last one.
     pub(crate) fn repeat_row(&mut self, scans: u64) {
         self.trace.push_next(usize::try_from(scans).unwrap_or_default());
     }
 
-    /// Whether something has happened in scans without the programs that they should have seen.
+    /// Whether an event occurred in scans without the programs that they should have processed.
     pub(crate) const fn is_rest_broken(&self) -> bool {
         self.rest_broken
     }
 
-    /// Makes room for `scans` more rows.
+    /// Reserves memory for `scans` more rows.
     pub(crate) fn reserve(&mut self, scans: usize) {
         self.trace.reserve(scans);
     }
@@ -446,7 +445,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Looks for what expressions, steps and the end of the run wait for on the row of a scan.
+    /// Evaluates what expressions, steps and the end of the run need from the row of a scan.
     fn watch_row(&mut self, scan: u64) {
         let script = self.script;
         if script.formulas.is_empty() && script.stop_when.is_none() && !self.schedule.watches() {
@@ -479,7 +478,7 @@ impl<'a> Bench<'a> {
         self.truths = truths;
     }
 
-    /// Feeds the wired inputs of an instance, in pin order.
+    /// Writes the wired inputs of an instance, in pin order.
     fn feed(&mut self, instance: usize, wires: &[(usize, Wire)], scan: u64) {
         for (pin, wire) in wires {
             let value = self.values.wire(wire);
@@ -548,7 +547,7 @@ impl Programs<Standard, ScriptDrive> for Bench<'_> {
         let readings = std::mem::take(&mut self.readings);
         let computed = self.compute(single, self.time, &|axis| readings.get(axis).copied());
         self.readings = readings;
-        // A fault here stops the resource with the next program that runs.
+        // A fault here stops the resource at the next program that runs.
         computed.is_ok() && self.values.wire_bool(single).unwrap_or(false)
     }
 

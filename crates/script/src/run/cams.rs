@@ -1,17 +1,17 @@
-//! The places of the cams that axes are on, for the header of the trace, so that pictures can draw the
-//! table's curve.
+//! The positions of the cams that axes are on, for the header of the trace, so that pictures can draw the table's
+//! curve.
 
 use super::bench::ScriptMachine;
 use crate::model::Script;
 use standstill_axis::CamLaid;
 use standstill_trace::{Cam, Trace};
 
-/// A curve is written at its first place of the master and at this number of further ones.
+/// A curve is written at its first master position and at this number of further ones.
 const STEPS: u16 = 128;
 
 /// The known state after the last row, for each axis of the script.
 pub(super) struct Cams {
-    /// The place of its cam, and its index in the header.
+    /// The position of its cam, and its index in the header.
     known: Vec<Option<(CamLaid, Option<usize>)>>,
 }
 
@@ -23,7 +23,7 @@ impl Cams {
         }
     }
 
-    /// Writes the cams as the last row left them. Cost: an unchanged one is only compared.
+    /// Writes the cams as they are after the last row. Cost: an unchanged one is only compared.
     pub(super) fn look(&mut self, machine: &mut ScriptMachine, trace: &mut Trace) {
         let Some(scan) = trace.scans().checked_sub(1) else {
             return;
@@ -44,10 +44,10 @@ impl Cams {
     }
 }
 
-/// The cam of an axis at its place in this scan, in numbers; none if one of them is too large to draw.
+/// The cam of an axis at its position in this scan, in numbers; none if one of them is too large to draw.
 fn told(machine: &mut ScriptMachine, slave: usize, laid: CamLaid, scan: usize) -> Option<Cam> {
     let master = machine.axes().get(slave)?.coupled()?.master.index();
-    // The store is lent as a whole, so the values of the master are read first.
+    // The store is borrowed as a whole, so the values of the master are read first.
     let from = laid.turn_of(machine.axes().get(master)?);
     let cams = machine.cams();
     let cam = cams.cam(laid.cam)?;

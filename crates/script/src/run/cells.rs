@@ -43,12 +43,12 @@ pub(crate) fn type_of(value: Value) -> PinType {
         Value::Word(_) => PinType::Word,
         Value::Dword(_) => PinType::Dword,
         Value::Time(_) => PinType::Time,
-        // The others are no types of symbols.
+        // Other values are no types of symbols.
         _ => PinType::Lreal,
     }
 }
 
-/// A value as a pin of type `ty` takes it; `None` if the pin cannot hold it.
+/// A value converted to the type `ty` of a pin; `None` if the pin cannot hold it.
 pub(crate) fn convert(value: Value, ty: PinType) -> Option<Value> {
     match (value, ty) {
         (Value::Bool(_), PinType::Bool)

@@ -13,9 +13,9 @@ use standstill_drives::simulated::{DriveSetup, SimulatedDrive};
 pub struct Ordered {
     /// The request to the power stage.
     pub request: DriveRequest,
-    /// The set-point for the end of the scan (u); on a modulo axis it counts on over the turns.
+    /// The set-point for the end of the scan (u); on a modulo axis it is not reduced to one turn.
     pub position: f64,
-    /// With which velocity (u/s).
+    /// Its velocity (u/s).
     pub velocity: f64,
 }
 
@@ -30,7 +30,7 @@ pub(crate) struct ScriptDrive {
     /// The last command, in units as the axis names them or in increments.
     commanded: DrivePosition,
     velocity: f64,
-    /// The offset of positions from those at the start (u); increments never change their names.
+    /// The offset of positions from those at the start (u); increments are never renamed.
     renamed: f64,
 }
 
@@ -56,7 +56,7 @@ impl ScriptDrive {
         self.told = Some(position);
     }
 
-    /// The scans after which it depends on no earlier command, if it is ideal and no host leads it.
+    /// The number of scans after which it depends on no earlier command, if it is ideal and no host leads it.
     pub(crate) fn delay(&self) -> Option<usize> {
         self.simulated.delay().filter(|_| self.told.is_none())
     }

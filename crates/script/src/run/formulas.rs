@@ -15,7 +15,7 @@ pub(crate) struct Formulas {
     guests: Vec<Guest>,
 }
 
-/// The values of an axis that an expression sees.
+/// The values of an axis that an expression reads.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reading {
     pub(crate) state: AxisState,
@@ -87,7 +87,7 @@ impl Formulas {
     /// The value of an expression; `source` returns its variables.
     ///
     /// # Errors
-    /// Why it has none.
+    /// The reason why it has none.
     pub(crate) fn value(
         &mut self,
         script: &Script,
@@ -133,12 +133,12 @@ impl Formulas {
     }
 }
 
-/// Most BOOL operands of an expression for which all combinations are tried.
+/// Largest number of BOOL operands of an expression for which all combinations are tried.
 const TURNED_MOST: usize = 8;
 
-/// The BOOL operands of an expression that are wrong in a scan: all operands of the smallest sets that
-/// make the expression `wanted` if inverted together. Empty if it is so already, if no set does it, or if
-/// there are too many operands to try.
+/// The BOOL operands of an expression that are wrong in a scan: all operands of the smallest sets that make the
+/// expression `wanted` if inverted together. Empty if it already has this value, if no set changes it, or if there
+/// are too many operands to try.
 ///
 /// Cost: at most 2^[`TURNED_MOST`] evaluations.
 pub(crate) fn turned(rows: &Rows<'_>, index: usize, wanted: bool, scan: u64) -> Option<Vec<usize>> {

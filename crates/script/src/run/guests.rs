@@ -14,25 +14,25 @@ pub(crate) struct Guests {
     all: Vec<Running>,
 }
 
-/// A statement of Structured Text, or a branch of one, and how often it was executed.
+/// A statement of Structured Text, or a branch of one, and its number of executions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Counted {
     /// Its file.
     pub file: String,
-    /// Where the statement begins.
+    /// The line of the statement.
     pub line: u32,
-    /// In characters from 1.
+    /// The column, in characters from 1.
     pub column: u32,
-    /// 0 for the statement; else the number of one of its branches, from 1. The last one is ELSE.
+    /// 0 for the statement; otherwise the number of one of its branches, from 1. The last one is ELSE.
     pub branch: u32,
-    /// How often.
+    /// Number of executions.
     pub count: u64,
 }
 
 #[derive(Debug)]
 struct Running {
     guest: Guest,
-    /// Those behind `Fault`.
+    /// The symbols behind `Fault`.
     symbols: Vec<Symbol>,
     /// The functions of its calls.
     entries: Vec<Entry>,

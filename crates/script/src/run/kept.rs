@@ -1,4 +1,4 @@
-//! What a run keeps of its rows, prepared once for all runs of a script with other values of its parameters.
+//! The columns that a run keeps, prepared once for all runs of a script with other values of its parameters.
 
 use super::layout::{self, Layout};
 use super::needed;
@@ -7,7 +7,7 @@ use crate::model::Script;
 use standstill_trace::{Header, Trace};
 use std::sync::Arc;
 
-/// The columns that the trace of a run has, and how they are written.
+/// The columns of the trace of a run, and how they are written.
 #[derive(Clone, Debug)]
 pub struct Kept {
     pub(super) layout: Arc<Layout>,
@@ -26,8 +26,8 @@ impl Kept {
         Self::with(script, Layout::new(script), trace.columns().len(), trace)
     }
 
-    /// The columns that claims and steps of the script read, and those of these names. Such a trace knows no blocks and
-    /// has no notes of commands, and the reasons of failed claims are not searched.
+    /// The columns that claims and steps of the script read, and those of `names`. Such a trace knows no blocks and
+    /// has no notes of commands. The reasons of failed claims are not searched.
     #[must_use]
     pub fn read(script: &Script, names: &[String]) -> Self {
         let header = layout::header(script);
@@ -52,7 +52,7 @@ impl Kept {
         }
     }
 
-    /// Describes the axes as those of a script that differs in the values of its parameters only.
+    /// Describes the axes as those of a script that differs only in the values of its parameters.
     pub(super) fn describe(&mut self, script: &Script) {
         self.trace.describe_as(&Header {
             title: script.title.clone(),
@@ -61,7 +61,7 @@ impl Kept {
         });
     }
 
-    /// For the next run: without rows, but with the room that those of the last one took.
+    /// Prepares for the next run: drops the rows and keeps their memory.
     pub(super) fn cleared(mut self) -> Self {
         self.writer.restart();
         self.trace.clear();

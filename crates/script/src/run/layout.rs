@@ -26,7 +26,7 @@ pub(crate) struct Layout {
     programs: Vec<usize>,
     /// The columns in a trace that lacks some of them, or has others between them.
     elsewhere: Option<Vec<Option<usize>>>,
-    /// The trace is not of the script's own run.
+    /// Whether the trace is not of the script's own run.
     of_recording: bool,
 }
 

@@ -36,17 +36,17 @@ use crate::why::Reason;
 use standstill_scan::{Executor, ProgramConfig, TaskConfig, Watchdog};
 use standstill_trace::{Claim, ClaimFailure, ClaimVerdict, Trace};
 
-/// Most rows of a run that are kept for pictures.
+/// Largest number of rows of a run that are kept for pictures.
 pub const ROWS_MAX: u64 = 1_000_000;
 
 /// Scans between two reports of progress.
 const PROGRESS_EVERY: u64 = 1 << 14;
 
-/// What a run left.
+/// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// One row a scan; its header has the verdicts. If the rows of the run were dropped on the way, it
-    /// has the last ones.
+    /// One row for each scan; its header has the verdicts. If the rows of the run were dropped on the way, it has
+    /// the last ones.
     pub trace: Trace,
     /// The script's claims in file order, judged.
     pub verdicts: Vec<Verdict>,
@@ -57,7 +57,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Whether every claim held.
+    /// Whether every claim is fulfilled.
     pub fn passed(&self) -> bool {
         self.verdicts.iter().all(Verdict::passed)
     }
@@ -72,7 +72,7 @@ pub enum RunError {
         cells = CELLS_MAX
     )]
     TooLarge {
-        /// Rows asked for.
+        /// Requested rows.
         scans: u64,
         /// Columns of a row.
         columns: usize,
@@ -118,7 +118,7 @@ pub enum RunError {
         /// Name of the axis.
         axis: String,
     },
-    /// Steps with `every` and `after` came more often than the run remembers.
+    /// More steps with `every` and `after` are pending than the run can store.
     #[error("scan {scan}: more than {PENDING_MAX} steps wait for their scan; lower their `after`")]
     Pending {
         /// The scan.
@@ -137,10 +137,10 @@ pub fn run(script: &Script) -> Result<Outcome, RunError> {
     run_with(script, |_| {})
 }
 
-/// As [`run`]; reports from time to time how many scans are done.
+/// The same as [`run`]; reports the number of scans done from time to time.
 ///
 /// # Errors
-/// As [`run`].
+/// Those of [`run`].
 pub fn run_with(script: &Script, mut progress: impl FnMut(u64)) -> Result<Outcome, RunError> {
     if let Some(outcome) = run_by(script, &mut progress, |session| {
         session.advance_far(PROGRESS_EVERY)
@@ -152,7 +152,7 @@ pub fn run_with(script: &Script, mut progress: impl FnMut(u64)) -> Result<Outcom
     outcome.ok_or_else(|| RunError::Internal("a run scan by scan did not go on".to_owned()))
 }
 
-/// A run that goes on by `advance`; none if that cannot run the script.
+/// A run that `advance` continues; none if that cannot run the script.
 fn run_by<'s>(
     script: &'s Script,
     progress: &mut impl FnMut(u64),
@@ -219,8 +219,8 @@ fn row(scan: u64) -> usize {
     usize::try_from(scan).unwrap_or(usize::MAX)
 }
 
-/// One program per task, in the order of the tasks: it calls the task's instances in file order. What runs without a task
-/// is the last one.
+/// One program for each task, in the order of the tasks: it calls the task's instances in file order. The last
+/// program is for those without a task.
 fn executor(script: &Script) -> Result<Executor, RunError> {
     let cycle_ns = script.cycle_ns.unsigned_abs();
     let tasks: Vec<_> = script
@@ -233,7 +233,7 @@ fn executor(script: &Script) -> Result<Executor, RunError> {
                 interval_ns,
                 priority: task.priority,
                 single: task.single.is_some(),
-                // No code measures a script's programs, so it exists but never fires.
+                // Nothing measures a script's programs, so the watchdog exists but never fires.
                 watchdog: task.watchdog.map(|sensitivity| Watchdog {
                     limit_ns: interval_ns.max(cycle_ns),
                     sensitivity,

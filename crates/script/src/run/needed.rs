@@ -1,12 +1,13 @@
-//! The columns that claims and steps read. A recording must have them to be judged, and a run without a
-//! reader needs to keep no others.
+//! The columns that claims and steps read. A recording needs them to be judged. A run that nobody reads need keep
+//! no others.
 
 use super::layout::Layout;
 use crate::model::{AxisNumber, Claim, ClaimKind, Comparison, Condition, Point, Script, Signal, Test, When};
 use standstill_trace::Column;
 use std::collections::BTreeSet;
 
-/// The columns that its claims, its steps and its end read, and those of these names, of `all` of a script's own trace.
+/// The columns that claims, steps and the end of the run read, and those of `names`; `all` are the columns of the
+/// script's own trace.
 pub(super) fn columns(script: &Script, all: &[Column], names: &[String]) -> BTreeSet<usize> {
     let mut read = Vec::new();
     for step in &script.steps {

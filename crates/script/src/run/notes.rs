@@ -42,8 +42,8 @@ impl Notes {
         self.names.instances.insert(id, name);
     }
 
-    /// Takes what was recorded since the last call. The ring holds [`LOG_KEPT`] records and a scan may have more, so this is
-    /// called between the steps of a scan and after every block.
+    /// Takes the records since the last call. The ring holds [`LOG_KEPT`] records and a scan may have more, so this
+    /// is called between the steps of a scan and after every block.
     pub(crate) fn collect(&mut self, log: &Log) {
         let total = log.total();
         if total == self.taken {
@@ -60,7 +60,7 @@ impl Notes {
         self.lost = 0;
     }
 
-    /// Takes this scan's records into the trace, and what of the moves of coordinates the ring has lost.
+    /// Writes this scan's records into the trace, and the shifts of coordinates that the ring has lost.
     pub(crate) fn take(&mut self, machine: &ScriptMachine, trace: &mut Trace) {
         self.collect(machine.log());
         let (lost, records) = (std::mem::take(&mut self.lost), &self.records);
@@ -73,7 +73,7 @@ impl Notes {
             });
         }
         for Shift { axis, by, .. } in shifts_of(machine, scan) {
-            // Claims are judged by the notes of a trace when there are no axes any more.
+            // Claims are judged by the notes of a trace when the axes no longer exist.
             let axis = machine.axes().get(axis).map_or(AxisId::NONE, |axis| axis.id());
             let left = by - told(records, axis);
             if lost > 0 && left != 0.0 {
@@ -104,7 +104,8 @@ impl Notes {
     }
 }
 
-/// The moves of coordinates in a scan, which claims need. They come from the axes themselves: a step with more records than the ring
+/// The shifts of coordinates in a scan, which claims need. They come from the axes themselves: a step with more
+/// records than the ring holds loses some.
 /// holds loses some.
 pub(crate) fn shifts_of(machine: &ScriptMachine, scan: usize) -> impl Iterator<Item = Shift> {
     let axes = machine.axes().iter().enumerate();

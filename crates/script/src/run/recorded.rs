@@ -21,9 +21,9 @@ pub enum RecordingError {
          the recording"
     )]
     Cycle {
-        /// Of the script (ns).
+        /// The cycle of the script (ns).
         expected: u64,
-        /// Of the recording (ns).
+        /// The cycle of the recording (ns).
         found: u64,
     },
     /// It lacks signals of claims.
@@ -42,9 +42,9 @@ pub enum RecordingError {
     },
 }
 
-/// Judges the claims of a script on a recording: the contents of a flight recorder, or the trace of
-/// another run. Nothing is run. Only the script's axes, blocks and variables count, by name, and its
-/// claims. Scans are rows of the recording.
+/// Judges the claims of a script on a recording: the contents of a flight recorder, or the trace of another run.
+/// Nothing is run. Only the script's claims and the names of its axes, blocks and variables are used. Scans are
+/// rows of the recording.
 ///
 /// The motion before the first row is not known. So a difference of positions exists only from the row
 /// that has enough rows before it, and limits are checked from there on.
@@ -97,7 +97,7 @@ fn truths(script: &Script, layout: &Layout, trace: &Trace, shifts: &[Shift]) -> 
     truths
 }
 
-/// The moves of coordinates, from the notes of the trace.
+/// The shifts of coordinates, from the notes of the trace.
 fn shifts(script: &Script, recording: &Trace) -> Vec<Shift> {
     let axes = script.axes.iter().zip(0..);
     let axes: BTreeMap<_, _> = axes.map(|(axis, index)| (axis.name.as_str(), index)).collect();

@@ -1,9 +1,9 @@
-//! Scans in which the programs rest: each block would do what it did in the scan before, so none is called.
+//! Scans in which the programs are idle: each block would repeat what it did in the scan before, so none is called.
 //!
-//! That is so where no step is due, all variables and pins are what they were a scan before, and no axis does anything but
-//! go on ([`Going`]). Two scans with the same values tell that a block would not come to others in a third one, because what
-//! [`manner`] says a block answers to has stayed the same. Blocks that read numbers of an axis are called all the same; no
-//! other block may depend on theirs.
+//! The conditions are: no step is due, all variables and pins have the values of the scan before, and every axis
+//! only continues ([`Going`]). Two scans with the same values are enough to know that a block keeps its values in a
+//! third one, because its conditions ([`manner`]) have not changed. Blocks that read numbers of an axis are still
+//! called. No other block may depend on their outputs.
 
 use super::bench::ScriptMachine;
 use super::values::Values;
@@ -14,18 +14,18 @@ use standstill_drives::switches::Switches;
 use standstill_fb::AnyInstance;
 use std::collections::BTreeSet;
 
-/// What the outputs and the effects of a block depend on beside its inputs.
+/// The data on which the outputs and the effects of a block depend, in addition to its inputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Manner {
     /// Its memory, the states of axes and commands, and a time that shows at its outputs.
     Waits,
-    /// The same, and it acts on its axis by the levels of its inputs: two of them would act in turns.
+    /// The same. It also acts on its axis by the levels of its inputs, so two of them would act in turns.
     Holds,
     /// Numbers of an axis, which it reads and does not change.
     Reads,
 }
 
-/// How a block behaves; none if that is not told here, so that it is called in every scan.
+/// The manner of a block; none for a block that is not listed, which is called in every scan.
 fn manner(block: &str) -> Option<Manner> {
     Some(match block {
         "MC_Power" | "MC_SetOverride" => Manner::Holds,
@@ -63,27 +63,27 @@ fn manner(block: &str) -> Option<Manner> {
     })
 }
 
-/// Whether the programs of a run rest.
+/// The state of the programs of a run: idle or not.
 pub(super) struct Rest {
-    /// The instances that are called all the same.
+    /// The instances that are still called.
     readers: Vec<usize>,
     /// The other ones.
     waiting: Vec<usize>,
-    /// What axes did after the calls of the last scan.
+    /// The state of the axes after the calls of the last scan.
     going: Vec<Going>,
-    /// The records so far, at the begin of the last scan.
+    /// The number of records at the begin of the last scan.
     records: u64,
-    /// Something came to the last scan from outside.
+    /// The last scan had an input from outside.
     disturbed: bool,
-    /// The scan after which these words were taken, and those of the variables and of the instances that wait.
+    /// The scan after which `words` were taken: those of the variables and of the waiting instances.
     taken: Option<u64>,
     words: Vec<u64>,
-    /// Room for the next ones.
+    /// Memory for the next words.
     next: Vec<u64>,
 }
 
 impl Rest {
-    /// None if the programs of a script, or what surrounds them, may do something new in any scan.
+    /// None if the programs of a script, or their environment, may do something new in any scan.
     pub(super) fn new(script: &Script) -> Option<Self> {
         let is_told = script.programs.is_empty()
             && script.formulas.is_empty()
@@ -117,24 +117,24 @@ impl Rest {
         })
     }
 
-    /// The instances that are called all the same.
+    /// The instances that are still called.
     pub(super) fn readers(&self) -> &[usize] {
         &self.readers
     }
 
-    /// A scan begins; `disturbed` says whether something came from outside.
+    /// Call it at the begin of a scan; `disturbed` means an input from outside.
     pub(super) fn begin(&mut self, machine: &ScriptMachine, disturbed: bool) {
         self.disturbed = disturbed;
         self.records = machine.log().total();
     }
 
-    /// All blocks were called.
+    /// Call it after all blocks were called.
     pub(super) fn called(&mut self, machine: &ScriptMachine) {
         self.going.clear();
         self.going.extend(machine.axes().iter().map(|axis| axis.going()));
     }
 
-    /// After the last `scan`: whether the programs rest from the next one on, as long as that [`Rest::lasts`] and no step is due.
+    /// Whether the programs are idle from the scan after `scan` on, as long as [`Rest::lasts`] and no step is due.
     pub(super) fn begins(&mut self, scan: u64, values: &Values, machine: &ScriptMachine) -> bool {
         if self.disturbed || !self.lasts(machine) {
             return false;
@@ -156,18 +156,18 @@ impl Rest {
         before.is_some_and(|before| before + 1 == scan) && self.words == self.next
     }
 
-    /// The same scans later, when these were done without the programs.
+    /// Counts scans that were done without the programs.
     pub(super) fn went_on(&mut self, scans: u64) {
         self.taken = self.taken.map(|scan| scan + scans);
     }
 
-    /// Whether something has happened that nobody could foresee, so that the programs did not rest.
+    /// Whether an event occurred that could not be foreseen, so that the programs were not idle.
     pub(super) fn is_broken(&self, machine: &ScriptMachine) -> bool {
         let is_known = machine.axes().iter().all(|axis| axis.going() != Going::Unknown);
         !is_known || machine.log().total() != self.records
     }
 
-    /// Whether the rest lasts over the next scan: each axis does what it did before.
+    /// Whether the programs stay idle in the next scan: each axis does what it did before.
     pub(super) fn lasts(&self, machine: &ScriptMachine) -> bool {
         let axes = machine.axes().iter();
         let go_on = axes
@@ -176,13 +176,13 @@ impl Rest {
         go_on && self.going.len() == machine.axes().len() && machine.log().total() == self.records
     }
 
-    /// All axes rest.
+    /// Whether all axes are at rest.
     pub(super) fn is_still(&self) -> bool {
         self.going.iter().all(|going| *going == Going::Rests)
     }
 
-    /// For how many scans the axes could move without their drives: nobody reads what those report, no axis counts turns, and
-    /// the next few scans with drives mend what both remember.
+    /// Number of scans in which the axes can move without their drives. The conditions are: nothing reads the
+    /// reports of the drives, no axis has turns, and the next few scans with drives restore the memory of both.
     pub(super) fn moves_alone(&self, machine: &ScriptMachine) -> u64 {
         let axes = machine.axes();
         if !self.readers.is_empty() || axes.iter().any(|axis| axis.config().modulo.is_some()) {
@@ -192,7 +192,7 @@ impl Rest {
     }
 }
 
-/// Whether a drive has no news but positions unless a step disturbs it.
+/// Whether a drive reports nothing new except positions unless a step disturbs it.
 fn is_quiet(drive: &DriveSetup) -> bool {
     match drive {
         DriveSetup::Ideal(IdealDriveSetup { switches, .. })

@@ -1,5 +1,5 @@
-//! The row of a scan. Its structure is prepared once. In a scan, axes, variables, pins and symbols are
-//! read as words, and only cells whose word has changed are made anew.
+//! The row of a scan. Its structure is prepared once. In a scan, axes, variables, pins and symbols are read as
+//! words, and only cells whose word has changed are made again.
 
 use super::bench::ScriptMachine;
 use super::cells;
@@ -13,7 +13,7 @@ use standstill_record::{AXIS_WORDS, write_axis};
 use standstill_scan::ScanTime;
 use standstill_trace::{Cell, RowError, Trace};
 
-/// Words of a slave in addition, in the order of their columns.
+/// Additional words of a slave, in the order of their columns.
 const SLAVE_WORDS: usize = 7;
 
 /// Writes the rows of a script's run.
@@ -30,15 +30,15 @@ pub(super) struct RowWriter {
 struct Part {
     of: Of,
     columns: Vec<Column>,
-    /// The place of its first column in the trace.
+    /// The index of its first column in the trace.
     first: usize,
-    /// How many words it has.
+    /// Number of its words.
     count: usize,
     /// Its words in the last row; none before the first one.
     words: Vec<u64>,
-    /// It may change while programs rest.
+    /// Whether it may change while programs are idle.
     moves: bool,
-    /// Of an axis, the places in the trace of what changes while it only goes on: the numbers of its set-point, and its actual
+    /// The columns of an axis that change while it only continues: the numbers of its set-point, and its actual
     /// position.
     motion: ([Option<usize>; 5], Option<usize>),
 }
@@ -54,9 +54,9 @@ enum Of {
 /// A column of the trace.
 #[derive(Clone, Debug)]
 struct Column {
-    /// Which of the words of its part it shows.
+    /// The index of its word in its part.
     place: usize,
-    /// What they are.
+    /// The meaning of the word.
     told: Told,
 }
 
@@ -110,14 +110,14 @@ impl RowWriter {
         self.parts.iter_mut().for_each(|part| part.words.clear());
     }
 
-    /// These instances may change while programs rest, as axes do.
+    /// These instances may change while programs are idle, as axes do.
     pub(super) fn mind(&mut self, instances: &[usize]) {
         for part in &mut self.parts {
             part.moves |= matches!(part.of, Of::Instance(index) if instances.contains(&index));
         }
     }
 
-    /// Writes the row of a scan. It takes no memory except that of the trace, and that for new texts.
+    /// Writes the row of a scan. It allocates only for the trace, and there only for new texts.
     pub(super) fn write(&mut self, source: &Source<'_>, trace: &mut Trace) -> Result<(), RowError> {
         for part in &mut self.parts {
             part.write(source, (&mut self.words, &mut self.cells), trace)?;
@@ -126,7 +126,7 @@ impl RowWriter {
         Ok(())
     }
 
-    /// The same for a scan in which programs rested.
+    /// The same for a scan in which programs were idle.
     pub(super) fn write_resting(&mut self, source: &Source<'_>, trace: &mut Trace) -> Result<(), RowError> {
         for part in self.parts.iter_mut().filter(|part| part.moves) {
             match part.of {
@@ -138,7 +138,7 @@ impl RowWriter {
         Ok(())
     }
 
-    /// Writes the rows of the next `scans`, of which `first` is the first, in which axes go on alone, and takes these so far.
+    /// Advances the axes alone for `scans` scans and writes their rows; `first` is the first scan.
     pub(super) fn write_along(
         &mut self,
         scans: usize,
@@ -174,7 +174,8 @@ impl Part {
     ) -> Result<(), RowError> {
         let words = words.get_mut(..self.count).unwrap_or_default();
         source.put(self.of, words);
-        // One by one: they were just written so, and a processor waits before it reads several of them at once.
+        // Compared one by one: the words were just written so, and a processor waits before it reads several of
+        // them at once.
         let is_new = self.words.is_empty();
         self.words.resize(self.count, 0);
         for (at, column) in (self.first..).zip(&self.columns) {
@@ -195,7 +196,7 @@ impl Part {
         Ok(())
     }
 
-    /// Writes the cells of an axis that change while it only goes on: the numbers of its motion.
+    /// Writes the cells of an axis that change while it only continues: the numbers of its motion.
     fn write_motion(&mut self, source: &Source<'_>, axis: usize, trace: &mut Trace) {
         let Some(axis) = source.machine.axes().get(axis) else {
             return;
@@ -211,13 +212,13 @@ impl Part {
         }
     }
 
-    /// See [`Part::motion`]. The next whole row has all of the part's cells written anew.
+    /// See [`Part::motion`]. The next whole row writes all cells of the part again.
     fn moved(&mut self) -> &([Option<usize>; 5], Option<usize>) {
         self.words.clear();
         &self.motion
     }
 
-    /// The place in the trace of a word of the part.
+    /// The column in the trace of a word of the part.
     fn column(&self, word: usize) -> Option<usize> {
         let mut columns = self.columns.iter();
         let place = columns.position(|column| column.place == word)?;
@@ -226,8 +227,8 @@ impl Part {
 }
 
 impl Column {
-    /// Writes the cell of a word that is no number of 64 bits at a place of the trace.
-    // Apart from the numbers, which change in nearly every scan, so that these need few registers.
+    /// Writes the cell of a word that is no number of 64 bits.
+    // Numbers are written separately: they change in nearly every scan, and their code then needs few registers.
     #[inline(never)]
     fn write(
         &self,
@@ -249,7 +250,7 @@ impl Column {
 }
 
 impl Source<'_> {
-    /// Puts the words of a part there.
+    /// Writes the words of a part to `words`.
     fn put(&self, of: Of, words: &mut [u64]) {
         match of {
             Of::Axis(index) => self.put_axis(index, words),
@@ -305,7 +306,7 @@ impl Source<'_> {
             None => take(Cells::default().cell(cells::type_of(value), value)),
             Some(variable) => match variable.cell(value) {
                 Some(cell) => take(cell),
-                // A number without a name in its enumeration; a program in order has none.
+                // A number without a name in its enumeration; a correct program has none.
                 None => take(Cell::Name(&variable.unnamed(value).unwrap_or_default())),
             },
         }

@@ -9,7 +9,7 @@ use standstill_record::told::enum_number;
 use standstill_trace::{Cell, Trace};
 use std::ops::Range;
 
-/// Rows before the next ones that conditions, claims and events may read: a difference of order 4, and
+/// Number of rows before the next ones that conditions, claims and events may read: a difference of order 4, and
 /// that of the last scan, take six.
 pub(super) const ROWS_KEPT: usize = 8;
 
@@ -21,11 +21,11 @@ pub(crate) struct Rows<'a> {
     pub(crate) trace: &'a Trace,
     /// In order of scans.
     pub(crate) shifts: &'a [Shift],
-    /// What expressions were.
+    /// The results of expressions.
     pub(crate) truths: &'a Truths,
 }
 
-/// The coordinates of an axis moved in a scan.
+/// A shift of the coordinates of an axis in a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shift {
     pub(crate) scan: u64,
@@ -35,7 +35,7 @@ pub(crate) struct Shift {
 }
 
 impl<'a> Rows<'a> {
-    /// Rows there are: scans 0 to this, exclusive.
+    /// The number of rows: scans 0 to this, exclusive.
     pub(crate) fn count(&self) -> u64 {
         self.trace.scans() as u64
     }
@@ -69,8 +69,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Published position of an axis (u) `back` scans before `scan`; before scan 0 it stood still where
-    /// it started. `None` past the end, and before the begin of a recording, which may be in motion.
+    /// Published position of an axis (u) `back` scans before `scan`. Before scan 0 the axis was at rest at its
+    /// start. `None` past the end, and before the begin of a recording, which may be in motion.
     pub(crate) fn position(&self, axis: usize, scan: u64, back: u64) -> Option<f64> {
         let Some(scan) = scan.checked_sub(back) else {
             if self.layout.is_of_recording() {
@@ -85,12 +85,12 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Backward differences of published positions of this order (1 to 4) over cycle^order, one scan
-    /// before `scan` and at `scan`: [before, now]. On a modulo axis they are the differences of the
-    /// unwrapped positions; moves of coordinates are no motion.
+    /// Backward differences of published positions of this order (1 to 4) over cycle^order, one scan before `scan`
+    /// and at `scan`: [before, now]. On a modulo axis they are the differences of the unwrapped positions. Shifts
+    /// of coordinates are no motion.
     ///
-    /// Subtracts neighbours `order` times instead of weighting positions with binomial coefficients:
-    /// neighbours are close, so nearly every subtraction is exact.
+    /// Subtracts neighbours `order` times instead of weighting positions with binomial coefficients: neighbours are
+    /// close, so nearly every subtraction is exact.
     fn differences(&self, axis: usize, scan: u64, order: u8) -> Option<[f64; 2]> {
         let order = usize::from(order);
         // Newest first; order + 2 positions have order + 1 first differences and give two of the last.
@@ -118,9 +118,9 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// The difference between the position `back` scans before `scan` and the one before that. The move
-    /// of coordinates in that scan is removed. On a modulo axis it is the shorter way round, because no
-    /// axis goes half a turn in a scan.
+    /// The difference between the position `back` scans before `scan` and the one before that. A shift of
+    /// coordinates in that scan is removed. On a modulo axis the shorter direction is taken, because no axis moves
+    /// half a turn in a scan.
     pub(crate) fn way(&self, axis: usize, scan: u64, back: u64, difference: f64) -> f64 {
         let mut difference = difference;
         if let Some(scan) = scan.checked_sub(back) {
@@ -156,21 +156,21 @@ impl<'a> Rows<'a> {
         })
     }
 
-    /// Of these scans, which are the last ones so far, those from the first to the last in which the conditions may hold
-    /// together. There are no others, but it may be all that are asked for.
+    /// The part of `scans` in which the conditions may hold together, from the first such scan to the last; `scans`
+    /// are the last ones so far. The conditions hold in no other scan, but the result may be the whole of `scans`.
     ///
-    /// Cost: where nothing of what a condition reads changes, one row is read.
+    /// Cost: if nothing that a condition reads has changed, one row is read.
     pub(crate) fn may_hold(&self, conditions: &[Condition], scans: Range<u64>) -> Range<u64> {
         let each = conditions.iter();
         each.fold(scans, |scans, condition| self.narrowed(condition, scans, true))
     }
 
-    /// The same of those in which a condition may not hold.
+    /// The same for the scans in which a condition may not hold.
     pub(crate) fn may_fail(&self, condition: &Condition, scans: Range<u64>) -> Range<u64> {
         self.narrowed(condition, scans, false)
     }
 
-    /// The same of those in which it holds or does not, as `wanted`.
+    /// The same for the scans in which it holds, or does not hold, as `wanted` says.
     fn narrowed(&self, condition: &Condition, scans: Range<u64>, wanted: bool) -> Range<u64> {
         if scans.is_empty() {
             return scans;
@@ -200,7 +200,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// A scan from which on a condition reads the same in all rows so far; the number of rows if that is not known.
+    /// A scan from which on a condition reads the same in all rows so far. The number of rows if that is not known.
     pub(crate) fn same_since(&self, condition: &Condition) -> u64 {
         let own = self.signal_same_since(&condition.signal);
         own.max(self.test_same_since(&condition.test))
@@ -230,7 +230,7 @@ impl<'a> Rows<'a> {
         column.map_or(self.count(), |column| self.trace.same_since(column) as u64)
     }
 
-    /// The column in which a signal stands; none for one that depends on more than a row.
+    /// The column of a signal; none for one that depends on more than a row.
     fn column(&self, signal: &Signal) -> Option<usize> {
         match *signal {
             Signal::Point(point) => self.layout.point(point),
@@ -246,7 +246,7 @@ impl<'a> Rows<'a> {
         conditions.iter().all(|condition| self.holds(condition, scan))
     }
 
-    /// Whether a condition holds on the row of `scan`; on a row that does not exist it does not.
+    /// Whether a condition holds on the row of `scan`; FALSE for a row that does not exist.
     pub(crate) fn holds(&self, condition: &Condition, scan: u64) -> bool {
         self.cell(&condition.signal, scan)
             .is_some_and(|cell| self.meets(&condition.signal, &condition.test, cell, scan))
@@ -347,7 +347,7 @@ impl<'a> Rows<'a> {
 }
 
 impl Comparison {
-    /// The least and the greatest number that meets all of these; none if more than that counts.
+    /// The least and the greatest number that meet all of these. None if they depend on more than the number.
     fn bounds(all: &[Self]) -> Option<(f64, f64)> {
         let mut both = (f64::NEG_INFINITY, f64::INFINITY);
         for comparison in all {
@@ -367,7 +367,7 @@ impl Comparison {
         Some(both)
     }
 
-    /// Whether a number meets it; none if more than the number counts.
+    /// Whether a number meets it. None if it depends on more than the number.
     fn meets(&self, value: f64) -> Option<bool> {
         Some(match self {
             // Equal infinities have no difference.
@@ -382,8 +382,8 @@ impl Comparison {
     }
 }
 
-/// Of these scans, those from the first to the last whose value is wanted, which are the values from the first of them on up to those that are all the same, and
-/// that one.
+/// The part of `scans` from the first to the last wanted value. The values are those from the first scan on up to
+/// the equal ones at the end, and the value of those.
 fn between<T: Copy>(
     scans: Range<u64>,
     (values, same): (&[T], Option<T>),
@@ -391,7 +391,7 @@ fn between<T: Copy>(
 ) -> Range<u64> {
     let is_wanted = |value: &T| is_wanted(*value);
     let behind = scans.start + values.len() as u64;
-    // Without an end in the middle it is several at once.
+    // Without an early exit the processor compares several at once.
     let is_there = values.iter().fold(false, |found, value| found | is_wanted(value));
     let same = same.filter(is_wanted).map(|_| behind..scans.end);
     let Some(first) = values.iter().position(&is_wanted).filter(|_| is_there) else {

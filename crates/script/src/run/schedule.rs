@@ -5,7 +5,7 @@ use crate::model::{Script, When};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Most steps that may wait for their scan.
+/// Largest number of steps that may wait for their scan.
 pub(crate) const PENDING_MAX: usize = 1 << 22;
 
 /// The steps to come, and the conditional ones that wait for their conditions.
@@ -13,7 +13,7 @@ pub(crate) const PENDING_MAX: usize = 1 << 22;
 pub(crate) struct Schedule {
     /// Scans and the indices of the steps that apply then, the next one on top; steps of one scan apply in file order.
     due: BinaryHeap<Reverse<(u64, usize)>>,
-    /// For each step: it applies when its conditions next hold.
+    /// For each step: it applies when its conditions hold next.
     armed: Vec<bool>,
     /// Some steps wait for conditions.
     watches: bool,
@@ -22,7 +22,7 @@ pub(crate) struct Schedule {
 impl Schedule {
     pub(crate) fn new(script: &Script) -> Self {
         let steps = (0..).zip(&script.steps);
-        // With room for every step to come, so that a scan takes no memory for them.
+        // Reserves memory for all steps, so that a scan does not allocate for them.
         let mut due = BinaryHeap::with_capacity(2 * script.steps.len());
         due.extend(steps.filter_map(|(index, step)| match step.when {
             When::At(scan) => Some(Reverse((scan, index))),
@@ -38,7 +38,7 @@ impl Schedule {
         }
     }
 
-    /// Whether rows are looked at for steps.
+    /// Whether steps need rows to be read.
     pub(crate) const fn watches(&self) -> bool {
         self.watches
     }
@@ -53,14 +53,14 @@ impl Schedule {
         Some(index)
     }
 
-    /// How many scans from this one on have no step, as far as is known.
+    /// Number of scans from this one on without a step, as far as is known.
     pub(crate) fn free_from(&self, scan: u64) -> u64 {
         self.due
             .peek()
             .map_or(u64::MAX, |Reverse((due, _))| due.saturating_sub(scan))
     }
 
-    /// Whether more steps wait than may.
+    /// Whether more steps are waiting than permitted.
     pub(crate) fn is_full(&self) -> bool {
         self.due.len() > PENDING_MAX
     }

@@ -14,7 +14,7 @@ use standstill_fb::{Direction, PinType, Value};
 use standstill_scan::{Executor, ScanTime};
 use standstill_trace::{Trace, shortest};
 
-/// Whether a trace with this many columns has room for the rows of a script.
+/// Whether a trace with this many columns can hold the rows of a script.
 fn fits(script: &Script, columns: usize) -> Result<(), RunError> {
     let scans = script.scans;
     if scans.saturating_mul(columns as u64) > CELLS_MAX {
@@ -23,7 +23,8 @@ fn fits(script: &Script, columns: usize) -> Result<(), RunError> {
     Ok(())
 }
 
-/// Scans with the same commands, beyond the delay of the drives, after which neither an axis nor a drive knows earlier ones.
+/// Number of scans with the same commands, beyond the delay of the drives, after which neither an axis nor a drive
+/// depends on earlier ones.
 const REMEMBERED: u64 = 6;
 
 /// A run of a script that advances on request.
@@ -34,7 +35,7 @@ pub struct Session<'a> {
     bench: Bench<'a>,
     /// Scans done.
     scans: u64,
-    /// Those at the end of them in which nothing moved.
+    /// The last scans in which nothing moved.
     still: u64,
     over: bool,
     /// Programs no longer run; the axes stop and switch off.
@@ -57,12 +58,12 @@ pub struct Change {
     pub json: String,
 }
 
-/// How far [`Session::advance_far`] came.
+/// The progress of [`Session::advance_far`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ahead {
-    /// Scans done.
+    /// Number of scans done.
     Scans(u64),
-    /// The run cannot go on: its last rows lack something.
+    /// The run cannot continue: its last rows are incomplete.
     Broken,
 }
 
@@ -77,8 +78,8 @@ impl<'a> Session<'a> {
         Ok(session)
     }
 
-    /// As [`Session::new`], for one of many runs of a script with other values of its parameters: `kept` of any of them says which
-    /// columns the trace has. [`Session::into_kept`] returns it for the next one.
+    /// The same as [`Session::new`], for one of many runs of a script with other values of its parameters. `kept`,
+    /// from any of these runs, gives the columns of the trace. [`Session::into_kept`] returns it for the next run.
     ///
     /// # Errors
     /// Those of [`Session::new`].
@@ -90,13 +91,14 @@ impl<'a> Session<'a> {
         Ok(session)
     }
 
-    /// What [`Session::keeping`] got, for another run. The rows of this one are dropped, and their room is kept.
+    /// The value that [`Session::keeping`] received, for another run. The rows of this run are dropped, and their
+    /// memory is kept.
     #[must_use]
     pub fn into_kept(self) -> Kept {
         self.bench.into_kept().cleared()
     }
 
-    /// As [`Session::new`], for a run of any length, whose rows are read on the way and then dropped by
+    /// The same as [`Session::new`], for a run of any length whose rows are read on the way and then dropped by
     /// [`Session::forget`].
     ///
     /// # Errors
@@ -121,14 +123,14 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// Judges the claims on the rows so far, then drops all but the last few. The state of claims on the
-    /// way ([`Session::standings`]) is not known from then on; their verdicts at the end are.
+    /// Judges the claims on the rows so far, then drops all but the last few. From then on the state of claims
+    /// during the run ([`Session::standings`]) is not known. Their verdicts at the end are.
     pub fn forget(&mut self) {
         self.judges.look(&self.bench.rows());
         self.bench.forget();
     }
 
-    /// Runs the next scan; FALSE if the run was over before.
+    /// Runs the next scan. Returns FALSE if the run was over before.
     ///
     /// # Errors
     /// [`RunError`]; the run is over then.
@@ -136,7 +138,7 @@ impl<'a> Session<'a> {
         if self.over {
             return Ok(false);
         }
-        // An early end of this scan ends the run.
+        // If this scan ends early, the run ends.
         self.over = true;
         let scan = self.scans;
         let columns = self.trace().columns().len();
@@ -173,11 +175,13 @@ impl<'a> Session<'a> {
         self.script.cycle_ns.saturating_mul(self.scans.cast_signed())
     }
 
-    /// Runs the next scan, and at once those behind it in which the programs would do nothing new, at most `most` scans in all;
-    /// the rows are the same as with [`Session::advance`]. Returns how many; 0 if the run was over before.
+    /// Runs the next scan, and at once the following ones in which the programs would do nothing new, at most
+    /// `most` scans in all. The rows are the same as with [`Session::advance`]. Returns the number of scans; 0 if
+    /// the run was over before.
     ///
     /// # Errors
-    /// [`RunError`]; the run is over then. With [`Ahead::Broken`] something happened that only a run by [`Session::advance`] shows.
+    /// [`RunError`]; the run is over then. With [`Ahead::Broken`] an event occurred that only a run by
+    /// [`Session::advance`] shows.
     pub fn advance_far(&mut self, most: u64) -> Result<Ahead, RunError> {
         if !self.advance()? {
             return Ok(Ahead::Scans(0));
@@ -203,8 +207,8 @@ impl<'a> Session<'a> {
         Ok(Ahead::Scans(done + 1))
     }
 
-    /// Does the next scans, in which the programs rest. Returns how many: all of them, unless the rest is over before, or
-    /// programs do not run in every tick.
+    /// Does the next scans, in which the programs are idle. Returns their number: all of them, unless the programs
+    /// stop being idle before, or do not run in every tick.
     fn go_on(&mut self, scans: u64) -> u64 {
         let mut drives = self.machine.drives().iter();
         let delay = drives.try_fold(0, |most, drive| Some(drive.delay()?.max(most)));
@@ -226,7 +230,7 @@ impl<'a> Session<'a> {
         self.executor.coast(scans, &mut self.bench, &mut self.machine)
     }
 
-    /// The same where all axes rest, over drives that have settled after so many scans.
+    /// The same if all axes are at rest, with drives that settle after `settles_in` scans.
     fn stand(&mut self, scans: u64, settles_in: u64) -> u64 {
         let settling = settles_in.saturating_sub(self.still).min(scans);
         let done = self.coast(settling);
@@ -239,7 +243,7 @@ impl<'a> Session<'a> {
         done + stood
     }
 
-    /// The same where axes move: without drives, as long as enough scans are left for these to settle.
+    /// The same if axes move: without drives, as long as enough scans are left for the drives to settle.
     fn move_on(&mut self, scans: u64, settles_in: u64) -> u64 {
         let alone = self.bench.moves_alone(&self.machine).min(scans);
         let first = ScanTime {
@@ -253,15 +257,15 @@ impl<'a> Session<'a> {
         done + self.coast(scans - done)
     }
 
-    /// Makes room for the rows of the whole run, so that scans take no memory for them. It takes at most
-    /// [`CELLS_MAX`] cells of at most 8 bytes.
+    /// Reserves memory for the rows of the whole run, so that scans do not allocate for them: at most [`CELLS_MAX`]
+    /// cells of at most 8 bytes.
     pub fn reserve(&mut self) {
         let left = self.script.scans.saturating_sub(self.scans);
         self.bench.reserve(usize::try_from(left).unwrap_or_default());
     }
 
-    /// Between two scans of a paced run: what the trace puts off is done bit by bit, so that no scan has much of it. Cost: at most
-    /// as many cells as the trace has columns.
+    /// Call it between two scans of a paced run: it does postponed work of the trace in small parts, so that no
+    /// scan has much of it. Cost: at most as many cells as the trace has columns.
     pub fn keep_up(&mut self) {
         self.bench.keep_up();
     }
@@ -367,8 +371,8 @@ impl<'a> Session<'a> {
         claims::say(&self.bench.rows())
     }
 
-    /// Writes a value, given as text, at the latch of the next scan, after the steps of the script.
-    /// Values have the form of scripts: `TRUE`, numbers, `T#5ms`, names of enums.
+    /// Writes a value, given as text, at the latch of the next scan, after the steps of the script. Values have the
+    /// form of scripts: `TRUE`, numbers, `T#5ms`, names of enums.
     ///
     /// # Errors
     /// The reason why it cannot be written there, for people.
@@ -381,7 +385,7 @@ impl<'a> Session<'a> {
     /// Writes all of these as [`Session::change`] does, or none if one of them cannot be written.
     ///
     /// # Errors
-    /// As [`Session::change`], for the first one.
+    /// Those of [`Session::change`], for the first one.
     pub fn change_all(&mut self, changes: &[(Point, String)]) -> Result<(), String> {
         let checked = changes.iter().map(|(point, text)| self.checked(*point, text));
         let checked: Vec<(Value, Change)> = checked.collect::<Result<_, _>>()?;
@@ -580,8 +584,8 @@ impl<'a> Session<'a> {
             .collect()
     }
 
-    /// The order of an axis, given by its index in the script, to its drive in the last scan; before the
-    /// first one its start.
+    /// The order of an axis, given by its index in the script, to its drive in the last scan; before the first one
+    /// its start.
     #[must_use]
     pub fn ordered(&self, axis: usize) -> Option<Ordered> {
         Some(self.machine.drives().get(axis)?.ordered())
@@ -608,7 +612,7 @@ impl<'a> Session<'a> {
         self.bench.fail(axis, fault);
     }
 
-    /// What was changed from outside so far.
+    /// The changes from outside so far.
     #[must_use]
     pub fn changes(&self) -> &[Change] {
         &self.changes
@@ -622,7 +626,7 @@ impl<'a> Session<'a> {
         self.judges.verdicts(&rows)
     }
 
-    /// As [`Session::verdicts`], without the texts of the claims ([`Verdict::says`]).
+    /// The same as [`Session::verdicts`], without the texts of the claims ([`Verdict::says`]).
     #[must_use]
     pub fn verdicts_untold(&mut self) -> Vec<Verdict> {
         let rows = self.bench.rows();
@@ -651,8 +655,8 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// The rows so far without judging the claims: claims of a run that was stopped refer to scans that
-    /// never came.
+    /// The rows so far, without judging the claims. Claims of a run that was stopped refer to scans that never
+    /// happened.
     #[must_use]
     pub fn into_trace(self) -> Trace {
         self.bench.into_rows().0

@@ -10,7 +10,7 @@ use standstill_fb::{AnyInstance, PinType, Value};
 pub(crate) struct Values {
     pub(crate) variables: Vec<Value>,
     pub(crate) instances: Vec<BlockInstance>,
-    /// Of guest programs: the values after their last call, and those written since.
+    /// Of guest programs: the values after their last call, and those written since then.
     pub(crate) symbols: Vec<Vec<Value>>,
     /// Of the expressions of wires: the values read last.
     pub(crate) formulas: Vec<Option<Value>>,
@@ -67,7 +67,7 @@ impl Values {
                 let place = self.symbols.get_mut(program)?.get_mut(symbol)?;
                 *place = convert(value, cells::type_of(*place))?;
             }
-            // Nobody writes it.
+            // It is never written.
             Point::Formula(_) => return None,
         }
         Some(())
@@ -75,7 +75,7 @@ impl Values {
 
     /// The value of a wire; a logical wire has none if one of its points is no BOOL.
     pub(crate) fn wire(&self, wire: &Wire) -> Option<Value> {
-        // How many are TRUE; none if one of them is no BOOL.
+        // The number of points that are TRUE; none if one of them is no BOOL.
         let count = |points: &[Point]| {
             let mut flags = points.iter().map(|point| self.bool(*point));
             flags.try_fold(0, |count, flag| Some(count + usize::from(flag?)))
@@ -88,7 +88,7 @@ impl Values {
         }
     }
 
-    /// The BOOL a wire carries.
+    /// The BOOL value of a wire.
     pub(crate) fn wire_bool(&self, wire: &Wire) -> Option<bool> {
         match self.wire(wire)? {
             Value::Bool(value) => Some(value),

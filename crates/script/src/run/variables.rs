@@ -6,7 +6,7 @@ use standstill_guest::Guest;
 use standstill_st::{Elementary, Symbol, Value};
 use standstill_trace::shortest;
 
-/// Most variables of a program that are shown.
+/// Largest number of variables of a program that are shown.
 const MOST: usize = 2000;
 
 /// A variable and its value, as text.

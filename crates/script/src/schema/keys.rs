@@ -52,7 +52,7 @@ fn holds<T>(key: &Key<T>) -> Value {
         } => scans_in(*least, *most),
         Holds::Object(inner) => object(inner),
         Holds::List(places) => {
-            // What stands at a place is the same at all of them.
+            // All places of a list have the same schema.
             let item = places.first().map_or(Value::Null, object);
             json!({"type": "array", "items": item, "maxItems": places.len()})
         }

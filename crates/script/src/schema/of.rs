@@ -36,7 +36,7 @@ pub(crate) fn integer(least: i64, most: i64) -> Value {
     ])
 }
 
-/// An object with more in it than a note.
+/// An object that has more than a note.
 pub(crate) fn not_empty(mut object: Value) -> Value {
     add(&mut object, "minProperties", json!(1));
     add(
@@ -52,7 +52,7 @@ pub(crate) fn names_of(each: Value) -> Value {
     json!({"type": "object", "propertyNames": definition("identifier"), "additionalProperties": each})
 }
 
-/// A count of scans in a range, or a time that may be one; if the range is above 0 the time is, too.
+/// A count of scans in a range, or a time in its place. If the range is above 0, the time is, too.
 pub(crate) fn scans_in(least: u64, most: u64) -> Value {
     let mut time = definition("duration");
     if least > 0 {
@@ -259,7 +259,7 @@ pub(crate) fn plant() -> Value {
     super::keys::object(&PLANT)
 }
 
-/// One drive at most.
+/// At most one drive.
 pub(crate) fn drive() -> Value {
     let mut drive = object(&shape::DRIVE);
     let pairs = [["ideal", "cia402"], ["ideal", "plant"], ["cia402", "plant"]];
@@ -349,7 +349,7 @@ pub(crate) fn two_conditions() -> Value {
     json!({"type": "array", "items": conditions(), "minItems": 2, "maxItems": 2})
 }
 
-/// Where a window begins or ends.
+/// The begin or the end of a window.
 pub(crate) fn range_end() -> Value {
     any_of_these(&[scans(), required(&["when"], object(&shape::WINDOW_EDGE))])
 }

@@ -15,7 +15,7 @@ use annotate_snippets::Level;
 use std::fmt;
 use std::sync::Arc;
 
-/// Warnings of one script that are rendered in full; the rest is counted.
+/// Largest number of warnings of one script that are rendered in full; the rest is counted.
 const SHOWN_MOST: usize = 20;
 
 /// The subject of a warning.
@@ -27,7 +27,7 @@ pub enum WarningKind {
     Clamped,
     /// An item of a program in Structured Text works, but is probably not meant.
     Doubtful,
-    /// It may mean something else than intended; no test fails because of it.
+    /// It may mean something other than intended; no test fails because of it.
     Note,
 }
 
@@ -47,15 +47,15 @@ impl WarningKind {
 /// One warning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
-    /// What it is about.
+    /// Its kind.
     pub kind: WarningKind,
     /// JSON path of its subject, such as `steps[2]`.
     pub path: String,
-    /// Where that stands.
+    /// The place of the subject.
     pub span: Span,
     /// The problem, one sentence without a full stop.
     pub message: String,
-    /// What to do about it.
+    /// The remedy.
     pub help: String,
 }
 
@@ -138,8 +138,8 @@ impl fmt::Display for Warnings {
     }
 }
 
-/// The items that test nothing according to the run, and the values that were changed in it; `has_golden`
-/// says that the run also has a golden.
+/// The items that test nothing according to the run, and the values that were changed in it; `has_golden` means
+/// that the run also has a golden.
 ///
 /// If the rows of the run were dropped on the way, only the warnings of the script's text are found.
 ///

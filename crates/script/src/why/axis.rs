@@ -77,7 +77,7 @@ impl Walk<'_> {
         found
     }
 
-    /// For an axis that nothing has moved: two blocks on another axis in one scan, one of which may be
+    /// For an axis that nothing has moved: two blocks that act on another axis in one scan. One of them may be
     /// meant for this axis.
     fn strayed(&mut self, axis: usize, scan: u64) -> Option<Finding> {
         let axes = 0..self.look.script().axes.len();
@@ -95,7 +95,7 @@ impl Walk<'_> {
         Some(Finding::new(Rank::Stopped, stray.scan, text))
     }
 
-    /// A command that another one aborted at once, or one with a mode that the script gives.
+    /// A command that another one aborted at once, or one whose mode the script gives.
     fn pushed_aside(&mut self, instance: usize, scan: u64) -> Option<Finding> {
         let aborted = self.look.pin(instance, "CommandAborted")?;
         let at = self.look.first_rise(aborted, 0, scan)?;
@@ -119,7 +119,7 @@ impl Walk<'_> {
         })
     }
 
-    /// The reason why blocks that never began have not begun.
+    /// The reason why blocks that never started have not started.
     fn untriggered(&mut self, instances: &[usize], scan: u64) -> Vec<Finding> {
         let mut found = Vec::new();
         for instance in instances.iter().copied() {
@@ -143,7 +143,7 @@ impl Walk<'_> {
         }
     }
 
-    /// How the axis came to be in ErrorStop.
+    /// The cause of the axis's ErrorStop.
     pub(super) fn fault(&self, axis: usize, scan: u64) -> Option<Finding> {
         let stopped = AxisState::ErrorStop.name();
         if self.state(axis, scan) != Some(stopped) {

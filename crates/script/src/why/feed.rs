@@ -250,7 +250,7 @@ impl Walk<'_> {
         found
     }
 
-    /// A variable that a step set, and another one reset before it was read or stayed long enough.
+    /// A variable that a step set, and another step reset before it was read or had its value long enough.
     fn set_back(&self, point: Point, step: usize, at: u64) -> Option<Finding> {
         if self.look.is_true(point, at) {
             return None;

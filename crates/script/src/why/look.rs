@@ -1,4 +1,4 @@
-//! The reads of rows, notes and the script by the search for reasons.
+//! Access to rows, notes and the script for the search for reasons.
 
 use super::words;
 use crate::claims::Verdict;
@@ -18,7 +18,7 @@ pub(super) struct Look<'a> {
     pub(super) rows: Rows<'a>,
     /// Points and scans at which claims that hold, or steps, need something to be TRUE.
     counted_on: Rc<Vec<(Point, u64)>>,
-    /// Looks that are left.
+    /// Remaining reads.
     left: Rc<Counter<u64>>,
 }
 
@@ -89,7 +89,7 @@ impl<'a> Look<'a> {
         self.script().axes.get(axis).map_or("", |axis| &axis.name)
     }
 
-    /// A point as scripts name it.
+    /// The name of a point in scripts.
     pub(super) fn called(&self, point: Point) -> String {
         point_name(self.script(), point)
     }
@@ -155,7 +155,7 @@ impl<'a> Look<'a> {
             .find(|&scan| self.rises(point, scan))
     }
 
-    /// The last scan of the time that a point is TRUE on end, from `scan` on.
+    /// The last scan of the time in which a point stays TRUE, from `scan` on.
     pub(super) fn end_of(&self, point: Point, scan: u64) -> u64 {
         let fallen = (scan..=self.last()).find(|&scan| !self.is_true(point, scan));
         fallen.map_or(self.last(), |fallen| fallen.saturating_sub(1))
@@ -185,7 +185,7 @@ impl<'a> Look<'a> {
             .collect()
     }
 
-    /// The inputs that set a block to work.
+    /// The inputs that start a block.
     pub(super) fn triggers(&self, instance: usize) -> Vec<usize> {
         let found = self.instance(instance).into_iter();
         found.flat_map(Instance::triggers).map(|(pin, _)| pin).collect()
@@ -222,7 +222,7 @@ impl<'a> Look<'a> {
             .map(|note| (note.scan as u64, note.text.as_str()))
     }
 
-    /// What an ErrorID pin shows.
+    /// The value of an ErrorID pin.
     pub(super) fn error_id(&self, instance: usize, scan: u64) -> Option<ErrorId> {
         match self.cell(self.pin(instance, "ErrorID")?, scan)? {
             Cell::Integer(number) => ErrorId::from_number(u16::try_from(number).ok()?),

@@ -1,5 +1,5 @@
-//! The reasons why claims fail: a walk from a failing claim back through wires, blocks, axes and steps to
-//! the place where the process stopped.
+//! The reasons why claims fail: a walk from a failing claim back through wires, blocks, axes and steps to the place
+//! where the process stopped.
 //!
 //! It reads the rows and notes of the run, after it, so a run whose claims hold pays nothing. No golden
 //! is needed. The first reason is the likeliest. If a run stops for one reason, the others are its
@@ -19,19 +19,19 @@ use crate::run::Rows;
 use look::Look;
 use std::collections::BTreeSet;
 
-/// Reasons told at most.
+/// Largest number of reported reasons.
 const TOLD_MOST: usize = 6;
 
-/// Blocks, axes and wires that the walk from one claim visits at most.
+/// Largest number of blocks, axes and wires that the walk from one claim visits.
 const VISITS_MOST: usize = 2_000;
 
-/// Most inputs on one way back from a claim: the longest chain of blocks.
+/// Largest number of inputs in one chain of blocks back from a claim.
 const DEPTH_MOST: usize = 250;
 
-/// Most failing claims from which a walk starts.
+/// Largest number of failing claims from which a walk starts.
 const CLAIMS_MOST: usize = 20;
 
-/// Most cells and notes that all walks of a run read: this many, and [`PASSES_MOST`] for each row.
+/// Largest number of cells and notes that all walks of a run read: this number, and [`PASSES_MOST`] for each row.
 const LOOKS_MOST: u64 = 50_000_000;
 
 /// See [`LOOKS_MOST`].
@@ -59,7 +59,7 @@ enum Rank {
     Changed,
     /// It continues, but too slowly.
     Slow,
-    /// What the signal follows.
+    /// The signal follows this one.
     Follows,
     /// The expectation of the script's author.
     Expected,
@@ -70,7 +70,7 @@ enum Rank {
 struct Finding {
     rank: Rank,
     scan: Option<u64>,
-    /// From the claim's signal to here, a phrase a step.
+    /// The path from the claim's signal to here, a phrase for each step.
     way: Vec<String>,
     text: String,
 }
@@ -91,7 +91,7 @@ impl Finding {
         self
     }
 
-    /// The way, shortened in the middle, and its end.
+    /// The path, shortened in the middle, and its end.
     fn line(&self) -> String {
         let mut parts: Vec<&str> = self.way.iter().map(String::as_str).collect();
         if parts.len() > 4 {
@@ -119,7 +119,7 @@ enum Asked<'c> {
 struct Walk<'a> {
     look: Look<'a>,
     visited: BTreeSet<(u8, usize, usize)>,
-    /// The inputs on the way from the claim to here.
+    /// The inputs on the path from the claim to here.
     path: Vec<Point>,
 }
 

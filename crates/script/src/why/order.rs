@@ -6,10 +6,10 @@ use crate::model::{Condition, Point, Signal, Wire};
 /// A claim that is missed by more scans has another reason than the order of calls.
 const LATE_MOST: u64 = 3;
 
-/// Most wires through which one chain of cause and effect is followed.
+/// Largest number of wires through which one chain of cause and effect is followed.
 const WIRES_MOST: usize = 32;
 
-/// Most wires that are listed for the cause of an edge.
+/// Largest number of wires that are listed for the cause of an edge.
 const TOLD_MOST: usize = 2;
 
 impl Walk<'_> {
@@ -23,7 +23,7 @@ impl Walk<'_> {
             .find_map(|cause| self.late_behind(cause, scan, came))
     }
 
-    /// The wire that is read late on the way to a point that came late.
+    /// The wire that is read late on the path to a point that rose late.
     fn late_behind(&self, cause: Point, scan: u64, came: u64) -> Option<Finding> {
         let (mut signal, mut at) = (cause, came);
         let mut late = Vec::new();

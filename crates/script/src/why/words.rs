@@ -2,13 +2,13 @@
 
 use standstill_axis::ErrorId;
 
-/// An error with its remedy: `201 NotPowered: switch it on with MC_Power and wait for Status`. `told` has
-/// its number, its name and other known facts.
+/// An error with its remedy: `201 NotPowered: switch it on with MC_Power and wait for Status`. `told` has its
+/// number, its name and other known facts.
 pub(super) fn error(told: &str, id: ErrorId) -> String {
     format!("{told}: {}", phrase(id.remedy()))
 }
 
-/// A sentence as part of another: without its full stop, and beginning small unless it begins with a name.
+/// A sentence as part of another: without its full stop, and in lower case unless it begins with a name.
 pub(super) fn phrase(sentence: &str) -> String {
     let sentence = sentence.trim_end_matches('.');
     let word = sentence.split(' ').next().unwrap_or_default();
