@@ -8,15 +8,15 @@ use crate::source::{Position, Sources, Span};
 use crate::typed::{Stmt, StmtKind};
 use std::collections::BTreeMap;
 
-/// The place of a counter: where its statement begins, and 0, or the number of one of its branches.
+/// The place of a counter: the begin of its statement, and 0, or the number of one of its branches.
 type Key = (u32, u32);
 
-/// A statement, or a branch of one, and where it is counted.
+/// A counter of a statement, or of a branch of one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Counter {
     /// The file, as it was given.
     pub file: String,
-    /// Where the statement begins.
+    /// The begin of the statement.
     pub position: Position,
     /// 0 for the statement; otherwise the number of one of its branches, from 1. The last branch is ELSE,
     /// even if it is not written.

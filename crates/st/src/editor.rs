@@ -17,11 +17,11 @@ pub struct Hover {
     pub text: String,
     /// Its description: from the table of blocks, or from the comment at its declaration.
     pub doc: String,
-    /// Where it is declared; `None` if that is the library.
+    /// The place of its declaration; `None` if that is the library.
     pub declared: Option<Span>,
 }
 
-/// What a completion is.
+/// The kind of a completion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum CompletionKind {
@@ -48,7 +48,7 @@ pub struct Completion {
     pub name: String,
     /// The text to insert: for a pin of a call with its sign, `Execute := `.
     pub insert: String,
-    /// What it is.
+    /// Its kind.
     pub kind: CompletionKind,
     /// Its type, in a word or two.
     pub detail: String,

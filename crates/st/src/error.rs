@@ -100,31 +100,31 @@ codes! {
     St57 = "ST57",
 }
 
-/// How bad it is.
+/// The severity of a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// The program cannot be compiled.
     Error,
-    /// It can.
+    /// The program can be compiled.
     Warning,
 }
 
-/// One thing that is wrong.
+/// One fault.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// What kind.
+    /// Its kind.
     pub code: Code,
-    /// How bad.
+    /// Its severity.
     pub severity: Severity,
     /// The fault, one sentence without a full stop.
     pub message: String,
-    /// Where.
+    /// Its place.
     pub span: Span,
-    /// A few words under the carets, possibly none.
+    /// A few words under the carets; may be empty.
     pub label: String,
-    /// Another place that matters, with a few words.
+    /// Another relevant place, with a few words.
     pub related: Option<Box<(Span, String)>>,
-    /// What to do about it.
+    /// The remedy.
     pub help: Option<String>,
 }
 
@@ -169,10 +169,10 @@ impl Diagnostic {
     }
 }
 
-/// Most errors, and most warnings, that are kept; further ones are counted.
+/// Largest number of errors, and of warnings, that are kept; further ones are counted.
 pub const DIAGNOSTICS_MOST: usize = 50;
 
-/// What was found so far.
+/// The faults found so far.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Found {
     errors: Vec<Diagnostic>,
@@ -201,12 +201,12 @@ impl Found {
         self.error_count > 0
     }
 
-    /// How many errors are kept.
+    /// Number of errors that are kept.
     pub(crate) const fn shown(&self) -> usize {
         self.errors.len()
     }
 
-    /// All that is kept, in the order of the text.
+    /// All kept faults, in the order of the text.
     pub(crate) fn report(self, sources: Sources) -> Report {
         let hidden = self.error_count - self.errors.len() + self.warning_count - self.warnings.len();
         let mut diagnostics = self.errors;
@@ -235,7 +235,7 @@ impl Report {
         &self.diagnostics
     }
 
-    /// How many more there are.
+    /// Number of faults that are not kept.
     #[must_use]
     pub const fn hidden(&self) -> usize {
         self.hidden
@@ -253,7 +253,7 @@ impl Report {
         &self.sources
     }
 
-    /// Name of the file a place is in, with `/`.
+    /// Name of the file that a place is in, with `/`.
     #[must_use]
     pub fn file_name(&self, span: Span) -> &str {
         self.sources.file_name(span)
@@ -339,18 +339,18 @@ impl fmt::Display for Report {
 
 impl std::error::Error for Report {}
 
-/// A text in which control characters and directions of writing can be seen.
+/// A text in which control characters and directions of writing are visible.
 fn visible(text: &str) -> String {
     normalize_untrusted_str(&without_joiners(text))
 }
 
-/// The same of the name of a file.
+/// The same for the name of a file.
 fn in_one_line(name: &str) -> String {
     visible(name).replace('\n', "\u{240a}")
 }
 
-/// `text` for the renderer of errors, which drops a joiner as if it were not there: a replacement character stands for it. Both have three
-/// bytes, so places stay.
+/// `text` with a replacement character for each joiner, which the renderer of errors would drop as if it did not exist.
+/// Both have three bytes, so places stay valid.
 #[must_use]
 pub fn without_joiners(text: &str) -> Cow<'_, str> {
     const JOINER: char = '\u{200d}';
@@ -374,7 +374,7 @@ pub(crate) fn quoted(text: &str) -> String {
 pub(crate) fn did_you_mean<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
     let wanted: String = name.to_ascii_lowercase().chars().take(100).collect();
     let letters = wanted.chars().count();
-    // Of one letter nothing would be left.
+    // A name of one letter would have none left.
     let slips = (letters / 3).max(1).min(letters.saturating_sub(1));
     candidates
         // A difference in length is a difference in letters; most names need no closer check.

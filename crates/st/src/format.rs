@@ -1,5 +1,5 @@
-//! The canonical layout of a text: indentation, spaces and the case of keywords. The author's line ends
-//! stay; comments are not changed.
+//! The canonical layout of a text: indentation, spaces and the case of keywords. The author's line ends remain;
+//! comments are not changed.
 
 use crate::error::{Found, Report};
 use crate::lex::{Token, Word, lex};
@@ -38,7 +38,7 @@ pub fn format(name: &str, bytes: &[u8]) -> Result<String, Box<Report>> {
     Ok(layout.out.trim_start().to_owned())
 }
 
-/// Something that is open.
+/// An open construct.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Open {
     /// A unit, whose statements are not indented.
@@ -200,7 +200,7 @@ impl Layout {
         self.last = Some(token);
     }
 
-    /// The effect of a written token: what it opens, and what may follow it.
+    /// The effect of a written token: the construct that it opens, and what may follow it.
     fn follow(&mut self, token: Token, word: Option<Word>, fresh: bool, case: bool) {
         self.signed = self.expects_value && matches!(token, Token::Minus | Token::Plus);
         self.expects_value = match token {
@@ -263,7 +263,7 @@ impl Open {
     }
 }
 
-/// What a word opens.
+/// The construct that a word opens.
 const fn opens(word: Word) -> Option<Open> {
     Some(match word {
         Word::Program | Word::FunctionBlock | Word::Function | Word::Method => Open::Unit,
@@ -293,7 +293,7 @@ const fn opens_header(word: Word) -> bool {
     !matches!(word, Word::Case | Word::If | Word::For | Word::While)
 }
 
-/// Whether a word closes what another one opened.
+/// Whether a word closes a construct that another one opened.
 fn closes(word: Word) -> bool {
     word.text().starts_with("END_")
 }
@@ -322,7 +322,7 @@ fn is_type(text: &str) -> bool {
     Elementary::find(text).is_some() || text.eq_ignore_ascii_case("STRING")
 }
 
-/// Whether a label of CASE is here: text before a `:` on the way to the next statement.
+/// Whether a label of CASE is here: text before a `:` that comes before the next statement.
 fn is_label(tokens: &[(Token, crate::source::Span)]) -> bool {
     let stops = |token: &Token| {
         matches!(

@@ -12,15 +12,15 @@ use crate::syntax::{Expression, ExpressionKind, Path, Selector};
 pub struct Reference {
     /// The name as in the text, up to a bit of it.
     pub path: String,
-    /// Where: bytes of the text.
+    /// Its bytes in the text.
     pub span: Span,
 }
 
-/// The names that an expression reads, in the order of the text; those of enumerations are among them, those of functions
-/// are not. Cost: linear in the text.
+/// The names that an expression reads, in the order of the text. Names of enumerations are included; those of
+/// functions are not. Cost: linear in the text.
 ///
 /// # Errors
-/// The [`Report`], in which it cannot be read.
+/// The [`Report`] of an expression that cannot be read.
 pub fn references(text: &str) -> Result<Vec<Reference>, Box<Report>> {
     let source = Source {
         name: "expression",

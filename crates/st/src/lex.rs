@@ -5,7 +5,8 @@ use crate::source::Span;
 
 macro_rules! keywords {
     ($($variant:ident = $text:literal,)*) => {
-        /// The reserved words. Those that mean something in one place only (TASK, WITH, INTERVAL) are names elsewhere.
+        /// The reserved words. Words that have a meaning in one place only (TASK, WITH, INTERVAL) are names
+        /// elsewhere.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         pub(crate) enum Word { $($variant,)* }
 
@@ -19,7 +20,7 @@ macro_rules! keywords {
     };
 }
 
-// In alphabetical order, because they are searched for by halves.
+// In alphabetical order, for a binary search.
 keywords! {
     And = "AND", AndThen = "AND_THEN", Array = "ARRAY", At = "AT", By = "BY", Case = "CASE", Class = "CLASS",
     Configuration = "CONFIGURATION", Constant = "CONSTANT", Continue = "CONTINUE", Do = "DO", Else = "ELSE",
@@ -210,7 +211,7 @@ impl Lexer<'_> {
         }
     }
 
-    /// Whites, comments and pragmas.
+    /// Spaces, comments and pragmas.
     fn skip_blank(&mut self) {
         loop {
             self.skip_while(|byte| byte.is_ascii_whitespace() || byte == 0x0B);
@@ -286,7 +287,7 @@ impl Lexer<'_> {
         }
     }
 
-    /// The next token; `None` if the text here is none, which has then been reported.
+    /// The next token. `None` if the text here is no token; this has then been reported.
     fn token(&mut self) -> Option<Token> {
         let byte = self.peek(0);
         if is_name_start(byte) || !byte.is_ascii() {
@@ -362,7 +363,7 @@ impl Lexer<'_> {
         Some(Word::find(text).map_or(Token::Name, Token::Word))
     }
 
-    /// What stands behind `T#`. A sign behind its first number is an operator, and `..` a range.
+    /// The text behind `T#`. A sign behind its first number is an operator, and `..` a range.
     fn duration(&mut self) {
         self.skip_while(|byte| matches!(byte, b'+' | b'-'));
         self.skip_while(is_name);
@@ -400,7 +401,7 @@ impl Lexer<'_> {
             _ => "use other letters; comments and strings may have any",
         };
         self.found.add(wrong.help(help));
-        // Apart from its letters it is a name, so it is read as one, and only this is reported.
+        // Except for its letters it is a name, so it is read as one, and only this is reported.
         text.starts_with(char::is_alphabetic).then_some(Token::Name)
     }
 

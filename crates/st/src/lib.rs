@@ -1,9 +1,9 @@
 //! Structured Text of IEC 61131-3: checked, with places in every message, and compiled to a guest.
 //!
-//! [`compile`] takes the files of a project and returns a WebAssembly module, which `standstill-guest`
-//! and hosts in other languages run, and a table of [`Symbols`]: the place of every variable, and the
-//! place in the text for every fault. [`check`] only reports mistakes. Function blocks are those of the
-//! table of blocks; a new block needs no code here.
+//! [`compile`] takes the files of a project. It returns a WebAssembly module, which `standstill-guest` and hosts in
+//! other languages run, and a table of [`Symbols`]: the place of every variable, and the place in the text for
+//! every fault. [`check`] only reports mistakes. Function blocks are those of the table of blocks; a new block
+//! needs no code here.
 //!
 //! Text becomes tokens (`lex`), a tree (`parse`), a checked program (`check`) and a module (`emit`). The
 //! crate has no files, no clock, no interpreter and no machine code.
@@ -43,10 +43,10 @@ pub use types::Elementary;
 
 use crate::error::Found;
 
-/// The options of the compiler beside the sources.
+/// The options of the compiler.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// The PROGRAM to run in every scan. Without it a CONFIGURATION decides, or it is the only one.
+    /// The PROGRAM to run in every scan. Without it a CONFIGURATION decides, or the only PROGRAM runs.
     pub program: Option<String>,
     /// Whether it is a library: there need not be a PROGRAM.
     pub library: bool,
@@ -57,24 +57,24 @@ pub struct Options {
     /// Names of types, elements and pins of the library in addition to their own, and other numbers of
     /// enumerations.
     pub dialect: Dialect,
-    /// Names of axes, the first one is number 1: a variable of type AXIS_REF of such a name begins as that axis.
+    /// Names of axes; the first one is number 1. A variable of type AXIS_REF with such a name starts as that axis.
     pub axes: Vec<String>,
-    /// Which axis a variable of type AXIS_REF begins as: its path, and the number of the axis.
+    /// The axes as which variables of type AXIS_REF start: the path of the variable, and the number of the axis.
     pub bindings: Vec<(String, u16)>,
 }
 
-/// A program that was compiled.
+/// A compiled program.
 #[derive(Clone, Debug)]
 pub struct Compiled {
     /// The module.
     pub wasm: Vec<u8>,
     /// Its variables and places.
     pub symbols: Symbols,
-    /// What is doubtful.
+    /// Its warnings.
     pub report: Report,
 }
 
-/// The faults and doubts of the sources. Cost: linear in their bytes.
+/// The faults and warnings of the sources. Cost: linear in their bytes.
 #[must_use]
 pub fn check(sources: &[Source<'_>], options: &Options) -> Report {
     match build(sources, options, false) {

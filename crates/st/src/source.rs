@@ -2,7 +2,7 @@
 
 use crate::error::{Code, Diagnostic};
 
-/// Most bytes of all sources together.
+/// Largest number of bytes of all sources together.
 pub const SOURCES_MOST: usize = 16 << 20;
 
 /// A file to be compiled.
@@ -64,7 +64,7 @@ struct File {
     text: String,
     /// Offset of its first byte in the sequence of all files.
     start: u32,
-    /// Where its lines begin, within it.
+    /// The offsets of its lines.
     lines: Vec<u32>,
 }
 
@@ -80,7 +80,7 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// Takes the files; a byte order mark is left out. Finds text that is no UTF-8, and too much of it.
+    /// Takes the files; a byte order mark is left out. Reports text that is no UTF-8, and too much text.
     pub(crate) fn new(sources: &[Source<'_>]) -> (Self, Vec<Diagnostic>) {
         let mut files = Vec::new();
         let mut wrong = Vec::new();
@@ -143,7 +143,7 @@ impl Sources {
         (Self { files }, wrong)
     }
 
-    /// How many there are.
+    /// The number of files.
     pub(crate) fn count(&self) -> usize {
         self.files.len()
     }
@@ -185,8 +185,7 @@ impl Sources {
         &self.file(span.start).name
     }
 
-    /// The file a place is in, by its number, and its bytes in that file; a byte order mark does not
-    /// count.
+    /// The number of the file that a place is in, and its bytes in that file; a byte order mark does not count.
     #[must_use]
     pub fn locate(&self, span: Span) -> (usize, std::ops::Range<usize>) {
         let index = self.index(span.start);
@@ -195,7 +194,7 @@ impl Sources {
         (index, from..span.end.saturating_sub(start) as usize)
     }
 
-    /// The comment behind a declaration on its line, or else on the lines before it.
+    /// The comment behind a declaration on its line, otherwise the one on the lines before it.
     pub(crate) fn remark(&self, span: Span) -> String {
         let file = self.file(span.start);
         let at = (span.start - file.start) as usize;
@@ -264,7 +263,7 @@ impl Sources {
         Some((text, first as u32 + 1, at(from)..at(to)))
     }
 
-    /// The file a place is in.
+    /// The number of the file that a place is in.
     pub(crate) fn file_index(&self, span: Span) -> usize {
         self.index(span.start)
     }

@@ -90,7 +90,7 @@ fn elements(
     }
 }
 
-/// The same element several times: made once, and copied.
+/// The same element several times: it is made once and copied.
 fn repeat(
     program: &Program<'_>,
     array: &crate::types::Array,

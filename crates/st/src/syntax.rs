@@ -115,7 +115,7 @@ pub(crate) enum SpecKind {
 #[derive(Debug)]
 pub(crate) enum Initial {
     Value(Expression),
-    /// `[1, 3(0)]`: how often, and what.
+    /// `[1, 3(0)]`: the number of times, and the value.
     List(Vec<(Option<Expression>, Initial)>, Span),
     /// `(X := 1.0, Y := 2.0)`
     Members(Vec<(Ident, Initial)>, Span),
@@ -172,7 +172,7 @@ pub(crate) enum Operator {
 }
 
 impl Operator {
-    /// How tightly it binds; a larger number is tighter.
+    /// Its precedence; a larger number binds tighter.
     pub(crate) const fn level(self) -> u8 {
         match self {
             Self::Or | Self::OrElse => 1,
@@ -237,12 +237,12 @@ pub(crate) struct Call {
 pub(crate) struct Argument {
     pub name: Option<Ident>,
     pub way: Way,
-    /// Missing in `Out =>`, which takes nothing.
+    /// Absent in `Out =>`, which assigns to nothing.
     pub value: Option<Expression>,
     pub span: Span,
 }
 
-/// How an argument goes.
+/// The direction of an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Way {
     /// `x` or `In := x`

@@ -58,16 +58,16 @@ pub(crate) enum Kind {
     Not(Elementary, Box<Expr>),
     Chain(Box<Expr>, Vec<Step>),
     Convert(Box<Expr>, Elementary, Elementary),
-    /// Its value, which must lie in a subrange.
+    /// Its value, which must be within a subrange.
     Within(Box<Expr>, Elementary, i128, i128),
     Call(Box<FunctionCall>),
     /// The bytes of a string; its address is pushed.
     Text(Vec<u8>),
-    /// A function whose value is a string, put together at this address.
+    /// A function whose value is a string, built at this address.
     Join(crate::library::Function, Vec<Expr>, u32),
     /// Two strings.
     Compare(Operation, Box<[Expr; 2]>),
-    /// A function of the library, done in this type.
+    /// A function of the library, computed in this type.
     Library(crate::library::Function, Elementary, Vec<Expr>),
     Wrong,
 }
@@ -78,7 +78,7 @@ pub(crate) struct Step {
     pub convert: Option<(Elementary, Elementary)>,
     pub operation: Operation,
     pub right: Expr,
-    /// The type in which it is done.
+    /// The type in which it is computed.
     pub ty: Elementary,
     pub span: Span,
 }
@@ -133,7 +133,7 @@ pub(crate) enum Argument {
 pub(crate) struct BlockCall {
     pub instance: Place,
     pub unit: UnitId,
-    /// Inputs, of the instance called, and their values.
+    /// Inputs of the called instance, and their values.
     pub inputs: Vec<(Place, Expr)>,
     /// In_outs, by member, and their variables.
     pub references: Vec<(usize, Place)>,

@@ -53,7 +53,7 @@ elementary! {
     Ltime = "LTIME", Time, 8;
 }
 
-/// What can be done with an elementary type.
+/// The operations on an elementary type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Class {
     Bool,
@@ -90,7 +90,7 @@ impl Elementary {
         self.size() * 8
     }
 
-    /// The whole numbers it holds; those of REAL and LREAL that it holds exactly.
+    /// The whole numbers it holds; for REAL and LREAL those that it holds exactly.
     pub(crate) const fn range(self) -> (i128, i128) {
         match self.class() {
             Class::Bool => (0, 1),
@@ -120,7 +120,7 @@ impl Elementary {
         }
     }
 
-    /// Whether every value of it is one of `to`, so that it is converted implicitly.
+    /// Whether `to` holds every value of it, so that it is converted implicitly.
     pub(crate) fn widens_to(self, to: Self) -> bool {
         use Class::{Bits, Real, Signed, Time, Unsigned};
         match (self.class(), to.class()) {
@@ -141,7 +141,7 @@ impl Elementary {
     }
 }
 
-/// Most bytes of a string: its length is in one byte.
+/// Largest number of bytes of a string: its length is in one byte.
 pub(crate) const TEXT_MOST: u8 = 254;
 
 /// The bytes of a STRING without a length.
@@ -246,12 +246,12 @@ pub(crate) struct Member {
 /// The initial value of a variable.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Start {
-    /// As its type says.
+    /// The default of its type.
     Default,
     Value(Constant),
     /// The bytes of a string.
     Text(Vec<u8>),
-    /// Elements of an array from the first on: how often, and what.
+    /// Elements of an array from the first on: the number of times, and the value.
     List(Vec<(u32, Start)>),
     /// Members of a structure or block, by place.
     Members(Vec<(usize, Start)>),
@@ -296,7 +296,7 @@ impl Members {
         self.put(member);
     }
 
-    /// Rounds the size up to that of a row of such.
+    /// Rounds the size up, so that instances can be put one after the other.
     pub(crate) fn close(&mut self) {
         self.size = self.size.checked_next_multiple_of(8).unwrap_or(u32::MAX);
     }
@@ -349,7 +349,7 @@ impl Types {
         id
     }
 
-    /// STRING of so many bytes.
+    /// STRING of this number of bytes.
     pub(crate) fn text(&mut self, capacity: u8) -> TypeId {
         self.shared(Type::Text(capacity))
     }
@@ -362,7 +362,7 @@ impl Types {
         }
     }
 
-    /// What its values are in memory and in arithmetic; `None` if it has members or elements.
+    /// The representation of its values in memory and in arithmetic; `None` if it has members or elements.
     pub(crate) fn elementary(&self, id: TypeId) -> Option<Elementary> {
         match self.get(id) {
             Type::Elementary(it) => Some(*it),
@@ -371,7 +371,7 @@ impl Types {
         }
     }
 
-    /// What an expression has that reads a variable of this type: a subrange is as its base.
+    /// The type of an expression that reads a variable of this type: for a subrange its base.
     pub(crate) fn value_type(&self, id: TypeId) -> TypeId {
         match self.get(id) {
             Type::Subrange { base, .. } => Self::of(*base),

@@ -192,7 +192,7 @@ fn conversions_round_half_to_even_saturate_and_keep_low_bits() {
     assert_eq!(real("REAL", "LREAL_TO_REAL(0.1)"), f64::from(0.1_f32));
     assert_eq!(real("LREAL", "UDINT_TO_LREAL(4294967295)"), 4_294_967_295.0);
     assert_eq!(real("LREAL", "LINT_TO_LREAL(-3)"), -3.0);
-    // The same of variables, which nothing works out before.
+    // The same with variables, which nothing evaluates before.
     let run = ran(
         "l : LREAL := 2.5; d : DINT := 70000; u : ULINT := 18446744073709551615; a, b : INT; c : LREAL; e : SINT;",
         "a := LREAL_TO_INT(l); b := DINT_TO_INT(d); c := ULINT_TO_LREAL(u); e := LREAL_TO_SINT(l * -100.0);",

@@ -25,7 +25,7 @@ fn options() -> Options {
     }
 }
 
-/// The text without its mark, and where that is.
+/// The text without its mark, and the place of the mark.
 fn marked(text: &str) -> (String, usize) {
     let at = text.find('|').expect("a mark");
     (text.replacen('|', "", 1), at)
@@ -46,7 +46,7 @@ fn ask<T>(text: &str, ask: impl FnOnce(&[Source<'_>], usize) -> T) -> T {
     ask(&sources, at)
 }
 
-/// What stands at the mark in a program's statements.
+/// The answer for the mark in a program's statements.
 fn told(statements: &str) -> (Sources, Hover) {
     let (sources, found) = ask(&program(statements), |sources, at| {
         hover(sources, &options(), 1, at)
@@ -131,7 +131,7 @@ fn names_are_told_with_their_declaration_and_what_is_said_of_them() {
             "{statements}"
         );
     }
-    // What the table of blocks says.
+    // The text of the table of blocks.
     let (_, pin) = told("Mv(Axis := X, Velo|city := 5.0);");
     assert!(pin.text.starts_with("Velocity : LREAL"), "{}", pin.text);
     assert!(pin.doc.contains("(u/s)"), "{}", pin.doc);
@@ -185,7 +185,7 @@ fn nothing_is_told_of_what_is_no_name() {
     }
 }
 
-/// A text is not finished while it is written: what is offered stands on what is there before.
+/// A text is incomplete while it is written: the offers depend on the text before the place.
 #[test]
 fn members_are_offered_behind_a_point_in_a_text_that_is_broken() {
     let pins = offered(&program("IF Start THEN\n  Mv.|"));
@@ -293,7 +293,7 @@ fn programs_are_offered_by_their_names_with_their_variables() {
     assert_eq!(names(&found), ["Ready", "Step"]);
 }
 
-/// Every place of a text that is cut anywhere.
+/// Every place of a text that is cut off anywhere.
 #[test]
 fn no_place_of_a_broken_text_leads_to_a_panic() {
     let whole = program(

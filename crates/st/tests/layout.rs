@@ -6,7 +6,7 @@ fn laid_out(text: &str) -> String {
     format("prog.st", text.as_bytes()).unwrap_or_else(|report| panic!("{}", report.render()))
 }
 
-/// Each line as it is typed, and as it is laid out; `None` where it goes.
+/// Each line as it is typed, and as it is laid out; `None` if it is dropped.
 #[rustfmt::skip]
 const LINES: &[(&str, Option<&str>)] = &[
     ("\u{feff}type  Step:(Idle,Moving:=5 );", Some("TYPE Step : (Idle, Moving := 5);")),
@@ -86,11 +86,11 @@ n := -n;
 END_FUNCTION_BLOCK
 ";
     assert_eq!(laid_out(methods), methods);
-    // Mistakes of types and names do not matter, but what cannot be read is left alone.
+    // Mistakes of types and names do not matter. A text that cannot be read is not changed.
     assert!(format("prog.st", b"PROGRAM P IF x THEN END_PROGRAM").is_err());
 }
 
-/// The texts of the repository, laid out twice, are the same, and are made of the same words.
+/// The texts of the repository do not change in a second layout, and keep their words.
 #[test]
 fn programs_of_the_repository_keep_their_words() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");

@@ -2,7 +2,7 @@
 
 use standstill_st::{Options, Report, Source};
 
-/// The codes and lines of what is doubtful in a program with these variables and statements, from line 10 on.
+/// The codes and lines of the warnings for a program with these variables and statements, from line 10 on.
 fn lints(variables: &str, statements: &str) -> Vec<(&'static str, u32)> {
     let text = format!(
         "PROGRAM P\nVAR\n  X : AXIS_REF;\n  go, done : BOOL;\n  n : INT(0..9);\n  a, b : LREAL;\n{variables}\nEND_VAR\n\n\
@@ -14,13 +14,13 @@ fn lints(variables: &str, statements: &str) -> Vec<(&'static str, u32)> {
         .collect()
 }
 
-/// The codes of what is doubtful in this text.
+/// The codes of the warnings for this text.
 fn codes(text: &str) -> Vec<&'static str> {
     let report = report(text);
     report.diagnostics().iter().map(|it| it.code.name()).collect()
 }
 
-/// What there is to say of this text, which has no mistake.
+/// The report of this text, which has no mistake.
 fn report(text: &str) -> Report {
     let source = Source {
         name: "p.st",
@@ -46,7 +46,7 @@ fn a_motion_block_is_called_in_every_scan() {
     assert_eq!(lints(MOVE, in_case), [("ST50", 11)]);
     let always = "Mv(Axis := X, Execute := done);\ngo := Mv.Error;";
     assert_eq!(lints(MOVE, always), []);
-    // Called besides; a timer may stand still.
+    // An additional call; a timer need not be called.
     let both = "IF go THEN\nn := 1;\nEND_IF;\nMv(Axis := X, Execute := done);\ngo := Mv.Error;";
     assert_eq!(lints(MOVE, both), []);
     assert_eq!(
@@ -139,11 +139,11 @@ fn another_call_may_give_execute_otherwise() {
         told(MOVE, &given(", Execute := TRUE")),
         [("ST51", 11), ("ST51", 13)]
     );
-    // A statement writes it, and a call takes that.
+    // A statement writes it, and a call uses that value.
     assert_eq!(told(MOVE, &format!("Mv.Execute := done;\n{}", given(""))), []);
     let every = "Mv.Execute := done;\nMv(Axis := X, Execute := TRUE);";
     assert_eq!(told(MOVE, every), [("ST51", 11)]);
-    // That of another instance is none of its own.
+    // The value of another instance is not its own.
     let two = "Mv(Axis := X, Execute := TRUE);\nMw(Axis := X, Execute := FALSE);\ngo := Mw.Error;";
     assert_eq!(told("Mv, Mw : MC_MoveAbsolute;", two), [("ST51", 10)]);
 }
@@ -182,7 +182,7 @@ fn an_instance_that_is_read_is_called() {
         lints("Ts : ARRAY [1..2] OF TON;", "go := Ts[1].Q;"),
         [("ST53", 7)]
     );
-    // Who gets it may call it.
+    // A unit that receives the instance may call it.
     let text = "FUNCTION_BLOCK Wait VAR_IN_OUT T : TON; END_VAR T(IN := TRUE, PT := T#1s); END_FUNCTION_BLOCK
         FUNCTION_BLOCK Count VAR_OUTPUT n : INT; END_VAR METHOD Up n := n + 1; END_METHOD END_FUNCTION_BLOCK
         PROGRAM P VAR T : TON; W : Wait; C : Count; go : BOOL; END_VAR
@@ -255,7 +255,7 @@ fn a_lint_is_switched_off_in_place() {
     assert_eq!(lints("", "{lint off ST50}\ngo := a = b;"), [("ST55", 11)]);
 }
 
-/// An AXIS_REF that nobody binds is told where the axes are known.
+/// An AXIS_REF that is never bound is reported if the axes are known.
 #[test]
 fn an_axis_that_nobody_names_is_told() {
     let doubts = |variables: &str, statements: &str, axes: &[&str], bindings: &[(&str, u16)]| {
@@ -283,7 +283,7 @@ fn an_axis_that_nobody_names_is_told() {
     let plain = "  X : AXIS_REF;";
     let message = "`X` names no axis: blocks refuse it with ErrorID 100".to_owned();
     assert_eq!(doubts(plain, "", &["Belt"], &[]), [(4, message)]);
-    // Called like an axis, bound, numbered, or set at work; or no machine is known.
+    // It has the name of an axis, is bound, has a number, or is set at run time; or no machine is known.
     assert_eq!(doubts(plain, "", &["Belt", "x"], &[]), []);
     assert_eq!(doubts(plain, "", &["Belt"], &[("X", 1)]), []);
     assert_eq!(doubts("  X : AXIS_REF := (Number := 1);", "", &["Belt"], &[]), []);

@@ -7,8 +7,8 @@ use standstill_st::{Code, Options, Severity, Source};
 use standstill_testkit::Random;
 use std::time::Instant;
 
-/// A mistake, its code, the piece of the text it is told at (empty: between two characters), and a word of the message or
-/// of the help.
+/// A mistake, its code, the part of the text where it is reported (empty: between two characters), and a word of
+/// the message or of the help.
 const MISTAKES: &[(&str, Code, &str, &str)] = &[
     (
         "PROGRAM P VAR x : INT; END_VAR x := 1 x := 2; END_PROGRAM",
@@ -674,7 +674,7 @@ fn every_mistake_is_told_at_its_place_with_what_to_do() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// One mistake has one message, and what follows it is looked at, too.
+/// One mistake has one message, and the text behind it is checked, too.
 #[test]
 fn reading_goes_on_behind_a_mistake() {
     let text = "PROGRAM P\nVAR\n  a : INT\n  b : INTT;\n  c : INT;\nEND_VAR\nIF a = 1 THE\n  c := 2;\nEND_IF;\nd := 1;\nc = 3;\nEND_PROGRAM\n";
@@ -752,7 +752,7 @@ fn what_is_nested_too_deep_or_too_large_is_told_at_once() {
     assert!(report.render().contains("latin1.st:1:15"), "{}", report.render());
 }
 
-/// Long rows are no depth: they are compiled, in time that grows with their length.
+/// Long rows are no depth: they are compiled, in a time that grows with their length.
 #[test]
 fn long_rows_are_compiled() {
     let terms = 20_000;
@@ -881,7 +881,8 @@ const SOUP: &[&str] = &[
     "==",
 ];
 
-/// Nothing that is made of words of the language leads to a panic or an endless loop; what compiles is a valid module.
+/// No text made of words of the language leads to a panic or an endless loop. A text that compiles is a valid
+/// module.
 #[test]
 fn no_soup_of_tokens_and_no_cut_program_leads_to_a_panic() {
     let whole = "TYPE E : (a, b); S : STRUCT p : LREAL; q : ARRAY [0..3] OF INT; END_STRUCT; END_TYPE

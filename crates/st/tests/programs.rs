@@ -250,7 +250,7 @@ fn a_program_that_is_called_by_its_name_has_one_instance() {
     assert_eq!(running.whole("other.k"), 12);
     assert_eq!(running.whole("w.seen"), 1412);
     assert_eq!(running.whole("Other.n"), 7);
-    // One that a task runs is that of the task; of two nobody knows which.
+    // If a task runs an instance, the name means that one. With two such instances it is ambiguous.
     let with = |programs: &str| {
         format!(
             "PROGRAM P VAR_OUTPUT o : INT; END_VAR o := o + 1; END_PROGRAM
@@ -304,7 +304,7 @@ fn statements_do_what_they_say() {
     }
 }
 
-/// FOR over every start, end and step of a small type, against counting in wide numbers.
+/// FOR over every start, end and step of a small type, compared with counting in wide numbers.
 /// Covers: ST30
 #[test]
 fn for_ends_at_the_ends_of_the_range_of_its_type() {
@@ -466,7 +466,7 @@ END_PROGRAM");
     );
 }
 
-/// Every block of the registry is called with all of its pins: what imports it is valid, and it answers.
+/// Every block of the registry is called with all of its pins: the module is valid, and the block answers.
 /// Covers: ST41
 #[test]
 fn every_block_of_the_registry_can_be_called() {
@@ -584,7 +584,7 @@ fn circles_are_shown() {
     }
 }
 
-/// A module has no more than the interpreter takes, however many units and variables there are.
+/// A module has no more functions and data than the interpreter accepts, for any number of units and variables.
 #[test]
 fn many_small_functions_and_scattered_values_make_a_module_that_runs() {
     let mut text = String::new();
@@ -645,7 +645,7 @@ fn the_default_of_a_type_may_name_what_the_type_declares() {
     running.scan().unwrap();
     assert_eq!(running.whole("n"), 1);
     assert_eq!(running.whole("l"), 4);
-    // A structure still can't hold itself, in its default neither.
+    // A structure still can't contain itself, not even in its default.
     let told = wrong("TYPE S : STRUCT a : S := (a := 1); END_STRUCT; END_TYPE");
     assert_eq!(told[0].0, "circle", "{told:?}");
 }

@@ -6,15 +6,15 @@ use crate::common::{Running, compile, wrong};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Something that is supported: the program's variables and statements around it, and what `r` is then.
+/// A supported construct: the variables and statements of a program with it, and the value of `r` then.
 struct Row {
     area: &'static str,
     what: &'static str,
-    /// In the table; stands in the place of `@` of what follows.
+    /// The text in the table; it replaces `@` in the fields below.
     example: &'static str,
     /// Before the PROGRAM.
     before: &'static str,
-    /// Between VAR and END_VAR, or other sections where it begins with `VAR`.
+    /// Between VAR and END_VAR, or other sections if it begins with `VAR`.
     variables: &'static str,
     statements: &'static str,
     worth: i128,
@@ -127,7 +127,7 @@ const ROWS: &[Row] = &[
     row(LIBRARY, "enumerations of pins", "MC_BUFFER_MODE#mcBuffered", "", "m : MC_BUFFER_MODE; r : DINT;", "m := @; r := MC_BUFFER_MODE_TO_DINT(m);", 1),
 ];
 
-/// What is refused: its name, and a text with it.
+/// A refused construct: its name, and a text with it.
 const REFUSED: &[(&str, &str)] = &[
     ("WSTRING", "PROGRAM P VAR s : WSTRING; END_VAR END_PROGRAM"),
     ("DATE and its kin", "PROGRAM P VAR d : DATE; END_VAR END_PROGRAM"),
@@ -275,7 +275,7 @@ fn what_the_page_says_is_refused_is_refused_with_what_to_write_instead() {
     }
 }
 
-/// The tables stand between comments that name them.
+/// The tables are between comments that name them.
 #[test]
 fn the_page_has_the_tables_of_these_tests() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/structured-text.md");

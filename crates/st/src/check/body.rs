@@ -12,9 +12,9 @@ pub(super) struct BodyState {
     pub controls: Vec<(UnitId, usize)>,
     /// Number of enclosing loops.
     pub loops: usize,
-    /// In_outs that a call of this instance gives, by the text of the instance.
+    /// In_outs that a call of this instance binds, by the text of the instance.
     bound: BTreeMap<String, BTreeSet<usize>>,
-    /// Calls that leave in_outs out.
+    /// Calls that leave out in_outs.
     kept: Vec<(String, usize, Span, UnitId)>,
 }
 
@@ -47,7 +47,7 @@ impl Checker<'_> {
         bodies
     }
 
-    /// Notes which in_outs a call gives, and which it leaves unchanged.
+    /// Records which in_outs a call binds, and which it leaves unchanged.
     pub(super) fn note_bound(
         &mut self,
         instance: &str,
@@ -62,7 +62,7 @@ impl Checker<'_> {
         self.body.kept.extend(kept);
     }
 
-    /// An in_out that no call of an instance gives refers to nothing.
+    /// Reports an in_out that no call of an instance binds: it refers to nothing.
     pub(super) fn check_kept(&mut self) {
         for (instance, place, span, unit) in std::mem::take(&mut self.body.kept) {
             let name = self
@@ -95,7 +95,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Remembers who calls whom.
+    /// Records a call for the search for recursion.
     pub(super) fn note_call(&mut self, callee: UnitId, span: Span) {
         if let Some(caller) = self.scope {
             self.edges

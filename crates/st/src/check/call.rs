@@ -9,7 +9,7 @@ use crate::syntax::{self, Call, Expression, ExpressionKind, Path, Selector, Way}
 use crate::typed::{Argument, Base, BlockCall, Expr, FunctionCall, Kind, Place, StmtKind};
 use crate::types::{Member, MemberKind, Type, TypeId, UnitId, WRONG};
 
-/// Most pins that a message lists.
+/// Largest number of pins that a message lists.
 const PINS_SHOWN: usize = 10;
 
 impl<'a> Checker<'a> {
@@ -188,7 +188,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// The pins that are given in this way, for a message.
+    /// The pins that can be given in this direction, for a message.
     fn pins_for(&self, unit: UnitId, way: Way) -> Option<String> {
         let pins = self.unit(unit).members.list.iter().filter(|member| match way {
             Way::In => matches!(member.kind, MemberKind::Input | MemberKind::InOut),

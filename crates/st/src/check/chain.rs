@@ -54,7 +54,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Both sides as values of one type, or a message that they have none in common.
+    /// Converts both sides to one type, or reports that they have none in common.
     fn together(
         &mut self,
         left: Expr,
@@ -564,7 +564,7 @@ fn reals(one: f64, operation: Operation, other: f64) -> f64 {
     }
 }
 
-/// Both are of 64 bits at most, so nothing overflows; the divisor is not 0.
+/// Both have at most 64 bits, so nothing overflows; the divisor is not 0.
 const fn wholes(one: i128, operation: Operation, other: i128) -> i128 {
     match operation {
         Operation::Add => one + other,

@@ -9,7 +9,7 @@ use crate::source::Span;
 use crate::types::{Elementary, Member, MemberKind, Type, TypeId, UnitId, WRONG};
 use std::collections::BTreeSet;
 
-/// Most names that are offered.
+/// Largest number of offered names.
 const MOST: usize = 2000;
 
 /// Keywords that begin or connect statements.
@@ -61,7 +61,7 @@ struct Around {
     declaring: bool,
 }
 
-/// The tokens of a file up to a place, and the text they are of.
+/// The tokens of a file up to a place, and their text.
 struct Before<'t> {
     text: &'t str,
     start: u32,
@@ -182,7 +182,7 @@ impl Before<'_> {
     }
 }
 
-/// Whether the name is a mistake behind a number: `4x`.
+/// Whether the name follows a number directly, which is a mistake: `4x`.
 fn is_number_before(tokens: &[(Token, Span)], name: Span) -> bool {
     matches!(tokens.last(), Some((Token::Integer | Token::Real | Token::Based | Token::Duration, span)) if span.end == name.start)
 }
@@ -485,7 +485,7 @@ impl Checker<'_> {
         offered.collect()
     }
 
-    /// What stands behind `THIS^.`
+    /// The names behind `THIS^.`
     fn of_this(&self) -> Vec<Completion> {
         let Some(block) = self.this_block() else {
             return Vec::new();

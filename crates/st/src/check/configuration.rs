@@ -15,7 +15,7 @@ pub(crate) struct Task {
     pub name: String,
     /// Time from one run to the next (ns); in every scan if absent.
     pub interval_ns: Option<i64>,
-    /// 0 comes first.
+    /// Priority; 0 is the highest.
     pub priority: i64,
     /// The address of its next due time.
     pub due: u32,
@@ -36,7 +36,7 @@ pub(crate) struct Instance<'a> {
 }
 
 impl<'a> Checker<'a> {
-    /// Which programs run in which tasks.
+    /// The programs and the tasks in which they run.
     pub(super) fn configuration(&mut self, items: &'a [Item]) -> (Vec<Task>, Vec<Instance<'a>>) {
         let mut configurations = items.iter().filter_map(|item| match item {
             Item::Configuration(configuration) => Some(configuration),
@@ -241,7 +241,7 @@ impl<'a> Checker<'a> {
         self.place_frames(true);
     }
 
-    /// Places for the variables of functions, of the sources or of the library.
+    /// Gives the variables of functions an address, those of the sources or those of the library.
     fn place_frames(&mut self, prelude: bool) {
         for place in 0..self.units.len() {
             let unit = &self.units[place];

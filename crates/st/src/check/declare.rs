@@ -8,7 +8,7 @@ use crate::syntax::{self, Ident, Item, Section, SectionKind, SpecKind, TypeSpec}
 use crate::types::{Elementary, Member, MemberKind, Members, Start, Type, UnitId, WRONG};
 use std::collections::BTreeMap;
 
-/// Types of the language that are refused, and what to use.
+/// Types of the language that are refused, and their replacements.
 pub(super) const REFUSED_TYPES: &[(&str, &str)] = &[
     ("WSTRING", "use STRING"),
     ("CHAR", "use BYTE"),
@@ -41,7 +41,7 @@ pub(super) const REFUSED_TYPES: &[(&str, &str)] = &[
 ];
 
 impl<'a> Checker<'a> {
-    /// Notes the names at the top of files.
+    /// Records the names at the top level of files.
     pub(super) fn declare(&mut self, items: &'a [Item]) {
         let mut taken: BTreeMap<String, Span> = BTreeMap::new();
         for item in items {
@@ -78,7 +78,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Reports a name at the top of a file that is already in use.
+    /// Reports a name at the top level of a file that is already in use.
     fn new_top_name(&mut self, name: &Ident, taken: &mut BTreeMap<String, Span>) {
         let key = name.key();
         self.check_name(name);
@@ -112,8 +112,7 @@ impl<'a> Checker<'a> {
         );
     }
 
-    /// Reports a name that is that of an elementary type, or is written in a way that other compilers
-    /// refuse.
+    /// Reports a name that is also the name of an elementary type, or whose spelling other compilers refuse.
     pub(super) fn check_name(&mut self, name: &Ident) {
         let key = name.key();
         if Elementary::find(&key).is_some()
@@ -164,7 +163,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Notes a unit and the names of its constants.
+    /// Records a unit and the names of its constants.
     fn add_unit(&mut self, unit: &'a syntax::Unit, owner: Option<UnitId>) -> UnitId {
         let id = UnitId(self.units.len() as u32);
         self.units.push(UnitInfo {
@@ -250,7 +249,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Resolves every type, variable and unit, each after those it needs.
+    /// Resolves every type, variable and unit, each after those that it needs.
     pub(super) fn resolve(&mut self) {
         let names: Vec<_> = self.named.keys().cloned().collect();
         for name in names {
@@ -272,7 +271,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Finds out the type and the first value of a global variable.
+    /// Determines the type and the initial value of a global variable.
     pub(super) fn global(&mut self, place: usize) {
         let global = &mut self.globals[place];
         let (State::Todo, Some(spec)) = (global.state, global.spec) else {
@@ -282,7 +281,7 @@ impl<'a> Checker<'a> {
         let (initial, span) = (global.initial, global.member.span);
         let (ty, start) = self.in_scope(None, |checker| {
             let (ty, default) = checker.spec(spec);
-            // The first value may need this variable's type.
+            // The initial value may need this variable's type.
             checker.globals[place].member.ty = ty;
             let start = initial.map(|initial| checker.start(initial, ty));
             (ty, start.unwrap_or(default))
@@ -295,7 +294,7 @@ impl<'a> Checker<'a> {
         self.look_at_global(span, place);
     }
 
-    /// Programs are made in a CONFIGURATION only.
+    /// Programs are instantiated in a CONFIGURATION only.
     pub(super) fn no_program(&mut self, ty: crate::types::TypeId, span: Span) {
         if let Type::Block(unit) = self.types.get(ty)
             && self.unit(*unit).kind == UnitKind::Program

@@ -5,7 +5,7 @@ use crate::error::{Code, Diagnostic};
 use crate::types::UnitId;
 use std::collections::BTreeMap;
 
-/// Most nested calls.
+/// Largest number of nested calls.
 pub(crate) const CALLS_MOST: u32 = 64;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -36,8 +36,8 @@ impl<'a> Checker<'a> {
         None
     }
 
-    /// The inputs of a call in order; none if they are wrong, which is reported. `open`: more may follow
-    /// the last one.
+    /// The inputs of a call in order. None if they are wrong, which is reported. `open`: more may follow the last
+    /// one.
     fn inputs(&mut self, function: &str, names: &[&str], open: bool, call: &'a Call) -> Vec<&'a Expression> {
         let mut list: Vec<Option<&'a Expression>> = Vec::new();
         for (position, argument) in call.arguments.iter().enumerate() {

@@ -8,7 +8,7 @@ use crate::syntax::{Path, Selector, SpecKind};
 use crate::types::{Constant, Elementary, Member, MemberKind, Start, Type, TypeId, UnitId};
 use standstill_fb::Pin;
 
-/// The place in question, and the name there.
+/// The requested place, and the name there.
 #[derive(Debug, Default)]
 pub(crate) struct Look {
     /// Place of a requested byte, if any.
@@ -26,7 +26,7 @@ impl Look {
 }
 
 impl Checker<'_> {
-    /// What was found at the place.
+    /// The result for the requested place.
     pub(crate) fn looked(mut self) -> Option<Hover> {
         for unit in 0..self.units.len() {
             let id = UnitId(unit as u32);
@@ -50,7 +50,7 @@ impl Checker<'_> {
         Some(found)
     }
 
-    /// Notes the name at `span`, if that is the place in question; the last one counts.
+    /// Records the name at `span` if that is the requested place; the last one counts.
     pub(super) fn look_at(&mut self, span: Span, tell: impl FnOnce(&Self) -> Hover) {
         if self.look.at.is_some_and(|at| span.start <= at && at <= span.end) && span.start < span.end {
             let found = tell(self);
@@ -81,7 +81,7 @@ impl Checker<'_> {
         });
     }
 
-    /// A constant of the unit, of its block, or of all.
+    /// A constant of the unit, of its block, or of the project.
     pub(super) fn look_at_constant(&mut self, path: &Path, key: &str, selectors: &[Selector]) {
         let root = path.root.span;
         match selectors {
@@ -334,13 +334,13 @@ pub(super) fn pin_doc(pin: &Pin) -> String {
     format!("{}{unit}{extension}", pin.doc)
 }
 
-/// The names of all functions of the library but conversions.
+/// The names of all functions of the library except conversions.
 pub(super) fn functions() -> impl Iterator<Item = &'static str> {
     let named = Function::ALL.iter().map(|it| it.name());
     named.chain(OPERATORS.iter().map(|(name, _)| *name))
 }
 
-/// The blocks of the registry and their one sentence.
+/// The blocks of the registry, each with its one sentence.
 pub(super) fn library_blocks() -> impl Iterator<Item = (&'static str, &'static str)> {
     blocks::names().filter_map(|name| Some((name, blocks::find(name)?.doc)))
 }

@@ -101,7 +101,7 @@ pub(crate) struct Global<'a> {
     state: State,
 }
 
-/// A constant of a unit or of all.
+/// A constant of a unit or of the project.
 #[derive(Debug)]
 struct ConstantEntry<'a> {
     spec: &'a TypeSpec,
@@ -110,10 +110,10 @@ struct ConstantEntry<'a> {
     value: Option<(TypeId, Constant)>,
 }
 
-/// Levels of an expression that a nested declaration counts as, for the use of the stack.
+/// Levels of an expression that a nested declaration counts as, because of its use of the stack.
 const NEED: usize = 4;
 
-/// Whose an element of an enumeration is.
+/// The enumeration that has an element.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum ElementOf {
     Named(String),
@@ -147,7 +147,7 @@ pub(crate) struct Program<'a> {
     pub bodies: Vec<Body>,
     pub instances: Vec<Instance<'a>>,
     pub tasks: Vec<Task>,
-    /// A CONFIGURATION says what runs.
+    /// Whether a CONFIGURATION selects the programs that run.
     pub is_configured: bool,
     pub layout: Layout,
 }
@@ -290,7 +290,7 @@ impl<'a> Checker<'a> {
         self.found.add(wrong);
     }
 
-    /// The name that was probably meant. The search is slow, so it ends with the messages that are shown.
+    /// The name that was probably meant. The search is slow, so it is done only for messages that are shown.
     fn guess<'n>(&self, name: &str, candidates: impl Iterator<Item = &'n str>) -> Option<String> {
         if self.found.shown() >= DIAGNOSTICS_MOST {
             return None;
@@ -298,12 +298,12 @@ impl<'a> Checker<'a> {
         did_you_mean(name, candidates)
     }
 
-    /// The global variables as they are declared, for guesses.
+    /// The global variables as declared, for guesses.
     fn declared_globals(&self) -> impl Iterator<Item = &str> {
         self.globals.iter().map(|global| global.member.name.as_str())
     }
 
-    /// The units that are called by their names as they are declared, for guesses.
+    /// The units that are called by their names as declared, for guesses.
     fn declared_units(&self) -> impl Iterator<Item = &str> {
         let units = self.units.iter().filter(|unit| unit.owner.is_none());
         units.map(|unit| unit.name.as_str())
@@ -336,7 +336,7 @@ impl<'a> Checker<'a> {
         result
     }
 
-    /// Does something with the names of a unit visible.
+    /// Runs `inner` with the names of a unit visible.
     fn in_scope<T>(&mut self, scope: Option<UnitId>, inner: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.scope, scope);
         let result = inner(self);

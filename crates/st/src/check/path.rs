@@ -97,7 +97,7 @@ impl<'a> Checker<'a> {
         self.select(place, fixed, selectors)
     }
 
-    /// The function block whose instance the statements work on.
+    /// The function block on whose instance the statements work.
     pub(super) fn this_block(&self) -> Option<UnitId> {
         let unit = self.scope?;
         match self.unit(unit).kind {
@@ -176,8 +176,8 @@ impl<'a> Checker<'a> {
         (self.scope.is_some() && self.unit(unit).kind == UnitKind::Program).then_some(unit)
     }
 
-    /// The instance of a PROGRAM under its own name: the one that a task runs. If no task runs it, it
-    /// gets an instance of its own, a global variable that is made when it is first named.
+    /// The instance of a PROGRAM under its own name: the one that a task runs. Without a task it gets an instance
+    /// of its own, a global variable that is created when it is first named.
     fn program_instance(&mut self, key: &str, span: Span) -> Option<(Place, Option<String>)> {
         let unit = self.program_named(key)?;
         self.look_at_unit(span, unit);
@@ -544,7 +544,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// The elements of all enumerations that have a name, as they are declared.
+    /// The elements of all enumerations that have a name, as declared.
     fn declared_elements(&self) -> impl Iterator<Item = &str> {
         let types = self.named.values().map(|it| it.found.0);
         let types = types.chain(self.library_types.values().copied());

@@ -14,10 +14,10 @@ use crate::types::{
 /// The name of the type of strings.
 pub(super) const TEXT: &str = "STRING";
 
-/// Most dimensions of an array.
+/// Largest number of dimensions of an array.
 const DIMENSIONS_MOST: usize = 6;
 
-/// Most bytes of a variable.
+/// Largest number of bytes of a variable.
 pub(super) const BYTES_MOST: u64 = 15 << 20;
 
 impl<'a> Checker<'a> {
@@ -152,7 +152,7 @@ impl<'a> Checker<'a> {
         found
     }
 
-    /// What the name of a type in upper case stands for.
+    /// Records the meaning of the name of a type in upper case.
     fn know(&mut self, key: &str, found: (TypeId, Start)) {
         if let Some(named) = self.named.get_mut(key) {
             named.found = found;

@@ -207,7 +207,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Two branches for one value are a mistake.
+    /// Reports two branches for one value.
     fn check_labels(&mut self, seen: &mut [(i128, i128, Span)]) {
         seen.sort_by_key(|(from, _, span)| (*from, *span));
         let mut furthest: Option<(i128, Span)> = None;
@@ -233,7 +233,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Elements that no branch of a CASE without ELSE names.
+    /// Reports elements that no branch of a CASE without ELSE names.
     fn check_complete(&mut self, ty: TypeId, seen: &[(i128, i128, Span)], span: Span) {
         let Type::Enumeration(of) = self.types.get(ty) else {
             return;

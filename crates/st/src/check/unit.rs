@@ -7,11 +7,11 @@ use crate::source::Span;
 use crate::syntax::{Ident, Section, SectionKind, Variables};
 use crate::types::{Member, MemberKind, Start, Type, UnitId, WRONG};
 
-/// Most inputs of a FUNCTION: interpreters limit the parameters of one.
+/// Largest number of inputs of a FUNCTION: interpreters limit the parameters of one.
 const INPUTS_MOST: usize = 32;
 
 impl<'a> Checker<'a> {
-    /// The unit of a block of the library, made when it is first named.
+    /// The unit of a block of the library, created when it is first named.
     pub(super) fn library_block(&mut self, key: &str) -> Option<UnitId> {
         let info = blocks::find(key)?;
         let members = blocks::members(info, &mut self.types, &mut self.library_types);
@@ -38,7 +38,7 @@ impl<'a> Checker<'a> {
         Some(id)
     }
 
-    /// Finds out the variables of a unit and their places in its instances.
+    /// Determines the variables of a unit and their places in its instances.
     pub(super) fn resolve_unit(&mut self, id: UnitId, span: Span) {
         match self.unit(id).state {
             State::Done => return,

@@ -13,11 +13,11 @@ use crate::types::{Elementary, Type};
 use standstill_fb::{BlockInfo, PinType};
 use wasm_encoder::{BlockType, ValType};
 
-/// Where the records of a table begin, behind their count.
+/// Offset of the records of a table, behind their count.
 const RECORDS: u32 = 8;
 
 impl Emitter<'_, '_, '_> {
-    /// A call of a FUNCTION or METHOD; its value stays on the stack.
+    /// A call of a FUNCTION or METHOD; its value remains on the stack.
     pub(super) fn function_call(&mut self, call: &FunctionCall) {
         if let Some(instance) = &call.instance {
             self.whole_address(instance);

@@ -145,7 +145,7 @@ impl<'c, 'p, 'a> Emitter<'c, 'p, 'a> {
         }
     }
 
-    /// A value that must lie in a subrange.
+    /// A value that must be within a subrange.
     fn within(&mut self, inner: &Expr, of: Elementary, low: i128, high: i128) {
         self.expression(inner);
         let ty = value_type(of);

@@ -4,8 +4,8 @@ use super::Target;
 use crate::types::Elementary;
 use wasm_encoder::{BlockType, Encode, InstructionSink, MemArg, MemArgTarget, ValType};
 
-/// Least bytes of a function's body: the interpreter refuses a module with functions shorter than 40
-/// bytes on average as an attack.
+/// Least number of bytes of a function's body. The interpreter refuses a module whose functions are shorter than 40
+/// bytes on average, as a possible attack.
 const BODY_LEAST: usize = 40;
 
 pub(super) struct Function {
@@ -13,10 +13,10 @@ pub(super) struct Function {
     pub result: Option<ValType>,
     pub code: Vec<u8>,
     locals: Vec<ValType>,
-    /// Local variables that statements need now, in the order in which they were taken.
+    /// Local variables in use, in the order in which they were reserved.
     active: Vec<(ValType, u32)>,
     free: Vec<(ValType, u32)>,
-    /// Where the number of a function belongs.
+    /// The places where numbers of functions are inserted.
     calls: Vec<(usize, Target)>,
     /// Open blocks.
     depth: u32,
@@ -120,7 +120,7 @@ impl Function {
         self.depth -= 1;
     }
 
-    /// How many blocks out a label is.
+    /// The number of blocks between here and a label.
     pub(super) const fn distance(&self, label: Label) -> u32 {
         self.depth - label.0
     }

@@ -82,7 +82,7 @@ impl Emitter<'_, '_, '_> {
         }
     }
 
-    /// A function of the host, of numbers of 64 bits, which are on the stack.
+    /// A function of the host. Its numbers of 64 bits are on the stack.
     pub(super) fn host(&mut self, function: Function) {
         if let Some(name) = function.import() {
             self.context.want(Target::Import(name));
@@ -154,7 +154,7 @@ impl Emitter<'_, '_, '_> {
         let local = self.function.local(ValType::I32);
         self.expression(decides);
         self.function.sink().local_set(local);
-        // What is on the stack first is taken where the last is not 0.
+        // The first value on the stack is taken if the last one is not 0.
         self.expression(one);
         self.expression(zero);
         self.function.sink().local_get(local).select();
@@ -191,7 +191,7 @@ impl Emitter<'_, '_, '_> {
         self.function.sink().local_get(chosen);
     }
 
-    /// SHL and SHR: 0 where everything is shifted out.
+    /// SHL and SHR: 0 if all bits are shifted out.
     fn shift(&mut self, function: Function, of: Elementary, values: &[Expr]) {
         let [value, by] = values else { return };
         self.expression(value);

@@ -22,7 +22,7 @@ enum Stride {
 }
 
 impl Emitter<'_, '_, '_> {
-    /// Notes the running loop, which is reported if the fuel is used up.
+    /// Records the running loop, which is reported if the fuel is used up.
     fn note_loop(&mut self, site: i32) {
         self.function
             .sink()
@@ -99,7 +99,7 @@ impl Emitter<'_, '_, '_> {
         self.function.branch_if(exit);
         let top = self.function.loop_();
         self.turn(exit, site, &each.body);
-        // From here on `from` is the value of this turn.
+        // From here on `from` is the value in this iteration.
         self.push_root(root);
         self.load(each.ty, offset);
         self.function.sink().local_set(from);
@@ -173,7 +173,7 @@ impl Emitter<'_, '_, '_> {
         self.fault();
     }
 
-    /// Pushes whether the first value is beyond the end already.
+    /// Pushes whether the first value is already beyond the end.
     fn beyond(&mut self, ty: Elementary, from: u32, to: u32, stride: Stride) {
         match stride {
             Stride::Known(number) => self.is_greater(ty, from, to, number > 0),

@@ -1,8 +1,7 @@
 //! From the checked program to a module.
 //!
-//! Every unit that is called becomes a function: an instance gets its address, a FUNCTION its parameters.
-//! Calls are written with room for any number, which is filled in at the end, when the functions have
-//! numbers.
+//! Every unit that is called becomes a function: an instance gets its address, a FUNCTION its parameters. A call is
+//! written with space for any function number. The number is filled in at the end, when all functions have one.
 
 mod call;
 mod convert;
@@ -28,45 +27,45 @@ use wasm_encoder::{
     GlobalSection, GlobalType, ImportSection, MemorySection, MemoryType, Module, TypeSection, ValType,
 };
 
-/// Most bytes of a function; interpreters and browsers refuse more.
+/// Largest number of bytes of a function; interpreters and browsers refuse more.
 const FUNCTION_MOST: usize = 7_000_000;
 
-/// Most variables that are exported by name; all are in the table of symbols.
+/// Largest number of variables that are exported by name; all are in the table of symbols.
 const EXPORTS_MOST: usize = 900;
 
 /// The target of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Target {
-    /// `(site, value)`: notes a fault, and traps.
+    /// `(site, value)`: records a fault, and traps.
     Fault,
     Unit(UnitId),
     Text(text::Helper),
     Import(&'static str),
 }
 
-/// What a fault is.
+/// The kinds of faults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FaultKind {
     /// A division of whole numbers by zero; the value is the dividend.
     DivisionByZero,
     /// An index outside its bounds; the value is the index.
     Index,
-    /// A value outside its subrange; the value is that.
+    /// A value outside its subrange; the fault has this value.
     Subrange,
     /// MUX chose an input that it does not have; the value is K.
     Choice,
     /// FOR has a step of 0.
     Step,
-    /// A VAR_IN_OUT was never given.
+    /// A VAR_IN_OUT was never bound.
     Unbound,
-    /// A position outside of a string, or a negative length; the value is that.
+    /// A position outside a string, or a negative length; the fault has this value.
     Position,
     /// No fault: a loop, which is reported if the fuel is used up.
     Loop,
 }
 
 impl FaultKind {
-    /// In a sentence behind "the program stopped: ".
+    /// The text behind "the program stopped: ".
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
@@ -191,7 +190,7 @@ fn too_large(span: Span) -> Diagnostic {
     Diagnostic::error(Code::TooLarge, span, what).help("take parts of it out into function blocks")
 }
 
-/// Notes the place and the value of a fault, and traps.
+/// Records the place and the value of a fault, and traps.
 fn fault_function() -> Function {
     let mut function = Function::new(vec![ValType::I32, ValType::I64], None);
     function
@@ -338,7 +337,7 @@ fn segments(image: &[u8], at: u32, data: &mut DataSection) {
     }
 }
 
-/// Runs of bytes with less than `gap` zeros in a row within.
+/// Parts of the image with fewer than `gap` zeros in a row inside.
 fn runs(image: &[u8], gap: usize) -> Vec<std::ops::Range<usize>> {
     let mut runs: Vec<std::ops::Range<usize>> = Vec::new();
     for (place, _) in image.iter().enumerate().filter(|(_, byte)| **byte != 0) {

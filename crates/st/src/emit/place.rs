@@ -80,7 +80,7 @@ impl Emitter<'_, '_, '_> {
         (Root::Local(local), offset)
     }
 
-    /// Pushes how many bytes an element is behind the first one.
+    /// Pushes the distance in bytes of an element from the first one.
     fn index(&mut self, index: &Index) {
         let of = self.elementary(&index.value);
         self.expression(&index.value);
@@ -100,7 +100,7 @@ impl Emitter<'_, '_, '_> {
                 .i64_sub();
             self.function.sink().i64_const(index.count.into()).i64_ge_u();
             if of == Elementary::Ulint {
-                // Beyond LINT it is outside of every bound.
+                // A value beyond LINT is outside every bound.
                 self.function
                     .sink()
                     .local_get(given)
@@ -225,7 +225,7 @@ impl Emitter<'_, '_, '_> {
         self.store(of, offset);
     }
 
-    /// Whether an expression is known already.
+    /// Whether the value of an expression is already known.
     pub(super) const fn is_constant(value: &crate::typed::Expr) -> Option<i128> {
         match value.kind {
             Kind::Integer(number) => Some(number),

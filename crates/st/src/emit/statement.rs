@@ -1,4 +1,4 @@
-//! Statements, and the functions that units and tasks become.
+//! Statements, and the functions made of units and tasks.
 
 use super::expression::Emitter;
 use super::function::{Function, at, value_type};
@@ -12,11 +12,10 @@ use crate::typed::{Base, Branch, Expr, Place, Stmt, StmtKind};
 use crate::types::{Elementary, Member, MemberKind, Type, TypeId, UnitId};
 use wasm_encoder::{BlockType, ValType};
 
-/// Most table entries per label: states are often numbered in tens.
+/// Largest number of table entries for each label: states are often numbered in tens.
 const SPARSE: i128 = 16;
 
-/// The function that the host calls: it notes the time, and runs the tasks that are due, or `only` one of
-/// them.
+/// The function that the host calls: it stores the time and runs the tasks that are due, or `only` one of them.
 pub(super) fn scan(context: &mut Context<'_, '_>, only: Option<usize>) -> Function {
     let tasks = &context.program.tasks;
     let mut emitter = Emitter::new(context, Function::new(vec![ValType::I32, ValType::I64], None));
@@ -162,7 +161,7 @@ impl Emitter<'_, '_, '_> {
             .0
     }
 
-    /// Gives a variable its first value, as at every call.
+    /// Gives a variable its initial value, as at every call.
     fn fresh(&mut self, member: &Member, root: Root, frame: u32) {
         let program = self.context.program;
         let bytes = self.bytes(member.ty);
@@ -300,7 +299,7 @@ impl Emitter<'_, '_, '_> {
         }
     }
 
-    /// A branch by table: one jump however many labels there are.
+    /// A branch by table: one jump for any number of labels.
     fn table(
         &mut self,
         local: u32,

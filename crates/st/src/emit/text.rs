@@ -18,7 +18,7 @@ pub(super) enum Helper {
     Append,
     /// `(one, other)`: below 0, 0 or above 0, by the first byte that differs.
     Compare,
-    /// `(in, what)`: where it begins, from 1; 0 if it is not there.
+    /// `(in, what)`: the position of its first occurrence, from 1; 0 if there is none.
     Find,
 }
 
@@ -33,7 +33,7 @@ fn length(function: &mut Function) {
     function.sink().i32_load8_u(at(0, 0));
 }
 
-/// The smaller one of a local variable and the number on the stack goes into the variable.
+/// Sets a local variable to the smaller of itself and the number on the stack.
 fn at_most(function: &mut Function, local: u32, other: u32) {
     let mut sink = function.sink();
     sink.local_set(other)
@@ -81,7 +81,7 @@ fn append() -> Function {
     at_most(&mut function, count, other);
     function.sink().local_get(capacity).local_get(used).i32_sub();
     at_most(&mut function, count, other);
-    // Behind the last byte there is nothing.
+    // There is nothing behind the last byte.
     function.sink().local_get(count).i32_const(0).i32_gt_s();
     function.if_(BlockType::Empty);
     let mut sink = function.sink();
@@ -201,7 +201,7 @@ impl Emitter<'_, '_, '_> {
     /// Pushes the address of a string literal.
     pub(super) fn text(&mut self, bytes: &[u8]) {
         let place = self.context.templates_at + self.context.templates.len() as u32;
-        // As the lexer has it, a string is no longer than its length can say.
+        // The lexer guarantees that the length fits.
         self.context.templates.push(bytes.len() as u8);
         self.context.templates.extend(bytes);
         self.function.sink().i32_const(place.cast_signed());
@@ -276,7 +276,7 @@ impl Emitter<'_, '_, '_> {
         self.function.sink().i32_const(buffer.cast_signed());
     }
 
-    /// Works out an input: the address of a string, or a number that is not negative, as 32 bits.
+    /// Evaluates an input: the address of a string, or a number that is not negative, as 32 bits.
     fn text_input(&mut self, value: &Expr, span: Span) -> u32 {
         let local = self.function.local(ValType::I32);
         self.expression(value);
@@ -284,7 +284,7 @@ impl Emitter<'_, '_, '_> {
             let number = self.function.local(ValType::I64);
             self.function.sink().local_tee(number).i64_const(0).i64_lt_s();
             self.text_fault(number, span);
-            // Beyond every string is far enough.
+            // A position beyond every string is far enough.
             let mut sink = self.function.sink();
             sink.local_get(number).i64_const(FAR).local_get(number);
             sink.i64_const(FAR).i64_lt_s().select().i32_wrap_i64();
@@ -312,12 +312,12 @@ impl Emitter<'_, '_, '_> {
             .local_tee(position);
         sink.local_get(text);
         length(&mut self.function);
-        // Below the least one it wraps around, and is beyond.
+        // A position below the least one wraps around and is then too large.
         self.function.sink().i32_gt_u();
         self.text_fault(number, span);
     }
 
-    /// Moves on by this many bytes.
+    /// Advances by this many bytes.
     fn behind(&mut self, position: u32, count: u32) {
         let mut sink = self.function.sink();
         sink.local_get(position)

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 /// Offset of the inputs of an instance.
 pub(crate) const INPUTS: u32 = 8;
 
-/// Where the outputs begin.
+/// Offset of the outputs of an instance.
 pub(crate) fn outputs(info: &BlockInfo) -> u32 {
     INPUTS + info.flat_inputs(Pointer::Bits32).size as u32
 }
@@ -216,7 +216,7 @@ pub(crate) fn members(
     members
 }
 
-/// References are passed by their number or address, on either side of the block.
+/// References are passed by their number or address, on both sides of the block.
 const fn kind_of(pin: &Pin) -> MemberKind {
     match (pin.direction, pin.ty) {
         (Direction::InOut, _) | (_, PinType::Axis(_) | PinType::Table(_)) => MemberKind::InOut,

@@ -74,7 +74,7 @@ impl Function {
             .find(|it| it.name().eq_ignore_ascii_case(name))
     }
 
-    /// The function of the host that does it, of numbers of 64 bits.
+    /// The function of the host that computes it, with numbers of 64 bits.
     pub(crate) const fn import(self) -> Option<&'static str> {
         Some(match self {
             Self::Ln => "math_ln",
@@ -133,7 +133,7 @@ pub(crate) fn conversion(name: &str) -> Option<(Option<&str>, Elementary)> {
 /// because checking them takes longer than checking a short program. Cost: linear in the sources.
 pub(crate) fn prelude(sources: &[Source<'_>]) -> String {
     if total(sources) > SOURCES_MOST {
-        // They are refused unread.
+        // They are refused without being read.
         return String::new();
     }
     let counts = names(sources, &["CTU_", "CTD_", "CTUD_"]);

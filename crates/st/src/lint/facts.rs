@@ -7,7 +7,7 @@ use crate::typed::{Argument, Base, Branch, Expr, Kind, Place, Stmt, StmtKind};
 use crate::types::{Elementary, Member, MemberKind, Type, UnitId};
 use std::collections::BTreeSet;
 
-/// A variable of a unit, or a global one, by its place.
+/// A variable of a unit, or a global one, by its index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Variable {
     /// `None` if it is global.
@@ -35,13 +35,14 @@ pub(super) struct Call {
     pub span: Span,
 }
 
-/// All of it.
+/// All facts.
 #[derive(Debug, Default)]
 pub(super) struct Facts {
     pub calls: Vec<Call>,
     /// Instances that are called on every path through a body.
     pub always: BTreeSet<Variable>,
-    /// Instances that are called, by themselves or by one of their methods, or passed to somebody who may call them.
+    /// Instances that are called directly or by one of their methods, or that are passed to a unit that may call
+    /// them.
     pub called: BTreeSet<Variable>,
     /// Variables that are read, written, called or passed.
     pub used: BTreeSet<Variable>,
@@ -51,13 +52,13 @@ pub(super) struct Facts {
     pub reads: Vec<(Variable, u32)>,
     /// Comparisons of two numbers with a point.
     pub equal: Vec<Span>,
-    /// Conversions to a type that the value had before, where, and the name of that type.
+    /// Conversions to a type that the value had before: the place, and the name of that type.
     pub narrowed: Vec<(Span, Elementary)>,
     /// Branches of CASE that no value reaches.
     pub unreachable: Vec<Span>,
 }
 
-/// Looks at all statements.
+/// Reads all statements.
 pub(super) fn gather(program: &Program<'_>) -> Facts {
     let mut facts = Facts::default();
     let mut lists = 0;
@@ -84,7 +85,7 @@ pub(super) fn gather(program: &Program<'_>) -> Facts {
     facts
 }
 
-/// The variables of a unit, or the global ones, in the order of memory: where each begins and ends, and its place in their list.
+/// The variables of a unit, or the global ones, in the order of memory: begin, end, and index in their list.
 #[derive(Default)]
 struct Spans(Vec<(u32, u32, usize)>);
 
@@ -102,10 +103,10 @@ impl Spans {
     }
 }
 
-/// Where all variables are.
+/// The places of all variables.
 struct Places {
     globals: Spans,
-    /// Of each unit, the variables that it holds, and the in_outs, of which it holds the addresses alone.
+    /// For each unit the variables that it holds, and its in_outs, of which it holds only the addresses.
     units: Vec<(Spans, Spans)>,
 }
 
@@ -213,7 +214,7 @@ impl Walk<'_, '_, '_> {
                 for value in [&each.from, &each.to, &each.by] {
                     self.expression(value);
                 }
-                // A FOR over the elements of an array is taken to run.
+                // A FOR over the elements of an array is assumed to run.
                 let way = self.looping(&each.body);
                 self.paths.go_on(Some(way.unwrap_or_default()));
             }
@@ -231,7 +232,7 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// Whether each value that a subrange or an enumeration may have leads to a branch.
+    /// Whether each possible value of a subrange or an enumeration leads to a branch.
     fn is_complete(&self, selector: &Expr, branches: &[Branch]) -> bool {
         let Kind::Load(place) = &selector.kind else {
             return false;
@@ -368,7 +369,8 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// A variable that is passed by its address: an instance, or something with instances in it, may be called there.
+    /// A variable that is passed by its address. An instance, or something that contains instances, may be called
+    /// there.
     fn pass(&mut self, place: &Place) {
         self.read(place);
         if matches!(
@@ -393,7 +395,7 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// The variable a place is in, and where in it; of an array of blocks, where in its first element.
+    /// The variable of a place, and the offset in it; for an array of blocks, the offset in its first element.
     fn variable(&self, place: &Place) -> Option<(Variable, u32)> {
         let program = self.program;
         let info = |unit: UnitId| program.units.get(unit.0 as usize);

@@ -1,4 +1,4 @@
-//! Constructs that work but are probably not meant, especially with motion. They are searched in programs
+//! Constructs that work but are probably not intended, especially with motion. They are searched for in programs
 //! without mistakes.
 //!
 //! A lint is switched off in the text: `{lint off ST55}` from there to the end of the file, or to
@@ -12,7 +12,7 @@ use crate::check::Program;
 use crate::error::{Diagnostic, Found};
 use crate::source::Sources;
 
-/// Searches for all of them. Cost: linear in the program, except for the calls of one instance in one
+/// Searches for all lints. Cost: linear in the program, except for the calls of one instance in one unit.
 /// unit.
 pub(crate) fn lint(program: &Program<'_>, sources: &Sources, found: &mut Found) {
     let off = Off::new(sources);
@@ -23,7 +23,7 @@ pub(crate) fn lint(program: &Program<'_>, sources: &Sources, found: &mut Found) 
     }
 }
 
-/// Variables of type AXIS_REF of the PROGRAMs, and global ones, that name no axis: `image` is the memory they begin with, and no
+/// Variables of type AXIS_REF of PROGRAMs, and global ones, that name no axis. `image` is the initial memory. No
 /// statement gives any variable of this type another value.
 pub(crate) fn without_axis(program: &Program<'_>, image: &[u8], sources: &Sources, found: &mut Found) {
     let off = Off::new(sources);
@@ -34,7 +34,7 @@ pub(crate) fn without_axis(program: &Program<'_>, image: &[u8], sources: &Source
     }
 }
 
-/// Where lints are switched off: the name, and the bytes from and to which.
+/// The ranges in which lints are switched off: the name, the first byte, and the end.
 struct Off(Vec<(String, u32, u32)>);
 
 impl Off {

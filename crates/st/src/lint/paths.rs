@@ -1,12 +1,12 @@
-//! What is called on every path through a body.
+//! The instances that are called on every path through a body.
 
 use super::facts::Variable;
 use std::collections::BTreeSet;
 
-/// The instances that are called for sure on a way; `None` if nothing comes along it.
+/// The instances that are certainly called on a path; `None` if the path is never taken.
 pub(super) type Way = Option<BTreeSet<Variable>>;
 
-/// Two ways lead to one place: what was called on both of them was called for sure.
+/// Joins two paths: the instances called on both of them are certainly called.
 pub(super) fn meet(way: &mut Way, other: Way) {
     *way = match (way.take(), other) {
         (Some(mut called), Some(other)) => {
@@ -17,14 +17,14 @@ pub(super) fn meet(way: &mut Way, other: Way) {
     };
 }
 
-/// The way through a body, statement by statement.
+/// The path through a body, statement by statement.
 #[derive(Debug, Default)]
 pub(super) struct Paths {
-    /// What each enclosing list of statements has called by itself so far, from the outside in.
+    /// The calls of each enclosing list of statements so far, from the outside in.
     lists: Vec<Way>,
-    /// The enclosing loops: how many lists enclose each, and the ways that leave its body early.
+    /// The enclosing loops: the number of lists around each, and the paths that leave its body early.
     loops: Vec<(usize, Way)>,
-    /// The ways that return.
+    /// The paths that return.
     returned: Way,
 }
 
@@ -33,7 +33,7 @@ impl Paths {
         self.lists.push(Some(BTreeSet::new()));
     }
 
-    /// The way through the list to its end.
+    /// The path through the list to its end.
     pub(super) fn end_list(&mut self) -> Way {
         self.lists.pop().flatten()
     }
@@ -42,7 +42,7 @@ impl Paths {
         self.loops.push((self.lists.len(), None));
     }
 
-    /// The way through the body of a loop, whose list has ended in this way.
+    /// The path through the body of a loop, whose list has ended with `way`.
     pub(super) fn end_loop(&mut self, mut way: Way) -> Way {
         let left = self.loops.pop().and_then(|(_, left)| left);
         meet(&mut way, left);
@@ -55,7 +55,7 @@ impl Paths {
         }
     }
 
-    /// The current list goes on behind this way.
+    /// The current list continues behind this path.
     pub(super) fn go_on(&mut self, way: Way) {
         let Some(list) = self.lists.last_mut() else { return };
         match (list.as_mut(), way) {
@@ -80,13 +80,13 @@ impl Paths {
         self.go_on(None);
     }
 
-    /// What is called on all ways through a body, whose list has ended in this way.
+    /// The instances called on all paths through a body, whose list has ended with `way`.
     pub(super) fn on_all(mut self, way: Way) -> BTreeSet<Variable> {
         meet(&mut self.returned, way);
         self.returned.unwrap_or_default()
     }
 
-    /// The way from the beginning of a list to here.
+    /// The path from the beginning of a list to here.
     fn so_far(&self, first: usize) -> Way {
         let mut called = BTreeSet::new();
         for list in self.lists.get(first..)? {

@@ -7,7 +7,7 @@ use crate::typed::Base;
 use crate::types::{Member, MemberKind, Type, UnitId};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// All that there is to say.
+/// All findings.
 pub(super) fn all(program: &Program<'_>, facts: &Facts) -> Vec<Diagnostic> {
     let mut told = Vec::new();
     let mut by_variable: BTreeMap<Variable, Vec<&Call>> = BTreeMap::new();
@@ -71,7 +71,7 @@ fn pin(program: &Program<'_>, unit: UnitId, key: &str) -> Option<u32> {
     members.find(key).map(|(_, member)| member.offset)
 }
 
-/// ST50: a block of motion has a path on which it is not called.
+/// ST50: there is a path on which a motion block is not called.
 fn not_always(program: &Program<'_>, calls: &[&Call], told: &mut Vec<Diagnostic>) {
     let Some(first) = calls.first().filter(|call| motion(program, call.callee)) else {
         return;
@@ -105,7 +105,7 @@ fn twice(program: &Program<'_>, calls: &[&Call], told: &mut Vec<Diagnostic>) {
     }
 }
 
-/// ST51: Execute is TRUE for good.
+/// ST51: Execute is always TRUE.
 fn always_true(program: &Program<'_>, facts: &Facts, calls: &[&Call], told: &mut Vec<Diagnostic>) {
     let Some(first) = calls.first().filter(|call| motion(program, call.callee)) else {
         return;
@@ -114,7 +114,7 @@ fn always_true(program: &Program<'_>, facts: &Facts, calls: &[&Call], told: &mut
         return;
     };
     let given = |call: &Call| call.inputs.iter().find(|(at, ..)| *at == execute).copied();
-    // A call that does not give it takes what a statement has written to it.
+    // A call that does not give this input uses the value that a statement has written to it.
     let is_written = facts.assigned.contains(&(first.variable, execute));
     let may_be_false = |call: &Call| given(call).map_or(is_written, |(_, value, _)| !value);
     let others = calls.iter().filter(|call| may_be_false(call));
@@ -132,7 +132,7 @@ fn always_true(program: &Program<'_>, facts: &Facts, calls: &[&Call], told: &mut
     }
 }
 
-/// What a call writes an output to: the unit it is in, and the place.
+/// The variable to which a call writes an output: its unit, and the place.
 type Target = (Option<UnitId>, Base, u32);
 
 /// ST52: two instances write one variable.
@@ -226,7 +226,7 @@ fn unused(program: &Program<'_>, facts: &Facts, told: &mut Vec<Diagnostic>) {
                 let message = format!("`{}` is declared and never called", member.name);
                 told.push(Diagnostic::warning(Code::St53, member.span, message));
             }
-            // The script, or another program, may want a global one.
+            // The script, or another program, may use a global variable.
             _ if variable.unit.is_none() || facts.used.contains(&variable) => {}
             _ => {
                 let message = format!("`{}` is never used", member.name);

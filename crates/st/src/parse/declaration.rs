@@ -8,7 +8,7 @@ use crate::syntax::{
     Configuration, Instance, Item, Section, SectionKind, Task, TypeDeclaration, Unit, UnitKind, Variables,
 };
 
-/// What to write in place of an ACTION.
+/// The replacement for an ACTION.
 pub(super) const ACTION: &str =
     "write a METHOD of a FUNCTION_BLOCK, or put the statements where it is called";
 
@@ -18,7 +18,7 @@ impl Parser<'_> {
     pub(super) fn item(&mut self, items: &mut Vec<Item>) {
         let from = self.span();
         let Token::Word(word) = self.token() else {
-            // Between two programs a `;` does no harm.
+            // A `;` between two programs does no harm.
             if self.take(Token::Semicolon) {
                 return;
             }
@@ -486,7 +486,7 @@ impl Parser<'_> {
         Some(Variables { names, spec, initial })
     }
 
-    /// What stands behind AT.
+    /// The address behind AT.
     fn address(&mut self) -> Option<crate::syntax::Ident> {
         let span = self.span();
         if self.token() != Token::Address {

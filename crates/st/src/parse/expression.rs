@@ -8,7 +8,7 @@ use crate::syntax::{
     Argument, Call, Expression, ExpressionKind as Kind, Ident, Operator, Path, Selector, Way,
 };
 
-/// What to use in place of strings of wide characters.
+/// The replacement for strings of wide characters.
 pub(super) const STRINGS: &str = "use STRING, whose literals stand between `'`";
 
 impl Parser<'_> {
@@ -40,7 +40,7 @@ impl Parser<'_> {
         })
     }
 
-    /// Operators of C: reported, and read with their meaning.
+    /// Operators of C: they are reported, and read with their meaning.
     fn foreign_operator(&mut self) -> Option<Operator> {
         let (operator, right) = match self.text_of(self.span()) {
             "==" => (Operator::Equal, "="),
@@ -62,7 +62,7 @@ impl Parser<'_> {
             if here <= level {
                 break;
             }
-            // All that follow with the same level, from left to right.
+            // All that follow on the same level, from left to right.
             let mut rest = Vec::new();
             while let Some(operator) = self.operator().filter(|it| it.level() == here) {
                 let span = self.next();
@@ -121,7 +121,7 @@ impl Parser<'_> {
         }
     }
 
-    /// After something that is too deep: past the statement.
+    /// Continues after the statement, behind a part that is nested too deep.
     fn given_up(&mut self, span: Span) -> Expression {
         let told = self.told_at == Some(self.at);
         while !matches!(

@@ -41,7 +41,7 @@ struct Parser<'a> {
     text: &'a str,
     /// Place of the text's first byte.
     start: u32,
-    /// Ends with [`Token::End`].
+    /// The tokens; the last one is [`Token::End`].
     tokens: Vec<(Token, Span)>,
     at: usize,
     /// The token of the last message, because one mistake has one message.
@@ -130,7 +130,7 @@ impl<'a> Parser<'a> {
         self.take(Token::Word(word))
     }
 
-    /// Takes a name that means something in one place only.
+    /// Takes a name that has a meaning in one place only.
     fn take_name(&mut self, name: &str) -> bool {
         let there = self.is_name(name);
         if there {

@@ -3,7 +3,7 @@
 use super::Parser;
 use crate::lex::{Token, Word};
 
-/// Words that open something at the top of a file.
+/// Words that open an item at the top level of a file.
 const ITEMS: &[Word] = &[
     Word::Program,
     Word::FunctionBlock,
@@ -71,7 +71,8 @@ pub(super) fn is_section(word: Word) -> bool {
 }
 
 impl Parser<'_> {
-    /// To the end of the statement or declaration: behind its `;`, or before what can only be another one.
+    /// To the end of the statement or declaration: behind its `;`, or before a word that can only begin another
+    /// one.
     pub(super) fn skip_to_semicolon(&mut self) {
         loop {
             match self.token() {
@@ -88,7 +89,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Behind one of these words, or before something at the top of a file.
+    /// Behind one of these words, or before an item at the top level of a file.
     pub(super) fn skip_past(&mut self, end: Word) {
         loop {
             match self.token() {
@@ -104,7 +105,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Behind the end of an ACTION, which no keyword is.
+    /// Behind the end of an ACTION, which is no keyword.
     pub(super) fn skip_action(&mut self) {
         loop {
             match self.token() {
@@ -121,7 +122,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Before the next thing at the top of a file.
+    /// Before the next item at the top level of a file.
     pub(super) fn skip_to_item(&mut self) {
         while !matches!(self.token(), Token::End) {
             if let Token::Word(word) = self.token()

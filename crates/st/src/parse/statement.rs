@@ -7,7 +7,7 @@ use crate::source::Span;
 use crate::syntax::{Branch, Case, Expression, ExpressionKind, For, Statement, StatementKind as Kind};
 
 impl Parser<'_> {
-    /// Statements up to a word that none begins with and that something open waits for.
+    /// Statements up to a word that begins none and that closes an open construct.
     pub(super) fn statements(&mut self) -> Vec<Statement> {
         let mut list = Vec::new();
         while !self.at_end() {
@@ -119,7 +119,7 @@ impl Parser<'_> {
         match self.deeper(compound) {
             Some(kind) => kind,
             None => {
-                // Reading continues after the whole of it, whose end is unknown.
+                // Reading continues after the whole construct, whose end is unknown.
                 self.skip_to_item();
                 self.told_at = Some(self.at);
                 let _ = from;
@@ -195,7 +195,7 @@ impl Parser<'_> {
             return;
         }
         self.expect(Token::Semicolon, ";", after);
-        // What begins a statement does so; anything else belongs to this one.
+        // A word that begins a statement ends this one; anything else belongs to it.
         if self.token() == Token::Name {
             return;
         }
@@ -316,7 +316,7 @@ impl Parser<'_> {
                 branches.push(Branch { labels, body });
             } else if self.take_word(Word::Else) {
                 self.take(Token::Colon);
-                // A name before a `:` is no label any more.
+                // A name before a `:` is no longer a label.
                 self.open.push(Word::EndCase);
                 let mut body = self.statements();
                 self.open.pop();
@@ -366,7 +366,7 @@ impl Parser<'_> {
             }
         }
         if !self.expect(Token::Colon, ":", "behind a label") {
-            // There is one: that is how a label was known.
+            // There is a colon: without it this would not be a label.
             while !matches!(self.token(), Token::End | Token::Colon) {
                 self.next();
             }

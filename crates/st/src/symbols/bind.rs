@@ -6,7 +6,7 @@ use crate::error::{Code, Diagnostic, did_you_mean};
 use crate::source::Span;
 use crate::types::{Array, Member, MemberKind, Type, TypeId};
 
-/// Most variables that a message lists.
+/// Largest number of variables that a message lists.
 const LISTED_MOST: usize = 8;
 
 /// Writes the initial axis of each variable of type AXIS_REF.
@@ -64,8 +64,8 @@ pub(crate) fn bind(program: &Program<'_>, options: &Options, memory: &mut [u8]) 
     Ok(())
 }
 
-/// The message for a path that leads to no variable of type AXIS_REF; `only` is the instance whose name
-/// may be left out.
+/// The message for a path that leads to no variable of type AXIS_REF. `only` is the instance whose name may be left
+/// out.
 fn unknown(path: &str, found: &References, only: Option<&str>) -> Diagnostic {
     let known: Vec<&str> = found
         .iter()

@@ -48,7 +48,7 @@ impl Symbols {
         Some(found)
     }
 
-    /// The path without the name of the program's instance, where there is one and the rest says the same.
+    /// The path without the name of the program's instance, if there is one and the rest means the same.
     #[must_use]
     pub fn short<'p>(&self, path: &'p str) -> &'p str {
         let Some(only) = self.only_instance() else {
@@ -107,7 +107,7 @@ impl Symbols {
             return;
         }
         let (wanted, skipped) = match (wanted, self.library(part)) {
-            // The result of a call is of use to who looks for it.
+            // The result of a call is shown only on request.
             (Wanted::Usual, Some(block)) if block.starts_with("MC_") => (Wanted::All, "Result"),
             (Wanted::Usual, Some(_)) => return,
             (wanted, _) => (wanted, ""),

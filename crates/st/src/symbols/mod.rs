@@ -32,11 +32,11 @@ pub enum Section {
 /// The meaning of the number in a variable.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Value {
-    /// Itself.
+    /// The number itself.
     Plain,
     /// An element of an enumeration: names and numbers.
     Element(Vec<(String, i128)>),
-    /// Itself, from the first to the last of a subrange.
+    /// The number itself, from the first to the last of a subrange.
     Range(i128, i128),
 }
 
@@ -47,17 +47,17 @@ pub struct Symbol {
     pub path: String,
     /// Its representation in memory.
     pub ty: Elementary,
-    /// What its type is called in the sources.
+    /// The name of its type in the sources.
     pub type_name: String,
-    /// Where it stands.
+    /// Its address.
     pub address: u32,
-    /// What it is for.
+    /// Its use.
     pub section: Section,
     /// `%IX0.0`, if it is declared AT one.
     pub at: Option<String>,
     /// Whether it is declared RETAIN or PERSISTENT.
     pub retain: bool,
-    /// What its numbers mean.
+    /// The meaning of its numbers.
     pub value: Value,
 }
 
@@ -68,7 +68,7 @@ pub struct Place {
     pub file: String,
     /// Line and column.
     pub position: Position,
-    /// What can happen there.
+    /// The fault that can happen there.
     pub kind: FaultKind,
 }
 
@@ -81,7 +81,7 @@ pub struct Task {
     pub entry: String,
     /// Time from one run to the next (ns); in every scan if absent.
     pub interval_ns: Option<i64>,
-    /// 0 comes first.
+    /// Priority; 0 is the highest.
     pub priority: i64,
 }
 
@@ -89,7 +89,7 @@ pub struct Task {
 struct Unit {
     name: String,
     members: Members,
-    /// The block, of one of the library.
+    /// The block, if it is one of the library.
     library: Option<&'static BlockInfo>,
 }
 
@@ -180,14 +180,14 @@ impl Symbols {
         }
     }
 
-    /// Whether a CONFIGURATION says what runs.
+    /// Whether a CONFIGURATION selects the programs that run.
     #[must_use]
     pub const fn is_configured(&self) -> bool {
         self.is_configured
     }
 
-    /// The tasks of the CONFIGURATION, its programs without a task in one without a name; without a CONFIGURATION that
-    /// alone.
+    /// The tasks of the CONFIGURATION. Its programs without a task are in a task without a name. Without a
+    /// CONFIGURATION this is the only task.
     #[must_use]
     pub fn tasks(&self) -> &[Task] {
         &self.tasks
@@ -213,8 +213,9 @@ impl Symbols {
         self.places.get((number as usize).checked_sub(1)?)
     }
 
-    /// The variable with this path, without regard to case: `global`, `instance.variable`, and `variable` where there
-    /// is one instance of a program. A global variable hides a local one. `%IX0.0` finds the variable AT that address.
+    /// The variable with this path, without regard to case: `global`, `instance.variable`, and `variable` if there
+    /// is one instance of a program. A global variable hides a local one. `%IX0.0` finds the variable AT that
+    /// address.
     #[must_use]
     pub fn find(&self, path: &str) -> Option<Symbol> {
         if path.starts_with('%') {
@@ -252,7 +253,7 @@ impl Symbols {
         Some(part)
     }
 
-    /// The instance of a program, where there is one.
+    /// The instance of a program, if there is only one.
     fn only_instance(&self) -> Option<&Root> {
         let mut instances = self.roots.iter().filter(|root| root.instance);
         let (only, None) = (instances.next()?, instances.next()) else {
@@ -405,7 +406,7 @@ pub(crate) fn image(program: &Program<'_>, memory: &mut [u8]) {
     }
 }
 
-/// Names of elementary types that a guest's symbols have, too.
+/// Names of elementary types that the symbols of a guest have, too.
 impl Elementary {
     /// The type by which the host of a guest reads it; `None` if no signal has 64 bits of that kind.
     #[must_use]

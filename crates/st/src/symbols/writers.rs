@@ -6,7 +6,7 @@ use crate::source::{Position, Sources, Span};
 use crate::typed::{Argument, Base, Expr, Kind, Place, Stmt, StmtKind};
 use crate::types::{Constant, Elementary, Type, UnitId};
 
-/// Most writers of one variable that are listed.
+/// Largest number of writers of one variable that are listed.
 const MOST: usize = 16;
 
 /// A statement that writes a variable.
@@ -16,14 +16,14 @@ pub struct Writer {
     pub file: String,
     /// The begin of the statement; for an input given in a call, the place of its value.
     pub position: Position,
-    /// The value it writes, if that is a constant: in the form of a trace.
+    /// The value that it writes, if that is a constant: in the form of a trace.
     pub value: Option<String>,
 }
 
 /// Bytes that a statement may write.
 #[derive(Clone, Debug)]
 pub(super) struct Write {
-    /// Whose instances they are in; `None` counts from the beginning of memory.
+    /// The unit whose instances they are in; `None` counts from the beginning of memory.
     unit: Option<UnitId>,
     start: u32,
     end: u32,
@@ -51,7 +51,7 @@ pub(super) fn writes(program: &Program<'_>, sources: &Sources) -> Vec<Write> {
 struct Finder<'p> {
     program: &'p Program<'p>,
     sources: &'p Sources,
-    /// Whose instance `This` is.
+    /// The unit of `This`.
     unit: Option<UnitId>,
     found: Vec<Write>,
 }
@@ -194,7 +194,8 @@ impl Symbols {
         kept.map(writer).collect()
     }
 
-    /// The instances that a variable is in, from the outside in: whose, and where they begin; and memory as a whole.
+    /// The instances that a variable is in, from the outside in: the unit and the begin of each; and memory as a
+    /// whole.
     fn owners(&self, path: &str) -> Vec<(Option<UnitId>, u32)> {
         let mut owners = vec![(None, 0)];
         let mut note = |part: &Part| {

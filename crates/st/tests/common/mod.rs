@@ -12,7 +12,7 @@ pub fn compiled(text: &str) -> Compiled {
     compiled
 }
 
-/// Holds a module against a validator that is not the interpreter's.
+/// Checks a module with a validator that is not the interpreter's.
 pub fn valid(compiled: &Compiled) {
     wasmparser::validate(&compiled.wasm).unwrap();
 }
@@ -25,7 +25,7 @@ pub fn compile(text: &str) -> Result<Compiled, Box<Report>> {
     standstill_st::compile(&[source], &Options::default())
 }
 
-/// What is wrong with a text: the codes and messages.
+/// The faults of a text: codes and messages.
 pub fn wrong(text: &str) -> Vec<(&'static str, String)> {
     let source = Source {
         name: "prog.st",
@@ -36,7 +36,7 @@ pub fn wrong(text: &str) -> Vec<(&'static str, String)> {
         ..Options::default()
     };
     let report = standstill_st::check(&[source], &options);
-    // Rendering must not fail, whatever is wrong.
+    // Rendering must not fail, for any fault.
     let _shown = report.render();
     let told = report
         .diagnostics()
@@ -160,7 +160,7 @@ impl Running {
         self.bits(standstill_st::LOOP_SITE, 4) as u32
     }
 
-    /// The place of the fault, and the value that led to it.
+    /// The place of the fault, and the value that caused it.
     pub fn fault(&self) -> (Place, i64) {
         let place = self.compiled.symbols.place(self.bits(FAULT_SITE, 4) as u32);
         let place = place.expect("no place was noted").clone();
@@ -178,12 +178,12 @@ pub fn ran(variables: &str, statements: &str) -> Running {
     running
 }
 
-/// The whole number that an expression is worth, as a variable of type `ty`.
+/// The whole number that an expression gives, in a variable of type `ty`.
 pub fn worth(ty: &str, expression: &str) -> i128 {
     ran(&format!("x : {ty};"), &format!("x := {expression};")).whole("x")
 }
 
-/// The number that an expression is worth, as a variable of type `ty`.
+/// The number that an expression gives, in a variable of type `ty`.
 pub fn real(ty: &str, expression: &str) -> f64 {
     ran(&format!("x : {ty};"), &format!("x := {expression};")).real("x")
 }

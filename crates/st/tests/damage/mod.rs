@@ -1,6 +1,6 @@
-//! Random damage to programs: bytes are changed, lost, doubled and moved. The same on every machine; libFuzzer does it with
-//! the same play ([contributing](../../../../docs/contributing.md#fuzzing)). `STANDSTILL_ST_DAMAGE=10000000` does it as often,
-//! `STANDSTILL_ST_SEED` with others.
+//! Random damage to programs: bytes are changed, lost, doubled and moved. It is the same on every machine.
+//! libFuzzer runs the same code ([contributing](../../../../docs/contributing.md#fuzzing)).
+//! `STANDSTILL_ST_DAMAGE=10000000` runs that many, `STANDSTILL_ST_SEED` others.
 
 mod play;
 
@@ -62,7 +62,7 @@ fn no_damage_to_a_program_leads_to_a_panic() {
     };
     let first = number("STANDSTILL_ST_SEED", 0);
     for seed in first..first + number("STANDSTILL_ST_DAMAGE", cases(3000)) {
-        // Beyond, so many lines tell how far it is.
+        // In a longer run this line shows the progress.
         if seed % 100_000 == 99_999 {
             eprintln!("{} done", seed + 1 - first);
         }

@@ -21,7 +21,7 @@ pub fn play(bytes: &[u8]) {
         }
         Err(report) => *report,
     };
-    // The bytes choose what else is asked, and where: most of the time is left to the compiler.
+    // The bytes select the further questions and their place: most of the time is left to the compiler.
     let chosen = bytes.iter().fold(0_usize, |sum, byte| sum + usize::from(*byte));
     let place = chosen / 4 % (bytes.len() + 1);
     match chosen % 4 {

@@ -4,15 +4,15 @@ use std::env;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// Why there is nothing to run.
+/// The message if there is nothing to run.
 pub const MISSING: &str =
     "there is no iec2c; matiec is in no package registry, so nothing installs it (docs/porting.md)";
 
-/// The folder where `iec2c` has its standard functions in Structured Text, with the headers in `C` below it: that in
-/// `MATIEC_LIB`, or one beside `iec2c` on the PATH. `None` without `iec2c`.
+/// The folder in which `iec2c` has its standard functions in Structured Text, with the headers in `C` below it: the
+/// folder of `MATIEC_LIB`, or one beside `iec2c` on the PATH. `None` without `iec2c`.
 ///
 /// # Panics
-/// If `iec2c` is there, and no such folder.
+/// If `iec2c` exists, and no such folder.
 pub fn library() -> Option<PathBuf> {
     Command::new("iec2c").arg("-v").output().ok()?;
     let path = env::var_os("PATH").unwrap_or_default();

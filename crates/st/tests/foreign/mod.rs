@@ -12,7 +12,7 @@ use std::process::Command;
 
 const PORTABLE: &str = include_str!("portable.st");
 
-/// The answers of both, a line for each scan: what is held where there is no matiec.
+/// The answers of both, a line for each scan: the reference without matiec.
 const AGREED: &str = include_str!("answers.txt");
 
 /// Answers of a scan.

@@ -1,5 +1,5 @@
-//! Random well-typed programs, in Structured Text and in C side by side. The rules for types and
-//! operators are written here again, from the standard; nothing of the compiler is used.
+//! Random well-typed programs, in Structured Text and in C side by side. The rules for types and operators are
+//! written again here, from the standard. No code of the compiler is used.
 //!
 //! Whole numbers are 128 bits wide in C and truncated to their type after every operator, so nothing
 //! overflows; divisors are not 0, indices are in their bounds, and loops end.
@@ -11,7 +11,7 @@ use std::fmt::Write;
 pub struct Random(testkit::Random);
 
 impl Random {
-    /// All follows from `seed`.
+    /// Everything follows from `seed`.
     pub const fn new(seed: u64) -> Self {
         Self(testkit::Random(seed))
     }
@@ -29,7 +29,7 @@ impl Random {
     }
 }
 
-/// What is done with a type.
+/// The operations on a type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Bool,
@@ -105,7 +105,7 @@ impl Ty {
         }
     }
 
-    /// Types whose values go where one of this type is wanted.
+    /// Types whose values are accepted where one of this type is expected.
     fn narrower(self) -> Vec<Self> {
         let fits = |it: &Self| match (it.kind, self.kind) {
             (Kind::Bits, Kind::Bits) | (Kind::Real, Kind::Real) => it.bits < self.bits,
@@ -162,7 +162,7 @@ struct Generator<'r> {
     random: &'r mut Random,
     number: usize,
     variables: Vec<Variable>,
-    /// Control variables that nobody else writes while their loop runs.
+    /// Control variables that nothing else writes while their loop runs.
     locked: Vec<String>,
     /// The type of the array and of the structure's members.
     elements: Ty,
@@ -237,7 +237,7 @@ impl Generator<'_> {
         Some(pair(&found.name, &found.c))
     }
 
-    /// An index within the bounds of the array, whatever the variables are.
+    /// An index within the bounds of the array, for any values of the variables.
     fn index(&mut self) -> Pair {
         let ty = self.random.pick(&WHOLE);
         let value = self.expression(ty, 1);
@@ -272,7 +272,7 @@ impl Generator<'_> {
         }
     }
 
-    /// A value that goes where one of this type is wanted beside another one that has it.
+    /// A value that is accepted where one of this type is expected, beside another one of that type.
     fn operand(&mut self, ty: Ty, depth: usize) -> Pair {
         let narrower = ty.narrower();
         if narrower.is_empty() || self.random.below(3) > 0 {
@@ -351,7 +351,7 @@ impl Generator<'_> {
                 )
             }
             2 => {
-                // AND binds tighter than XOR, and that tighter than OR.
+                // AND binds tighter than XOR, and XOR tighter than OR.
                 let [a, b, c, d] = [(); 4].map(|()| self.expression(BOOL, depth));
                 pair(
                     format!("({} OR {} XOR {} AND {})", a.st, b.st, c.st, d.st),
@@ -601,7 +601,7 @@ impl Generator<'_> {
         let value = self.operand(ty, 3);
         pair(
             format!("{} := {};\n", target.st, value.st),
-            // As Structured Text has it, the place is found before the value.
+            // In Structured Text the place is evaluated before the value.
             format!(
                 "{{ {0} *to = &{1}; {0} value = {2}; *to = value; }}\n",
                 ty.c(),
@@ -659,7 +659,7 @@ impl Generator<'_> {
         let selector = self.expression(ty, 2);
         let (a, b, c) = (self.block(depth, 2), self.block(depth, 2), self.block(depth, 2));
         let far = self.random.below(100) + 20;
-        // `s` is worth the same in all comparisons.
+        // `s` has the same value in all comparisons.
         pair(
             format!(
                 "CASE {} OF\n1, 3:\n{}5..9, {far}:\n{}ELSE\n{}END_CASE;\n",
@@ -742,7 +742,7 @@ impl Generator<'_> {
         self.loops += 1;
         let body = self.block(depth, 2);
         self.loops -= 1;
-        // It stays locked, so that it counts on to the end.
+        // It stays locked, so that it counts to the end.
         if self.random.below(2) == 0 {
             pair(
                 format!(

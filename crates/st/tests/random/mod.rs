@@ -1,7 +1,7 @@
 //! Random well-typed programs give the same results as the same programs in C through clang.
 //!
-//! Without clang it says SKIP; with `CI` in the environment that is a failure. `STANDSTILL_ST_PROGRAMS=100000` runs as many,
-//! `STANDSTILL_ST_SEED` others.
+//! Without clang it says SKIP; with `CI` in the environment that is a failure. `STANDSTILL_ST_PROGRAMS=100000` runs
+//! that many, `STANDSTILL_ST_SEED` others.
 
 mod generate;
 
@@ -15,7 +15,7 @@ use std::{env, fs};
 /// Programs of a file.
 const PROGRAMS: usize = 200;
 
-/// How often each runs.
+/// Number of runs of each.
 const SCANS: usize = 3;
 
 fn number(variable: &str, usual: usize) -> usize {
@@ -25,7 +25,7 @@ fn number(variable: &str, usual: usize) -> usize {
         .unwrap_or(usual)
 }
 
-/// What clang's program prints, a line for each of ours; `None` without clang.
+/// The output of clang's program, a line for each of ours; `None` without clang.
 fn in_c(programs: &[Generated], seed: u64) -> Option<String> {
     let mut text = include_str!("prelude.h").to_owned();
     programs.iter().for_each(|it| text.push_str(&it.c));
