@@ -1,5 +1,5 @@
-//! The planner's part of `plan`, for `crates/python/bench/speed.py`: reads lines, and prints the nanoseconds for each,
-//! from keys and numbers to the plan with its segments. The least of several tries.
+//! The planner's part of `plan`, for `crates/python/bench/speed.py`. It reads lines and prints the nanoseconds for
+//! each, from keys and numbers to the plan with its segments: the least of several tries.
 
 use standstill_cli::plan::{Given, Member, planned};
 use std::hint::black_box;

@@ -1,4 +1,4 @@
-//! Files that a command writes are apart from each other and from those that it reads.
+//! Checks that the files a command writes differ from each other and from those that it reads.
 
 use crate::exit::Failure;
 use standstill_script::suite::shown;
@@ -14,7 +14,7 @@ pub struct Written {
     path: PathBuf,
 }
 
-/// The files of an option that is given.
+/// The file of an option, if it is given.
 pub fn written(option: &str, path: Option<&Path>) -> Vec<Written> {
     let path = path.into_iter();
     path.map(|path| Written {
@@ -24,7 +24,7 @@ pub fn written(option: &str, path: Option<&Path>) -> Vec<Written> {
     .collect()
 }
 
-/// Those of a trace: a table has its header beside it.
+/// The files of a trace: a table has its header beside it.
 pub fn trace(path: Option<&Path>) -> Vec<Written> {
     let header = path.filter(|path| is_csv(path)).map(meta_path);
     let mut all = written("--trace", path);
@@ -32,8 +32,8 @@ pub fn trace(path: Option<&Path>) -> Vec<Written> {
     all
 }
 
-/// Refuses two files in one place, by whatever paths they are named, and one in the place of a file that is read. To be
-/// asked before anything is written.
+/// Refuses two files in one place, by any paths, and a file in the place of one that is read. Call it before
+/// anything is written.
 pub fn checked<'a>(writes: &[Written], reads: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
     let placed: Vec<_> = writes
         .iter()
@@ -52,7 +52,7 @@ pub fn checked<'a>(writes: &[Written], reads: impl IntoIterator<Item = &'a Path>
         }
     }
     for path in reads {
-        // Of a link both: what it leads to is lost as well as the link.
+        // For a link both places count: writing would destroy its target as well as the link.
         let places = [Some(place(path)), fs::canonicalize(path).ok()];
         let lost = placed
             .iter()
@@ -65,8 +65,8 @@ pub fn checked<'a>(writes: &[Written], reads: impl IntoIterator<Item = &'a Path>
     Ok(())
 }
 
-/// The place of a file, whether it is there or not: its own name in the system's own path of its folder. A link at this
-/// place is replaced, so it is not followed.
+/// The place of a file, existing or not: its own name in the system's own path of its folder. A link at this place
+/// is replaced, so it is not followed.
 fn place(path: &Path) -> PathBuf {
     match (fs::canonicalize(folder_of(path)), path.file_name()) {
         (Ok(folder), Some(name)) => folder.join(name),

@@ -13,10 +13,10 @@ use values::{axis, cycle, delimiter, parameter, period, size, tolerance};
 #[derive(Debug, Parser)]
 #[command(name = "standstill", version, arg_required_else_help = true, after_help = EXIT_STATUSES)]
 pub struct Arguments {
-    /// End the command with status 1 after this time, and say what it was at
+    /// End the command with status 1 after this time, and report its work at that moment
     #[arg(long, global = true, value_name = "TIME", value_parser = period)]
     pub time_limit: Option<u64>,
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -34,73 +34,74 @@ pub enum Command {
     Watch(WatchArguments),
     /// Run a script as a cyclic task, one scan a period of the wall clock (Linux)
     Live(LiveArguments),
-    /// Open scripts of a folder in a browser, on this machine alone; they run again whenever one is saved
+    /// Open scripts of a folder in a browser, on this machine only; a saved script runs again
     Serve(ServeArguments),
-    /// Hold scripts against their claims and goldens
+    /// Check scripts against their claims and goldens
     Test {
         /// Scripts, and folders of them [default: scan-tests, or this folder where there is none]
         #[arg(value_name = "PATH")]
         paths: Vec<PathBuf>,
-        /// Only scripts whose path has this in it, without regard to case
+        /// Only scripts whose path contains this, without regard to case
         #[arg(short = 'k', value_name = "WORD")]
         word: Option<String>,
-        /// Judge nothing; print the paths of the scripts
+        /// Run nothing; print the paths of the scripts
         #[arg(long, conflicts_with_all = ["accept", "strict", "json", "mutate", "golden", "abs", "rel", "junit", "report", "recording", "watch"])]
         list: bool,
-        /// Judge again whenever a file below the paths is saved, first what failed; until it is interrupted
+        /// Judge again when a file below the paths is saved, failed scripts first; runs until interrupted
         #[arg(long, conflicts_with_all = ["accept", "json", "mutate", "junit", "recording"])]
         watch: bool,
-        /// Take the runs as they are for goldens, where all claims hold
+        /// Accept the runs as goldens if all claims hold
         #[arg(long)]
         accept: bool,
-        /// Show what differs from a golden where all claims hold, and ask whether to take it; the answer comes from standard input
+        /// Show the differences from a golden if all claims hold, and ask whether to accept the run; answers come
+        /// from standard input
         #[arg(long, conflicts_with_all = ["accept", "list", "json", "mutate", "watch", "strict", "junit", "coverage", "report", "recording", "threads"])]
         review: bool,
-        /// Fail for what tests nothing and for values that were clamped, too
+        /// Also fail for items that test nothing and for values that were clamped
         #[arg(long)]
         strict: bool,
-        /// Print the outcome as one JSON object
+        /// Print the result as one JSON object
         #[arg(long)]
         json: bool,
-        /// Change the programs of the scripts in small ways, and say which changes no claim notices
+        /// Make small changes to the programs of the scripts, and report the changes that no claim detects
         #[arg(long, conflicts_with_all = ["accept", "golden", "abs", "rel", "report", "junit", "recording", "strict"])]
         mutate: bool,
-        /// With --mutate: of a script with very many changes those are tried that follow from it
+        /// With --mutate: the seed that selects the changes of a script with very many
         #[arg(long, value_name = "S", default_value_t = 1, requires = "mutate")]
         seed: u64,
-        /// How exactly a run must be as its golden: to the bit, its events to the scan and its set-points within
-        /// --abs and --rel, or not at all
+        /// How a run must agree with its golden: to the bit, its events to the scan and its set-points within --abs
+        /// and --rel, or not at all
         #[arg(long, value_enum, value_name = "HOW", default_value_t = Golden::Exact)]
         golden: Golden,
-        /// With --golden events: how far a set-point may be off, in its own unit [default: 1e-6]
+        /// With --golden events: largest difference of a set-point, in its own unit [default: 1e-6]
         #[arg(long, value_name = "X", value_parser = tolerance)]
         abs: Option<f64>,
-        /// With --golden events: how far it may be off besides, as a share of the expected value [default: 1e-9]
+        /// With --golden events: additional difference, as a share of the expected value [default: 1e-9]
         #[arg(long, value_name = "Y", value_parser = tolerance)]
         rel: Option<f64>,
-        /// Write the outcome to this file, as JUnit XML
+        /// Write the result to this file, as JUnit XML
         #[arg(long, value_name = "FILE.xml")]
         junit: Option<PathBuf>,
-        /// Write which statements and branches of Structured Text the scripts execute to this file
+        /// Write the statements and branches of Structured Text that the scripts execute to this file
         #[arg(long, value_name = "FILE.lcov", conflicts_with_all = ["list", "mutate", "recording"])]
         coverage: Option<PathBuf>,
-        /// Write a page of every script that fails into this folder: golden and run over each other
+        /// Write a page for every script that fails into this folder: golden and run in one drawing
         #[arg(long, value_name = "FOLDER")]
         report: Option<PathBuf>,
-        /// Judge the script's claims on this trace (.csv, .jsonl, .exact) instead of a run of its own: on what a flight
-        /// recorder kept, say
+        /// Judge the script's claims on this trace (.csv, .jsonl, .exact) instead of a run, for example on the
+        /// contents of a flight recorder
         #[arg(long, value_name = "TRACE", conflicts_with_all = ["accept", "golden", "abs", "rel", "report"])]
         recording: Option<PathBuf>,
-        /// Judge on so many threads instead of on all processors; what is printed is the same
+        /// Judge on this number of threads instead of on all processors; the output is the same
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), conflicts_with_all = ["mutate", "recording"])]
         threads: Option<u16>,
-        /// Files beside those of the script's folder
+        /// Files outside the script's folder
         #[command(flatten)]
         outside: Outside,
     },
-    /// Draw traces: a page to look into, a picture, a waveform
+    /// Draw traces: an interactive page, a picture, a waveform
     Report {
-        /// The traces (.csv, .jsonl, .exact); several are laid over each other
+        /// The traces (.csv, .jsonl, .exact); several are drawn over each other
         #[arg(value_name = "TRACE", required = true)]
         traces: Vec<PathBuf>,
         /// Write a self-contained HTML page to this file
@@ -113,28 +114,28 @@ pub enum Command {
         #[arg(long, value_name = "FILE")]
         vcd: Option<PathBuf>,
     },
-    /// Show where two traces part
+    /// Show the first difference of two traces, and its likely cause
     Explain {
-        /// The trace as it should be (.csv, .jsonl, .exact)
+        /// The expected trace (.csv, .jsonl, .exact)
         expected: PathBuf,
-        /// The trace as it is
+        /// The actual trace
         found: PathBuf,
-        /// As one JSON object
+        /// Print one JSON object
         #[arg(long)]
         json: bool,
     },
-    /// Hold a trace against the recording of a machine
+    /// Compare a trace with the recording of a machine
     Compare {
-        /// The recording: CSV as a scope, a PLC's trace or a logger exports it
+        /// The recording: CSV as exported by an oscilloscope, a PLC trace or a logger
         #[arg(value_name = "REF")]
         recording: PathBuf,
         /// The trace (.csv, .jsonl, .exact)
         trace: PathBuf,
-        /// What stands where in the recording, and what may differ
+        /// The map: the columns of the recording, and the permitted differences
         #[arg(long, value_name = "MAP.json")]
         map: PathBuf,
     },
-    /// Find the frequency and the damping with which a machine swings, from a trace or a recording
+    /// Find frequency and damping of a machine's vibration, from a trace or a recording
     Identify(IdentifyArguments),
     /// Plan moves: one JSON object a line in, one a line out
     Plan {
@@ -143,10 +144,10 @@ pub enum Command {
         /// Write the set-points of every scan of every plan to this file, as CSV
         #[arg(long, value_name = "FILE")]
         samples: Option<PathBuf>,
-        /// Write a picture of the plans over each other to this file, of the first six
+        /// Draw the first six plans over each other in this picture
         #[arg(long, value_name = "FILE")]
         svg: Option<PathBuf>,
-        /// Write them as a self-contained HTML page to this file; they must have the same Ts
+        /// Write these plans as a self-contained HTML page to this file; they must have the same Ts
         #[arg(long, value_name = "FILE.html")]
         report: Option<PathBuf>,
     },
@@ -156,41 +157,41 @@ pub enum Command {
         #[arg(value_name = "CASES.jsonl")]
         cases: PathBuf,
     },
-    /// Run a script with many values of its parameters, and write a row of figures a case
+    /// Run a script with many values of its parameters, and write a row of figures for each case
     Sweep(SweepArguments),
-    /// Try random cases for as long as wanted
+    /// Try random cases without end
     Soak {
-        /// What to try
+        /// The kind of cases
         #[command(subcommand)]
         what: Soak,
     },
-    /// Write a first test into a folder: a machine file, a script, what editors and CI need
+    /// Write a first test into a folder: a machine file, a script, files for editors and CI
     ///
-    /// If a file of that name is there already nothing is written.
+    /// Nothing is written if one of the files already exists.
     Init {
-        /// The folder; it is made if it is not there
+        /// The folder; it is created if it does not exist
         #[arg(value_name = "FOLDER", default_value = ".")]
         folder: PathBuf,
     },
-    /// Hold a cam against its axes, draw it, or write the rows of a usual law
+    /// Check a cam against its axes, draw it, or write the rows of a usual law
     Cam {
-        /// What to do
+        /// The task
         #[command(subcommand)]
         what: Cam,
     },
     /// List the function blocks and their pins
     Blocks {
-        /// These blocks only
+        /// Only these blocks
         #[arg(value_name = "NAME")]
         names: Vec<String>,
         /// As JSON
         #[arg(long)]
         json: bool,
-        /// Say instead what an ErrorID means and what to do about it; its number or its name
+        /// Print the meaning and the remedy of an ErrorID instead, given by number or name
         #[arg(long, value_name = "N", conflicts_with_all = ["names", "json"])]
         error: Option<String>,
     },
-    /// Say what an ErrorID means and what to do about it
+    /// Print the meaning and the remedy of an ErrorID
     ExplainError {
         /// Its number or its name
         #[arg(value_name = "N")]
@@ -204,31 +205,31 @@ pub enum Command {
     },
     /// Write manual pages
     Man {
-        /// The folder for them; it is made if it is not there
+        /// The folder for them; it is created if it does not exist
         #[arg(value_name = "FOLDER")]
         folder: PathBuf,
     },
-    /// Write what a host needs to call the blocks: headers, shims, imports, a library
+    /// Write the files that a host needs to call the blocks: headers, shims, imports, a library
     Export {
-        /// For whom
+        /// The target
         #[arg(value_enum)]
         target: ExportTarget,
         /// Write the files into this folder
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
-        /// What all names in C begin with
+        /// The prefix of all names in C
         #[arg(long, value_name = "P", default_value = "standstill")]
         prefix: String,
-        /// Call pins and number enumerations in shims as another system does
+        /// Name pins and number enumerations in shims as another system does
         #[arg(long, value_name = "NAME")]
         dialect: Option<String>,
     },
     /// Serve an editor on standard input and output: mistakes, declarations and completions in Structured Text and scan scripts
     Lsp {
-        /// Understand names and numbers of this system, too: codesys, twincat or omron
+        /// Also accept names and numbers of this system: codesys, twincat or omron
         #[arg(long, value_name = "NAME")]
         dialect: Option<String>,
-        /// What editors say of their own accord; it is the only way
+        /// Accepted because editors pass it; there is no other transport
         #[arg(long, hide = true)]
         stdio: bool,
     },
@@ -236,13 +237,13 @@ pub enum Command {
     Mcp(McpArguments),
     /// Check, lint or compile programs in Structured Text
     St {
-        /// What to do
+        /// The task
         #[command(subcommand)]
         what: St,
     },
     /// Print the JSON Schema of scripts, of machine files, of the maps of `compare`, or of sweeps
     Schema {
-        /// Of what
+        /// The format
         #[arg(value_enum, default_value_t = Schema::Script)]
         of: Schema,
     },
@@ -257,24 +258,24 @@ pub enum Command {
     },
 }
 
-/// The shells that complete the command line.
+/// The shells that can complete the command line.
 #[cfg(feature = "pages")]
 pub use clap_complete::Shell;
 #[cfg(not(feature = "pages"))]
 pub type Shell = String;
 
-/// How exactly `test` holds runs against goldens.
+/// How `test` compares runs with goldens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Golden {
     /// To the bit
     Exact,
     /// Events to the scan, set-points within tolerances
     Events,
-    /// Claims decide alone
+    /// Only claims decide
     None,
 }
 
-/// For whom `export` writes.
+/// The targets of `export`.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub enum ExportTarget {
     /// Headers for hosts in C and C++
@@ -291,7 +292,7 @@ pub enum ExportTarget {
     PlcopenXml,
 }
 
-/// What `schema` describes.
+/// The formats that `schema` describes.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub enum Schema {
     /// Scan scripts
@@ -302,39 +303,39 @@ pub enum Schema {
     Map,
     /// Sweeps
     Sweep,
-    /// What `test --json` and `run --json` print
+    /// The output of `test --json` and `run --json`
     Json,
 }
 
-/// What `soak` tries.
+/// The kinds of cases of `soak`.
 #[derive(Debug, Subcommand)]
 pub enum Soak {
-    /// Replan from random moving states, and hold every plan against its limits and its goal
+    /// Replan from random moving states, and check every plan against its limits and its goal
     ///
-    /// A failing replan is printed as a line of `standstill plan`; the figures at the end are the worst of
-    /// all that hold.
+    /// A failing replan is printed as a line of `standstill plan`. The figures at the end are the worst of all
+    /// plans that pass.
     Planner {
-        /// All replans follow from it
+        /// The seed of all replans
         #[arg(long, value_name = "S", default_value_t = 1)]
         seed: u64,
-        /// How many replans
+        /// Number of replans
         #[arg(long, value_name = "N", default_value_t = 100_000)]
         count: u64,
-        /// Keep the state of the run in this file, and go on from there if it exists
+        /// Keep the state of the run in this file, and continue from it if it exists
         #[arg(long, value_name = "FILE")]
         resume: Option<PathBuf>,
     },
-    /// Run random programs of blocks over random axes, and hold every rule in every scan
+    /// Run random programs of blocks over random axes, and check every rule in every scan
     ///
-    /// A failing program is made as small as it gets and written as a scan script.
+    /// A failing program is made as small as possible and written as a scan script.
     Blocks {
-        /// All programs follow from it
+        /// The seed of all programs
         #[arg(long, value_name = "S", default_value_t = 1)]
         seed: u64,
-        /// How many scans
+        /// Number of scans
         #[arg(long, value_name = "N", default_value_t = 100_000)]
         count: u64,
-        /// Keep the state of the run in this file, and go on from there if it exists
+        /// Keep the state of the run in this file, and continue from it if it exists
         #[arg(long, value_name = "FILE")]
         resume: Option<PathBuf>,
         /// Write failing programs into this folder
@@ -343,10 +344,10 @@ pub enum Soak {
     },
 }
 
-/// What `st` does.
+/// The tasks of `st`.
 #[derive(Debug, Subcommand)]
 pub enum St {
-    /// Say what is wrong or doubtful in the files of a project
+    /// Report errors and warnings for the files of a project
     Check {
         /// The project
         #[command(flatten)]
@@ -355,7 +356,7 @@ pub enum St {
         #[arg(long)]
         json: bool,
     },
-    /// Say what works and is probably not meant, where motion is concerned above all
+    /// Report code that works but is probably not intended, especially with motion
     Lint {
         /// The project
         #[command(flatten)]
@@ -381,16 +382,17 @@ pub enum St {
         /// Write the module to this file, and its symbols to FILE.symbols.json
         #[arg(long, short, value_name = "FILE.wasm")]
         output: PathBuf,
-        /// A name of an axis, the first one is number 1: variables of type AXIS_REF with that name begin as it
+        /// A name of an axis, the first one is number 1: variables of type AXIS_REF with that name start as this
+        /// axis
         #[arg(long, value_name = "NAME")]
         axis: Vec<String>,
     },
 }
 
-/// What `cam` does.
+/// The tasks of `cam`.
 #[derive(Debug, Subcommand)]
 pub enum Cam {
-    /// Say whether a slave can go along a cam, and how fast its master may be
+    /// Check whether a slave can follow a cam, and how fast its master may be
     Check(CamCheckArguments),
     /// Draw a cam and its derivatives by the master
     Plot {
@@ -400,10 +402,10 @@ pub enum Cam {
         /// Write the picture to this file
         #[arg(long, value_name = "OUT.svg")]
         svg: PathBuf,
-        /// Behind its last row the cam goes on as at its first
+        /// The cam continues with its first row after its last one
         #[arg(long)]
         periodic: bool,
-        /// Files beside those of the script's folder
+        /// Files outside the script's folder
         #[command(flatten)]
         outside: Outside,
     },
@@ -411,7 +413,7 @@ pub enum Cam {
     Law(CamLawArguments),
 }
 
-/// What `cam check` takes.
+/// The arguments of `cam check`.
 #[derive(Args, Debug)]
 pub struct CamCheckArguments {
     /// The table: a CSV file, or SCRIPT.scan.json#TABLE; `-` is standard input
@@ -423,36 +425,37 @@ pub struct CamCheckArguments {
     /// The master; the slave must follow it up to its velocity limit
     #[arg(long, value_name = "MACHINE.json#NAME", value_parser = axis)]
     pub master: Option<(PathBuf, String)>,
-    /// Behind its last row the cam goes on as at its first
+    /// The cam continues with its first row after its last one
     #[arg(long)]
     pub periodic: bool,
-    /// The cam begins where the slave is (selected without SlaveAbsolute): software limits don't tell
+    /// The cam begins at the position of the slave (selected without SlaveAbsolute): software limits are not
+    /// checked
     #[arg(long)]
     pub relative: bool,
-    /// As one JSON object
+    /// Print one JSON object
     #[arg(long)]
     pub json: bool,
-    /// Files beside those of the machine file's folder
+    /// Files outside the machine file's folder
     #[command(flatten)]
     pub outside: Outside,
 }
 
-/// What `cam law` takes.
+/// The arguments of `cam law`.
 #[derive(Args, Debug)]
 pub struct CamLawArguments {
     /// The law
     #[arg(value_enum, value_name = "LAW")]
     pub law: CamLaw,
-    /// Way of the slave, below 0 for the way back
+    /// Travel of the slave, below 0 for the way back
     #[arg(long, value_name = "Y", allow_negative_numbers = true)]
     pub lift: f64,
-    /// Way of the master
+    /// Travel of the master
     #[arg(long, value_name = "U", allow_negative_numbers = true)]
     pub width: f64,
-    /// First place of the master
+    /// First position of the master
     #[arg(long, value_name = "U", allow_negative_numbers = true, default_value_t = 0.0)]
     pub begin: f64,
-    /// First place of the slave
+    /// First position of the slave
     #[arg(long, value_name = "Y", allow_negative_numbers = true, default_value_t = 0.0)]
     pub from: f64,
     /// Write the rows to this file instead of standard output
@@ -481,38 +484,38 @@ pub struct StSources {
     /// All files of the project
     #[arg(value_name = "FILE.st", required = true)]
     pub files: Vec<PathBuf>,
-    /// Understand names and numbers of this system, too: codesys, twincat or omron
+    /// Also accept names and numbers of this system: codesys, twincat or omron
     #[arg(long, value_name = "NAME")]
     pub dialect: Option<String>,
-    /// The PROGRAM to run in every scan, if neither a CONFIGURATION says nor there is only one
+    /// The PROGRAM to run in every scan, if there are several and no CONFIGURATION
     #[arg(long, value_name = "NAME")]
     pub program: Option<String>,
 }
 
-/// What `mcp` takes.
+/// The arguments of `mcp`.
 #[derive(Args, Debug)]
 pub struct McpArguments {
-    /// The folder whose scripts and traces may be read; nothing outside it is
+    /// The folder whose scripts and traces may be read; nothing outside may be read
     #[arg(value_name = "FOLDER", default_value = ".")]
     pub folder: PathBuf,
-    /// Let calls write pages, pictures and traces into this folder; without it nothing is written
+    /// Calls may write pages, pictures and traces into this folder; without it nothing is written
     #[arg(long, value_name = "FOLDER")]
     pub write: Option<PathBuf>,
     /// End a call after this time
     #[arg(long, value_name = "TIME", value_parser = period, default_value = "30s")]
     pub call_time: u64,
-    /// Let a call have so much memory, such as 256MiB (Linux)
+    /// Memory limit of a call, such as 256MiB (Linux)
     #[arg(long, value_name = "SIZE", value_parser = size, default_value = "1GiB")]
     pub call_memory: u64,
 }
 
-/// Where `soak blocks` writes failing programs.
+/// The folder into which `soak blocks` writes failing programs.
 const FAILURES: &str = "soak-failures";
 
-/// Where the scripts of a repository stand.
+/// The folder with the scripts of a repository.
 pub const SCRIPTS: &str = "scan-tests";
 
-/// What `run` takes.
+/// The arguments of `run`.
 #[derive(Args, Debug)]
 pub struct RunArguments {
     /// The scripts, run in this order; or the files of one program in Structured Text
@@ -521,22 +524,22 @@ pub struct RunArguments {
     /// The machine file with the axes of a program in Structured Text
     #[arg(long, value_name = "MACHINE.json")]
     pub axes: Option<PathBuf>,
-    /// Of such a program: the PROGRAM that runs
+    /// For such a program: the PROGRAM that runs
     #[arg(long, value_name = "NAME")]
     pub program: Option<String>,
-    /// Of such a program: the length of a scan; T#1ms if absent
+    /// For such a program: the length of a scan; T#1ms if absent
     #[arg(long, value_name = "TIME", value_parser = cycle)]
     pub cycle: Option<i64>,
-    /// Of such a program: how many scans; 1000 if absent
+    /// For such a program: the number of scans; 1000 if absent
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
     pub scans: Option<u64>,
-    /// Write the trace to this file; its ending says how
+    /// Write the trace to this file; its ending selects the format
     #[arg(long, value_name = "FILE(.csv|.jsonl)")]
     pub trace: Option<PathBuf>,
-    /// What stands between the cells of a CSV trace: `,` `;` `|` or `tab`
+    /// The separator of the cells of a CSV trace: `,` `;` `|` or `tab`
     #[arg(long, value_name = "CHARACTER", value_parser = delimiter, requires = "trace")]
     pub delimiter: Option<char>,
-    /// Write numbers of a CSV trace with a decimal comma; cells then stand between `;` unless told otherwise
+    /// Write numbers of a CSV trace with a decimal comma; the default separator is then `;`
     #[arg(long, requires = "trace")]
     pub decimal_comma: bool,
     /// Write a self-contained HTML page to this file
@@ -551,42 +554,42 @@ pub struct RunArguments {
     /// Replace the value of a parameter of the script
     #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
     pub set: Vec<(String, f64)>,
-    /// Files beside those of the script's folder
+    /// Files outside the script's folder
     #[command(flatten)]
     pub outside: Outside,
-    /// Print failing claims and one line a script
+    /// Print failing claims and one line for each script
     #[arg(long, short)]
     pub quiet: bool,
-    /// Print the outcome as one JSON object
+    /// Print the result as one JSON object
     #[arg(long, conflicts_with = "quiet")]
     pub json: bool,
 }
 
-/// What `sweep` takes.
+/// The arguments of `sweep`.
 #[derive(Args, Debug)]
 pub struct SweepArguments {
-    /// What varies, and what is taken of every run
+    /// The sweep file: the parameters that vary, and the figures of every run
     #[arg(value_name = "SWEEP.json")]
     pub sweep: PathBuf,
-    /// Write the table to this file, and go on from what an interrupted run left in FILE.csv.part
+    /// Write the table to this file; continue from FILE.csv.part of an interrupted run
     #[arg(long, short, value_name = "FILE.csv")]
     pub output: Option<PathBuf>,
-    /// Compute every N-th case only, beginning with the I-th
+    /// Compute only every N-th case, beginning with the I-th
     #[cfg(feature = "sweep")]
     #[arg(long, value_name = "I/N", default_value_t = Shard::ALL, conflicts_with = "merge")]
     pub shard: Shard,
-    /// Compute on so many threads instead of on all processors
+    /// Compute on this number of threads instead of on all processors
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), conflicts_with = "merge")]
     pub threads: Option<u16>,
-    /// Compute nothing: put the tables of all shards together
+    /// Compute nothing: merge the tables of all shards
     #[arg(long, value_name = "SHARD.csv", num_args = 1..)]
     pub merge: Vec<PathBuf>,
-    /// Files beside those of the script's folder
+    /// Files outside the script's folder
     #[command(flatten)]
     pub outside: Outside,
 }
 
-/// What `watch` takes.
+/// The arguments of `watch`.
 #[derive(Args, Debug)]
 pub struct WatchArguments {
     /// The script
@@ -595,55 +598,55 @@ pub struct WatchArguments {
     /// Replace the value of a parameter of the script
     #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
     pub set: Vec<(String, f64)>,
-    /// Files beside those of the script's folder
+    /// Files outside the script's folder
     #[command(flatten)]
     pub outside: Outside,
 }
 
-/// What `serve` takes.
+/// The arguments of `serve`.
 #[derive(Args, Debug)]
 pub struct ServeArguments {
     /// The folder with the scripts [default: scan-tests, or this folder where there is none]
     #[arg(value_name = "FOLDER")]
     pub folder: Option<PathBuf>,
-    /// The port, of the loopback address; 0 takes one that is free
+    /// The port of the loopback address; 0 selects a free one
     #[arg(long, value_name = "N", default_value_t = 7480)]
     pub port: u16,
     /// The page, as `bash .ci/site` builds it [default: target/site, or `site` beside the program]
     #[arg(long, value_name = "FOLDER")]
     pub site: Option<PathBuf>,
-    /// Let scripts read files (machine files, programs) from this folder, too
+    /// Scripts may also read files (machine files, programs) from this folder
     #[arg(long, value_name = "FOLDER")]
     pub include_from: Vec<PathBuf>,
 }
 
-/// What `live` takes.
+/// The arguments of `live`.
 #[derive(Args, Debug)]
 pub struct LiveArguments {
     /// The script
     #[arg(value_name = "SCRIPT")]
     pub script: PathBuf,
-    /// Time between two scans, which must be the cycle of the script
+    /// Time between two scans; it must be the cycle of the script
     #[arg(long, value_name = "TIME", value_parser = period)]
     pub period: u64,
-    /// Write the trace to this file; its ending says how
+    /// Write the trace to this file; its ending selects the format
     #[arg(long, value_name = "FILE(.csv|.jsonl)")]
     pub trace: Option<PathBuf>,
-    /// Write when scans began and how long they took to this file
+    /// Write the start and the duration of each scan to this file
     #[arg(long, value_name = "FILE.json")]
     pub timing: Option<PathBuf>,
-    /// What to do when a scan is not over before the next one is due
+    /// The reaction to a scan that is not finished when the next one is due
     #[arg(long, value_enum, value_name = "WHAT", default_value_t = OnOverrun::Continue)]
     pub on_overrun: OnOverrun,
     /// Replace the value of a parameter of the script
     #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
     pub set: Vec<(String, f64)>,
-    /// Files beside those of the script's folder
+    /// Files outside the script's folder
     #[command(flatten)]
     pub outside: Outside,
 }
 
-/// What an overrun of `live` leads to.
+/// The reactions of `live` to an overrun.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum OnOverrun {
     /// Count it, and skip the periods that have passed
@@ -652,22 +655,22 @@ pub enum OnOverrun {
     Stop,
 }
 
-/// What scripts may do beyond what any script may.
+/// Permissions of scripts beyond those of any script.
 #[derive(Args, Debug)]
 pub struct Outside {
-    /// Let scripts read files (machine files, programs) from this folder, too
+    /// Scripts may also read files (machine files, programs) from this folder
     #[arg(long, value_name = "FOLDER")]
     include_from: Vec<PathBuf>,
-    /// Let scripts read files from anywhere
+    /// Scripts may read files from anywhere
     #[arg(long)]
     allow_outside: bool,
-    /// Let the guest programs of a script have so much memory in all, such as 256MiB
+    /// Memory limit for all guest programs of a script together, such as 256MiB
     #[arg(long, value_name = "SIZE", value_parser = size, default_value = "64MiB")]
     guest_memory: u64,
 }
 
 impl Outside {
-    /// What scripts may do beyond what any script may.
+    /// Permissions of scripts beyond those of any script.
     pub fn allowed(&self) -> Allowed {
         let mut folders = self.include_from.clone();
         if self.allow_outside {
@@ -692,34 +695,34 @@ mod tests {
     }
 }
 
-/// What is looked at for a swing.
+/// The arguments of `identify`.
 #[derive(Debug, clap::Args)]
 pub struct IdentifyArguments {
     /// The trace (.csv, .jsonl, .exact), or with --time the recording of a machine (CSV)
     pub trace: PathBuf,
-    /// The column that swings [default: of each axis ActualPosition - Position, in the longest rest of the set-point after a
-    /// motion]
+    /// The column of the vibration [default: of each axis ActualPosition - Position, in the longest time at rest of
+    /// the set-point after a motion]
     #[arg(long, value_name = "NAME")]
     pub signal: Option<String>,
-    /// Look at nothing before this time
+    /// Ignore samples before this time
     #[arg(long, value_name = "TIME", value_parser = period)]
     pub from: Option<u64>,
-    /// Look at nothing after this time
+    /// Ignore samples after this time
     #[arg(long, value_name = "TIME", value_parser = period)]
     pub to: Option<u64>,
-    /// It is a recording, whose times stand in this column
+    /// The trace is a recording, with its times in this column
     #[arg(long, value_name = "NAME", requires = "signal")]
     pub time: Option<String>,
-    /// What these times count
+    /// The unit of these times
     #[arg(long, value_enum, default_value_t = TimeUnit::Seconds, requires = "time")]
     pub unit: TimeUnit,
-    /// As one JSON object
+    /// Print one JSON object
     #[arg(long)]
     pub json: bool,
 }
 
 impl IdentifyArguments {
-    /// The times (ns) that are looked at, first and last.
+    /// The first and the last time (ns) to evaluate.
     pub fn window(&self) -> (i64, i64) {
         let ns =
             |time: Option<u64>, absent| time.map_or(absent, |time| i64::try_from(time).unwrap_or(i64::MAX));
@@ -727,7 +730,7 @@ impl IdentifyArguments {
     }
 }
 
-/// What the times of a recording count.
+/// The units of the times of a recording.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub enum TimeUnit {
     /// Seconds

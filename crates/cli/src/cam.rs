@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 /// Digits of a figure for people.
 const DIGITS: usize = 6;
 
-/// Does one of them.
+/// Runs one of the tasks.
 pub fn cam(what: &Cam, out: &mut dyn Write) -> Result<Exit, Failure> {
     match what {
         Cam::Check(arguments) => check(arguments, out),
@@ -122,7 +122,7 @@ fn check(arguments: &CamCheckArguments, out: &mut dyn Write) -> Result<Exit, Fai
     Ok(exit)
 }
 
-/// Everything for people.
+/// The whole result for people.
 fn as_text(table: &CamTable, asked: Asked<'_>, fit: &Fit) -> String {
     let head = &fit.curve.head;
     let slave = &asked.slave.name;
@@ -266,7 +266,7 @@ fn figure(value: f64) -> String {
     }
 }
 
-/// Everything as one object.
+/// The whole result as one object.
 fn as_json(table: &CamTable, asked: Asked<'_>, fit: &Fit, exit: Exit) -> String {
     let head = &fit.curve.head;
     let range = |(low, high): (f64, f64)| list([number(low), number(high)]);

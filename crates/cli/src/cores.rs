@@ -7,7 +7,7 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// Most results per thread that wait to be taken, because they need memory.
+/// Largest number of results per thread that wait to be taken, because they need memory.
 const AHEAD: usize = 2;
 
 /// Stack of a thread (bytes), the same as the main one's: files may be nested as deep as the reader
@@ -19,14 +19,13 @@ const PERIOD: Duration = Duration::from_millis(50);
 
 /// The progress of the work.
 struct State<T> {
-    /// Begun.
+    /// Number of pieces that were begun.
     begun: usize,
-    /// Taken.
+    /// Number of results that were taken.
     taken: usize,
-    /// Results that wait to be taken. Work that panicked counts as done: the panic continues where it is
-    /// taken.
+    /// Results that wait to be taken. Work that panicked counts as done: the panic continues where it is taken.
     done: BTreeMap<usize, thread::Result<T>>,
-    /// Nothing more is wanted.
+    /// No more results are needed.
     is_over: bool,
 }
 
@@ -79,13 +78,13 @@ impl<T> Drop for End<'_, T> {
     }
 }
 
-/// As many threads as there are processors.
+/// The number of threads: as many as processors.
 pub fn processors() -> usize {
     thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Does `work` for 0, 1, .. below `count` on `threads` threads, and passes each result to `take`, in this
-/// order. While a result is not ready, `take` gets nothing, at once and then from time to time.
+/// Does `work` for 0, 1, .. below `count` on `threads` threads, and passes each result to `take`, in this order.
+/// While a result is not ready, `take` receives nothing, at once and then from time to time.
 ///
 /// # Errors
 /// The first error of `take`; running work is finished first.
@@ -123,7 +122,7 @@ pub fn in_order<T: Send>(
                 .spawn_scoped(scope, worker)
                 .is_ok()
         };
-        // If no more threads are available, the existing ones do the work; some systems have none.
+        // If no more threads are available, the existing ones do the work. Some systems have none.
         if (0..threads).take_while(|number| spawn(*number)).count() == 0 {
             return (0..count).try_for_each(|index| {
                 take(index, None)?;

@@ -73,12 +73,12 @@ impl Coverage {
         )
     }
 
-    /// The sources with their counts as a page of its own; where it was written.
+    /// The sources with their counts as a separate page; returns its path.
     pub fn page(&self, folder: &Path) -> Result<String, Failure> {
         let path = folder.join("coverage.html");
         let files = self.files.iter().map(|(file, counts)| {
-            // The text was compiled a moment ago, so it is UTF-8; a file that is gone since is shown by
-            // its numbers only.
+            // The text was compiled a moment ago, so it is UTF-8. A file that no longer exists is shown by its
+            // numbers only.
             let text = std::fs::read_to_string(file).unwrap_or_default();
             table(file, &text, counts)
         });
@@ -90,7 +90,8 @@ impl Coverage {
         Ok(suite::shown(&path))
     }
 
-    /// As `geninfo` of LCOV documents it: a record a file, a line counts as often as its most executed statement.
+    /// The LCOV format, as `geninfo` documents it: a record for each file; a line counts as often as its most
+    /// executed statement.
     fn lcov(&self) -> String {
         let mut out = String::new();
         for (file, counts) in &self.files {
@@ -121,10 +122,10 @@ impl Coverage {
     }
 }
 
-/// Most files whose missing lines the terminal shows.
+/// Largest number of files whose missing lines the terminal shows.
 const FILES_TOLD: usize = 20;
 
-/// Most lines of a file that the terminal names.
+/// Largest number of lines of a file that the terminal names.
 const LINES_TOLD: usize = 12;
 
 /// The page around the files; it loads nothing.

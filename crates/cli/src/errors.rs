@@ -28,7 +28,7 @@ fn find(wanted: &str) -> Option<ErrorId> {
 
 fn unknown(wanted: &str) -> Failure {
     let remedy = match wanted.parse::<u16>() {
-        // The hundreds say what an error is about.
+        // The hundreds give the subject of an error.
         Ok(number) => {
             let of_class = ErrorId::ALL
                 .iter()

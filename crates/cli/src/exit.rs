@@ -12,7 +12,7 @@ use std::panic::{self, UnwindSafe};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// The exit statuses of the program. They are interface: scripts and CI jobs rely on them.
+/// The exit statuses of the program. They are part of its interface: scripts and CI jobs rely on them.
 ///
 /// If several scripts are judged in one run the highest status counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -22,13 +22,13 @@ pub enum Exit {
     Passed = 0,
     /// A claim, a golden or a plan failed, or two traces differ.
     Failed = 1,
-    /// The arguments make no sense.
+    /// The arguments are invalid.
     Usage = 2,
-    /// A script or a trace is wrong.
+    /// A script or a trace is invalid.
     BadInput = 3,
     /// A file could not be read or written.
     Io = 4,
-    /// The program itself is wrong.
+    /// The program itself has a defect.
     Internal = 70,
 }
 
@@ -82,7 +82,7 @@ impl Failure {
         ))
     }
 
-    /// A file that could not be read or written; text that is no UTF-8 is a wrong file, not a bad disk.
+    /// A file that could not be read or written. Text that is no UTF-8 is an invalid file, not a disk error.
     pub fn io(name: &str, error: &io::Error) -> Self {
         Self::Told(
             io_exit(error),
@@ -143,7 +143,7 @@ impl From<SuiteError> for Failure {
             SuiteError::Encoding { .. }
             | SuiteError::Run { .. }
             | SuiteError::Golden(GoldenError::Form { .. }) => Exit::BadInput,
-            // Its text is a rendered one.
+            // Its text is already rendered.
             SuiteError::Script(script) => return Self::Told(Exit::BadInput, script.to_string()),
         };
         Self::Told(exit, format!("error: {error}"))

@@ -46,7 +46,7 @@ impl<'a> Pages<'a> {
         Ok(shown(&path))
     }
 
-    /// No link on the way may lead out of the named folder.
+    /// No link on the path may lead out of the named folder.
     fn stay_below(&self, folder: &Path) -> Result<(), Failure> {
         let real = |path: &Path| fs::canonicalize(path).map_err(|error| Failure::io(&shown(path), &error));
         if real(folder)?.starts_with(real(self.root)?) {

@@ -21,8 +21,8 @@ pub fn files(paths: &[PathBuf], check: bool, out: &mut dyn Write) -> Result<Exit
     Ok(exit)
 }
 
-/// Lays out a script from standard input to standard output. With `check` only the status says whether it
-/// is laid out already.
+/// Lays out a script from standard input to standard output. With `check` only the status reports whether the
+/// layout would change.
 pub fn filter(check: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
     limit::doing("reading standard input");
     let mut text = String::new();

@@ -96,8 +96,8 @@ fn of_trace(arguments: &IdentifyArguments, trace: &Trace) -> Result<Vec<Stretch>
     Ok(found)
 }
 
-/// The rows (from, to; the last one excluded) of the longest stretch in which the set-point is at rest
-/// after a motion; if there is no motion before any, the longest of all.
+/// The rows (from, to; the last one excluded) of the longest stretch in which the set-point is at rest after a
+/// motion. Without a motion before any stretch, the longest of all.
 fn longest_rest(rows: &[(f64, f64)]) -> (usize, usize) {
     let mut best = (0, 0);
     let mut begin = 0;
@@ -121,7 +121,7 @@ fn longest_rest(rows: &[(f64, f64)]) -> (usize, usize) {
     best
 }
 
-/// A column of a recording, whose times need not be equal to the last digit.
+/// A column of a recording. Its times may be slightly uneven.
 fn of_recording(arguments: &IdentifyArguments, time: &str) -> Result<Stretch, Failure> {
     let name = shown(&arguments.trace);
     limit::doing(format!("looking for a swing in {name}"));
@@ -167,7 +167,7 @@ fn of_recording(arguments: &IdentifyArguments, time: &str) -> Result<Stretch, Fa
     })
 }
 
-/// Samples that lie `step` (ns) apart, on straight lines between those that there are.
+/// Samples at distances of `step` (ns), on straight lines between the existing ones.
 fn even(samples: &[(i64, f64)], begin: i64, step: f64) -> Vec<f64> {
     let mut pairs = samples.windows(2).peekable();
     let at = |place: usize| {
@@ -283,7 +283,7 @@ impl Stretch {
     }
 }
 
-/// A value with as many decimals as its error has two digits in, at most nine.
+/// A value with its error. It has as many decimals as two digits of the error need, at most nine.
 fn with_error(value: f64, within: f64) -> String {
     let (mut decimals, mut digits) = (0, within);
     while decimals < 9 && digits < 10.0 {

@@ -2,8 +2,8 @@
 //!
 //! `serde_json` writes `1e21` as `1e+21`; every other text of the product has Rust's own form.
 
-/// A finite number in the shortest form that reads back as the same number, -0.0 as `0.0`. Other values
-/// become the word for it, as a string.
+/// A finite number in the shortest form that reads back as the same number, -0.0 as `0.0`. Other values become
+/// their word, as a string.
 pub fn number(value: f64) -> String {
     if value.is_nan() {
         string("NaN")

@@ -1,7 +1,7 @@
 //! The outcome of `standstill test` as JUnit XML, the form that GitHub, GitLab and Jenkins read.
 //!
-//! One suite a folder, one case a script. Names and texts come from files, so all of them are escaped.
-//! Characters that XML 1.0 cannot have, such as control characters, become U+FFFD.
+//! One suite for each folder, one case for each script. Names and texts come from files, so all of them are
+//! escaped. Characters that XML 1.0 cannot have, such as control characters, become U+FFFD.
 
 use crate::exit::Failure;
 use standstill_picture::escaped;
@@ -13,7 +13,7 @@ use std::time::Duration;
 /// How a case ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// As it should.
+    /// It passed.
     Passed,
     /// A claim or the golden failed.
     Failed,
@@ -30,7 +30,7 @@ pub struct Case {
     pub ending: Ending,
     /// The message; empty if it passed.
     pub text: String,
-    /// What it took.
+    /// Its duration.
     pub took: Duration,
 }
 
@@ -99,7 +99,7 @@ fn write_case(out: &mut String, case: &Case) {
     let _ = write!(
         out,
         "    <testcase classname=\"{}\" name=\"{}\" file=\"{}\" time=\"{}\"",
-        // Jenkins makes packages of the parts between points.
+        // Jenkins makes packages of the parts between dots.
         attribute(&folder.replace('/', ".")),
         attribute(name),
         attribute(&case.file),
@@ -128,7 +128,7 @@ fn seconds(time: Duration) -> String {
     format!("{:.3}", time.as_secs_f64())
 }
 
-/// Text as a quoted attribute has it.
+/// Text in the form of a quoted attribute.
 fn attribute(text: &str) -> String {
     // A reader would change a line end to a space.
     escaped(text).replace('\n', "&#10;")
@@ -139,7 +139,7 @@ mod tests {
     use super::*;
     use roxmltree::{Document, Node};
 
-    /// What would be markup, or is no XML at all.
+    /// Text that would be markup, or is no XML at all.
     const NASTY: &str = "a<b>&\"'\t\r]]><![CDATA[ \u{1b}[2J\u{0}\u{ffff} größer";
 
     fn case(file: &str, ending: Ending, text: &str) -> Case {

@@ -77,11 +77,12 @@ pub fn main() -> ExitCode {
     status_of(std::env::args_os()).into()
 }
 
-/// A file that would get larger than the system allows is an error of the write, and so is told, and not the end of the program.
+/// A file that would exceed the system's size limit becomes an error of the write, which is reported. Otherwise it
+/// would end the program.
 fn outlive_a_limit_on_files() {
     #[cfg(all(unix, feature = "signals"))]
     {
-        // Where it cannot be, such a file ends the program as it does any other.
+        // On a system without this signal, such a file ends the program.
         let _ = signal_hook::flag::register(signal_hook::consts::signal::SIGXFSZ, std::sync::Arc::default());
     }
 }
@@ -191,7 +192,7 @@ fn explained(error: &clap::Error, arguments: &[OsString]) -> Exit {
         && let Some(command) = json_of(arguments)
     {
         let text = error.render().to_string();
-        // Its reader may have gone, and the status is that of the mistake.
+        // Its reader may be gone; the status is that of the mistake.
         let _ = writeln!(io::stdout(), "{}", outcome::refused(&command, Exit::Usage, &text));
     }
     match error.print() {

@@ -30,8 +30,8 @@ pub fn before_end(first: fn()) {
     *locked(&FIRST) = Some(first);
 }
 
-/// Ends the program after this time, unless it has ended by itself. A command that answers with JSON, and so has not
-/// answered yet, then says why.
+/// Ends the program after this time, unless it has ended by itself. A command with a JSON answer has not answered
+/// yet; it then gives the reason.
 pub fn start(limit_ns: u64, as_json: Option<String>) -> Result<(), Failure> {
     let watch = move || {
         thread::sleep(Duration::from_nanos(limit_ns));

@@ -4,7 +4,7 @@ use crate::args::LiveArguments;
 use crate::exit::{Exit, Failure};
 use std::io::Write;
 
-/// For systems without real-time support.
+/// The replacement on systems without real-time support.
 #[cfg(not(target_os = "linux"))]
 pub fn live(_: &LiveArguments, _: &mut dyn Write) -> Result<Exit, Failure> {
     Err(Failure::usage(

@@ -1,5 +1,5 @@
-//! `standstill run` for a script with more scans than rows are kept. All output is written row by row, so
-//! memory does not grow with the scans.
+//! `standstill run` for a script with more scans than rows are kept. All output is written row by row, so memory
+//! does not grow with the scans.
 
 use crate::args::RunArguments;
 use crate::exit::{Exit, Failure, complain};
@@ -21,7 +21,7 @@ use std::path::Path;
 /// Rows that are held before they are written and dropped.
 const ROWS_HELD: u64 = 4096;
 
-/// The outputs written while rows come.
+/// The outputs that are written as rows arrive.
 struct Telling<'a> {
     out: &'a mut dyn Write,
     /// The text for people; none with `--quiet`.
@@ -32,7 +32,7 @@ struct Telling<'a> {
 }
 
 impl Telling<'_> {
-    /// Writes the rows that have come since the last call.
+    /// Writes the rows that have arrived since the last call.
     fn look(&mut self, trace: &Trace) -> Result<(), Ended> {
         if let Some((log, widths)) = &mut self.events {
             for event in log.take(trace) {
@@ -49,7 +49,7 @@ impl Telling<'_> {
     }
 }
 
-/// Runs a script and says how it went.
+/// Runs a script and reports the result.
 pub fn run(
     path: &Path,
     (name, script): (&str, &Script),
@@ -91,7 +91,7 @@ pub fn run(
         let failure = match error {
             Ended::Run(error) => wrong(error),
             Ended::Told(failure) => failure,
-            // It reports itself which rows are kept.
+            // The streaming file itself reports which rows are kept.
             Ended::File(error) => return Err(error.into()),
         };
         if let Some((partial, rows)) = file.as_ref().and_then(Streaming::kept) {
@@ -161,7 +161,7 @@ fn go<'s>(
         } else {
             match session.advance_far(ROWS_HELD - session.scans() % ROWS_HELD) {
                 Ok(Ahead::Broken) => {
-                    // Up to the rows that were told it is the same run.
+                    // Up to the rows that were written it is the same run.
                     *session = Session::long(script).map_err(Ended::Run)?;
                     by_scan = true;
                     continue;
@@ -193,7 +193,7 @@ fn go<'s>(
     }
 }
 
-/// The signals that ask for an end.
+/// The signals that request an end.
 struct Stop {
     #[cfg(all(unix, feature = "signals"))]
     signal: std::sync::Arc<std::sync::atomic::AtomicUsize>,
@@ -216,7 +216,7 @@ impl Stop {
         Ok(Self {})
     }
 
-    /// Reports the written part of the file, and ends as the signal would have, if one has come.
+    /// If a signal has come: reports the written part of the file, and ends as the signal would have.
     #[cfg(all(unix, feature = "signals"))]
     fn heed(&self, file: &Streaming, out: &mut dyn Write) {
         let signal = self.signal.load(std::sync::atomic::Ordering::Relaxed);
@@ -241,7 +241,7 @@ fn kept(partial: &Path, rows: usize) -> String {
     format!("the run came to no end; its first {rows} rows are in {partial}")
 }
 
-/// The most scans of this script whose rows are kept.
+/// The largest number of scans of this script whose rows are kept.
 fn kept_at_most(script: &Script, outcome: &Outcome) -> u64 {
     let columns = outcome.trace.columns().len().max(1) as u64;
     ROWS_MAX.min(CELLS_MAX / columns).min(script.scans)

@@ -13,7 +13,7 @@ use standstill_script::suite::{self, Allowed};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Most mutants of one script that are tried.
+/// Largest number of mutants of one script that are tried.
 const MUTANTS_MOST: usize = 500;
 
 /// The results of a script's mutants.
@@ -21,7 +21,7 @@ const MUTANTS_MOST: usize = 500;
 struct Score {
     killed: usize,
     survived: usize,
-    /// Nothing in the run was otherwise, or it could not be run.
+    /// The run was not different, or was not possible.
     left: usize,
 }
 

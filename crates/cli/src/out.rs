@@ -27,8 +27,8 @@ struct Standard {
 }
 
 impl Standard {
-    /// Writes to the output; text for a reader that is gone is dropped. The command continues: its status
-    /// is its result, whether or not somebody reads it.
+    /// Writes to the output. Text for a reader that is gone is dropped. The command continues: its status is its
+    /// result, with or without a reader.
     fn with(&mut self, write: impl FnOnce(&mut BufWriter<Stdout>) -> io::Result<()>) -> io::Result<()> {
         if self.closed {
             return Ok(());
@@ -67,8 +67,8 @@ fn standard() -> MutexGuard<'static, Standard> {
     STANDARD.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// Whether the reader of standard output has gone, for commands that would continue as long as they get
-/// input.
+/// Whether the reader of standard output is gone, for commands that would otherwise continue as long as they
+/// receive input.
 pub fn is_closed() -> bool {
     standard().closed
 }
@@ -95,7 +95,7 @@ impl Out {
         Self { is_data: false }
     }
 
-    /// For programs: JSON, CSV and scripts as they are.
+    /// For programs: JSON, CSV and scripts, unchanged.
     pub const fn data() -> Self {
         Self { is_data: true }
     }

@@ -23,12 +23,12 @@ pub fn begun(command: &str, exit: Exit) -> Object {
         .with("status", (exit as u8).to_string())
 }
 
-/// The answer of a command that could not do its work, with what standard error says.
+/// The answer of a command that could not do its work, with the text of standard error.
 pub fn refused(command: &str, exit: Exit, text: &str) -> String {
     begun(command, exit).with("error", string(text.trim_end())).text()
 }
 
-/// How two traces differ, which have these names.
+/// The difference of two traces with these names.
 pub fn explained(exit: Exit, (expected, found): (&str, &str), story: Option<&Story>) -> String {
     let mut object = begun("explain", exit);
     object = object.with("expected", string(expected));
@@ -91,7 +91,7 @@ fn signal(signal: &SignalDifference) -> String {
     object.text()
 }
 
-/// Everything as one object.
+/// The whole outcome as one object.
 pub fn whole(command: &str, exit: Exit, counts: &[(&str, usize)], scripts: &[Object]) -> String {
     let mut object = begun(command, exit);
     if !counts.is_empty() {
@@ -111,7 +111,7 @@ pub fn run(name: &str, outcome: &Outcome, digest: u64, warnings: &Warnings) -> O
     ran(name, verdict, (outcome, digest), &outcome.why, warnings)
 }
 
-/// A script that was judged; `word` is that of the text.
+/// A script that was judged; `word` is the one in the text.
 pub fn judged(name: &str, word: &str, report: &Report) -> Object {
     let verdict = match word {
         "ok" => "passed",
@@ -143,7 +143,7 @@ pub fn judged(name: &str, word: &str, report: &Report) -> Object {
     object
 }
 
-/// A script that could not be judged, and why.
+/// A script that could not be judged, and the reason.
 pub fn broken(name: &str, text: &str) -> Object {
     let mut object = named(name, "broken");
     object = object.with("error", string(text.trim_end()));

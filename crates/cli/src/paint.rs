@@ -17,7 +17,7 @@ const DOUBTFUL: Style = AnsiColor::Yellow.on_default().bold();
 const HELP: Style = AnsiColor::Cyan.on_default();
 const PLACE: Style = AnsiColor::BrightBlue.on_default();
 
-/// How a line begins, and what that beginning is.
+/// The beginnings of lines, and their styles.
 const HEADS: [(&str, Style); 10] = [
     ("ok  ", GOOD),
     ("accepted", GOOD),

@@ -36,7 +36,7 @@ impl Progress {
         if self.next.is_some_and(|next| now >= next) {
             self.next = Some(now + PERIOD);
             self.shown = true;
-            // Nothing depends on it being seen.
+            // Nothing depends on its being seen.
             let _ = write!(io::stderr(), "{ERASE}{}", text());
         }
     }

@@ -11,7 +11,7 @@ use standstill_trace::file::{self, replace};
 use standstill_trace::{Loaded, vcd};
 use std::path::{Path, PathBuf};
 
-/// The files to write, each if it is wanted.
+/// The files to write, each if it is requested.
 #[derive(Clone, Copy, Debug)]
 pub struct Targets<'a> {
     /// The page.

@@ -299,7 +299,7 @@ pub fn title(name: &str, trace: &Trace, out: &mut dyn Write) -> Result<(), Failu
     Ok(())
 }
 
-/// The claims that fail, and why, indented.
+/// The claims that fail, and the reasons, indented.
 pub fn failing_claims(outcome: &Outcome) -> String {
     let failures = outcome.verdicts.iter().flat_map(|verdict| &verdict.failures);
     let failures: String = failures.map(|failure| format!("{failure}\n")).collect();

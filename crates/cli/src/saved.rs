@@ -12,7 +12,7 @@ const WRITTEN: [&str; 2] = [".new", ".partial"];
 /// Folders without edited files: they may have very many files.
 const LEFT_OUT: [&str; 2] = ["target", "node_modules"];
 
-/// When each file below some paths was saved, and how long it is.
+/// The time of saving and the length of each file below some paths.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Saved(BTreeMap<PathBuf, (Option<SystemTime>, u64)>);
 

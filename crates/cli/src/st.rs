@@ -15,7 +15,7 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Most variables that a file of symbols lists.
+/// Largest number of variables that a file of symbols lists.
 const SYMBOLS_MOST: usize = 65_536;
 
 /// The files of a project: their names and texts.
@@ -57,7 +57,7 @@ pub fn dialect(name: Option<&str>) -> Result<Dialect, Failure> {
     })
 }
 
-/// Prints faults and doubts, with or without lints; a lint is a failure.
+/// Prints errors and warnings, with or without lints; a lint is a failure.
 pub fn check(given: &StSources, json: bool, lint: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
     let files = read(&given.files)?;
     let options = Options {

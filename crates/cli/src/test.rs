@@ -31,7 +31,7 @@ use std::time::{Duration, Instant};
 pub struct Wish<'a> {
     /// Scripts, and folders of them.
     pub paths: &'a [PathBuf],
-    /// Only scripts whose path has this in it.
+    /// Only scripts whose path contains this.
     pub word: Option<&'a str>,
     /// Replaces goldens by the runs.
     pub accept: bool,
@@ -39,19 +39,19 @@ pub struct Wish<'a> {
     pub strict: bool,
     /// The outcome is printed as JSON.
     pub json: bool,
-    /// Threads that judge; all processors without.
+    /// Number of threads that judge; all processors if absent.
     pub threads: Option<u16>,
     /// How exactly a run must agree with its golden; not at all if absent.
     pub yardstick: Option<Yardstick>,
-    /// Where to write the outcome as JUnit XML.
+    /// The file for the outcome as JUnit XML.
     pub junit: Option<&'a Path>,
-    /// Where to write which statements of Structured Text were executed.
+    /// The file for the executed statements of Structured Text.
     pub coverage: Option<&'a Path>,
     /// The folder for pages of scripts that fail.
     pub report: Option<&'a Path>,
     /// The trace to judge the claims on, instead of runs.
     pub recording: Option<&'a Path>,
-    /// What scripts may do beyond what any script may.
+    /// Permissions of scripts beyond those of any script.
     pub allowed: &'a Allowed,
 }
 
@@ -93,8 +93,8 @@ pub fn list(paths: &[PathBuf], word: Option<&str>, out: &mut dyn Write) -> Resul
 /// Time between two checks for saved files.
 const LOOK_EVERY: Duration = Duration::from_millis(200);
 
-/// For every golden that is missing or differs, if all claims hold: asks whether to replace it by the
-/// run. Without an answer this one and all behind it are not changed.
+/// For every golden that is missing or differs, if all claims hold: asks whether to replace it by the run. If there
+/// is no answer, this one and all later ones are not changed.
 pub fn review(wish: Wish<'_>, answers: &mut dyn BufRead, out: &mut dyn Write) -> Result<Exit, Failure> {
     let Some(yardstick) = wish.yardstick else {
         return Err(Failure::usage(
@@ -141,7 +141,7 @@ pub fn review(wish: Wish<'_>, answers: &mut dyn BufRead, out: &mut dyn Write) ->
     Ok(tally.exit())
 }
 
-/// Yes, no, or neither, which ends the review.
+/// Yes or no. Any other answer ends the review.
 fn answer(answers: &mut dyn BufRead) -> Option<bool> {
     loop {
         complain("take it as the golden? yes, no, or quit");
@@ -158,15 +158,15 @@ fn answer(answers: &mut dyn BufRead) -> Option<bool> {
     }
 }
 
-/// Judges the scripts, and again whenever a file was saved: failed ones first. It ends when its output
-/// has no reader.
+/// Judges the scripts, and again whenever a file was saved: failed ones first. It ends when its output has no
+/// reader.
 pub fn watch(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
     let mut failed = BTreeSet::new();
     loop {
         let before = Saved::below(wish.paths, wish.report);
         match told(wish, &failed, out) {
             Ok(tally) => failed = tally.bad().map(|case| case.file.clone()).collect(),
-            // A folder that is empty for now, say.
+            // For example a folder that is empty for now.
             Err(failure @ Failure::Told(..)) => drop(go_on(Err(failure), out)?),
             Err(failure) => return Err(failure),
         }
@@ -279,7 +279,7 @@ fn judged(wish: Wish<'_>, first: &BTreeSet<String>, out: &mut dyn Write) -> Resu
 
 /// The number of threads that judge the scripts.
 fn threads(wish: &Wish<'_>, scripts: &[PathBuf]) -> usize {
-    // A script that is named twice writes its golden twice, one after the other.
+    // A script that is named twice writes its golden twice, so one run must follow the other.
     let files: BTreeSet<_> = scripts.iter().map(|path| path.canonicalize().ok()).collect();
     if files.len() < scripts.len() {
         return 1;
@@ -317,8 +317,7 @@ fn on_recording(wish: Wish<'_>, recording: &Path, out: &mut dyn Write) -> Result
             format!("error: {}: {error}", suite::shown(recording)),
         )
     })?;
-    // No golden belongs to this trace, so none is missing; and the behaviour of the script is not what
-    // was recorded.
+    // This trace has no golden, so none is missing. The behaviour of the script is not the recorded one.
     let report = Report {
         why: outcome.why.clone(),
         outcome,
@@ -341,7 +340,7 @@ fn on_recording(wish: Wish<'_>, recording: &Path, out: &mut dyn Write) -> Result
     Ok(tally)
 }
 
-/// The paths, or without any `scan-tests`, or the working folder where there is none.
+/// The paths. Without any, `scan-tests`, or the working folder if there is none.
 pub fn where_scripts_are(paths: &[PathBuf]) -> Vec<PathBuf> {
     if !paths.is_empty() {
         return paths.to_vec();
@@ -351,7 +350,7 @@ pub fn where_scripts_are(paths: &[PathBuf]) -> Vec<PathBuf> {
     vec![here.to_owned()]
 }
 
-/// All scripts at the paths whose own paths have `word` in them, without regard to case.
+/// All scripts at the paths whose own paths contain `word`, without regard to case.
 pub fn found(paths: &[PathBuf], word: Option<&str>) -> Result<Vec<PathBuf>, Failure> {
     let mut all = Vec::new();
     for path in paths {
@@ -475,7 +474,7 @@ impl Tally {
         Ok(())
     }
 
-    /// What did not pass.
+    /// The cases that did not pass.
     fn bad(&self) -> impl Iterator<Item = &Case> + Clone {
         self.cases.iter().filter(|case| case.ending != Ending::Passed)
     }
@@ -488,7 +487,7 @@ impl Tally {
         }
     }
 
-    /// Everything as one JSON object.
+    /// The whole outcome as one JSON object.
     fn json(&self, exit: Exit) -> String {
         let counts = [
             ("passed", self.passed),
@@ -506,7 +505,7 @@ impl Tally {
     }
 }
 
-/// The failures among several, by name, then the counts, because the end of a long list is what one sees.
+/// The failures by name, if there are several scripts, then the counts: the end of a long list is what one sees.
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {

@@ -8,7 +8,7 @@ use crate::failing::with_ending;
 use standstill_script::suite::{self, shown};
 use std::io::Write;
 
-/// For systems without a terminal.
+/// The replacement on systems without a terminal.
 #[cfg(not(any(unix, windows)))]
 pub fn watch(_: &WatchArguments, _: &mut dyn Write) -> Result<Exit, Failure> {
     Err(Failure::usage(

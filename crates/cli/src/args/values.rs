@@ -1,4 +1,4 @@
-//! Values of arguments, from the texts that people write.
+//! Values of arguments, from text.
 
 use standstill_trace::csv;
 use std::path::PathBuf;

@@ -39,8 +39,8 @@ fn files() -> [(&'static str, String); 8] {
     ]
 }
 
-/// Writes a first test into a folder, which is made if it does not exist. If one of the files exists
-/// nothing is written. If one cannot be written those before it are removed.
+/// Writes a first test into a folder, which is created if it does not exist. If one of the files exists nothing is
+/// written. If one cannot be written those before it are removed.
 pub fn init(folder: &Path, out: &mut dyn Write) -> Result<Exit, Failure> {
     if fs::metadata(folder).is_ok_and(|found| !found.is_dir()) {
         let name = shown(folder);
@@ -78,8 +78,8 @@ pub fn init(folder: &Path, out: &mut dyn Write) -> Result<Exit, Failure> {
     Ok(Exit::Passed)
 }
 
-/// The obstacle to a new file: an existing file, or an item on the way to it that is no folder. Links are
-/// not followed below the folder.
+/// The obstacle to a new file: an existing file, or an item on its path that is no folder. Links are not followed
+/// below the folder.
 fn in_the_way(folder: &Path, name: &str) -> Result<Option<PathBuf>, Failure> {
     let mut path = folder.to_owned();
     let mut parts = name.split('/').peekable();
@@ -95,7 +95,8 @@ fn in_the_way(folder: &Path, name: &str) -> Result<Option<PathBuf>, Failure> {
     Ok(None)
 }
 
-/// The files made so far; removed when dropped, so that a full disk does not leave half of the test.
+/// The files made so far. They are removed when this is dropped, so that a full disk does not leave half of the
+/// test.
 #[derive(Debug, Default)]
 struct Made {
     folders: Vec<PathBuf>,
@@ -125,7 +126,7 @@ impl Made {
         Ok(())
     }
 
-    /// All of it stays; the files.
+    /// Keeps all files, and returns them.
     fn keep(mut self) -> Vec<PathBuf> {
         self.folders.clear();
         std::mem::take(&mut self.files)
@@ -134,7 +135,7 @@ impl Made {
 
 impl Drop for Made {
     fn drop(&mut self) {
-        // What cannot be removed is still named by the error.
+        // The error also names files that cannot be removed.
         for file in &self.files {
             let _ = fs::remove_file(file);
         }

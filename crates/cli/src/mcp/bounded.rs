@@ -14,15 +14,15 @@ pub const LONGEST: usize = 256 << 10;
 /// The longest message of a failure (bytes); it is cut.
 const LONGEST_MESSAGE: u64 = 16 << 10;
 
-/// The most that a process may write into one file (bytes).
+/// The largest number of bytes that a process may write into one file.
 #[cfg(target_os = "linux")]
 const FILE: u64 = 256 << 20;
 
-/// A process that ends by `--time-limit` reports its work; one that does not end is killed this much
-/// later.
+/// A process that ends by `--time-limit` reports its work. One that does not end is killed after this additional
+/// time.
 const GRACE: Duration = Duration::from_secs(2);
 
-/// What a process said.
+/// The output of a process.
 #[derive(Debug)]
 pub struct Said {
     /// Its exit status; none if a signal ended it.
@@ -63,7 +63,7 @@ pub async fn run(place: &Place, folder: &Path, arguments: &[String], input: &[u8
     }
 }
 
-/// Limits memory and files, if the system can do that for a process from outside.
+/// Limits memory and files, if the system can do so for another process.
 #[cfg(target_os = "linux")]
 fn hold(child: &Child, memory: u64) {
     use rustix::process::{Pid, Resource, Rlimit, prlimit};
@@ -93,7 +93,7 @@ async fn talk(child: &mut Child, input: &[u8]) -> Result<Said, String> {
     let (stdin, stdout, stderr) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
     let write = async {
         if let Some(mut stdin) = stdin {
-            // If it ends before it has read everything, it gives the reason.
+            // If it ends before it has read everything, it reports the reason.
             let _ = stdin.write_all(input).await;
         }
     };
@@ -113,7 +113,7 @@ async fn talk(child: &mut Child, input: &[u8]) -> Result<Said, String> {
     })
 }
 
-/// The beginning of the output; the rest is not read, which no command notices.
+/// The beginning of the output. The rest is not read; no command notices this.
 async fn up_to(stream: Option<impl AsyncRead + Unpin>, most: u64) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     if let Some(stream) = stream {

@@ -8,7 +8,7 @@ use tokio::io::{AsyncRead, ReadBuf};
 /// The longest message of a client (bytes).
 const LONGEST: usize = 16 << 20;
 
-/// Ends with an error if a line is too long, because the reader keeps a line until it is complete.
+/// Gives an error if a line is too long, because the reader stores a line until it is complete.
 #[derive(Debug)]
 pub struct Bounded<R> {
     inner: R,

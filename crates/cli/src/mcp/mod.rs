@@ -16,7 +16,7 @@ mod rows;
 #[cfg(any(unix, windows))]
 mod tools;
 
-/// For systems on which no program can be started.
+/// The replacement on systems on which no program can be started.
 #[cfg(not(any(unix, windows)))]
 pub fn mcp(_: &crate::args::McpArguments) -> Result<crate::exit::Exit, crate::exit::Failure> {
     Err(crate::exit::Failure::usage(
@@ -86,7 +86,7 @@ means, `explain` for where two runs part, `plan` for single moves.";
                 Err(error) => Err(Failure::Told(Exit::Internal, format!("error: mcp: {error}"))),
             }
         });
-        // A read of standard input that still waits holds nothing up.
+        // A pending read of standard input delays nothing.
         runtime.shutdown_background();
         ended
     }
@@ -113,11 +113,11 @@ means, `explain` for where two runs part, `plan` for single moves.";
         ) -> Result<CallToolResponse, ErrorData> {
             let arguments = Value::Object(request.arguments.unwrap_or_default());
             let work = async {
-                // It is never closed.
+                // The semaphore is never closed.
                 let _turn = self.turns.acquire().await;
                 tools::call(&request.name, arguments, &self.place).await
             };
-            // What is dropped here ends its process.
+            // Dropping a future here ends its process.
             let answer = tokio::select! {
                 answer = work => answer,
                 () = context.ct.cancelled() => Err("the client has cancelled this call".to_owned()),

@@ -12,7 +12,7 @@ use std::time::Duration;
 pub struct Place {
     /// The folder that it may read, after following links.
     root: PathBuf,
-    /// The folder it may write into.
+    /// The folder that it may write into.
     write: Option<PathBuf>,
     /// Time of a call.
     pub time: Duration,
@@ -74,7 +74,7 @@ impl Place {
     }
 }
 
-/// A folder that is there, links followed.
+/// An existing folder, after following links.
 fn folder(path: &Path) -> Result<PathBuf, Failure> {
     let real = fs::canonicalize(path).map_err(|error| Failure::io(&shown(path), &error))?;
     if real.is_dir() {

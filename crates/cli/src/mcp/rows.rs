@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io::{BufRead as _, BufReader};
 use std::path::Path;
 
-/// Which rows and columns.
+/// The requested rows and columns.
 #[derive(Debug, Default, Deserialize)]
 pub struct Wanted {
     /// The columns, such as `X.Position`.
@@ -16,14 +16,14 @@ pub struct Wanted {
     pub from: u64,
     /// The last scan.
     pub to: Option<u64>,
-    /// Every so many scans.
+    /// The step between scans.
     pub every: Option<u64>,
 }
 
 /// The rows of a trace in JSON Lines: `{"columns": [..], "rows": [[..], ..]}`.
 ///
 /// # Errors
-/// A signal that is not there, more than fits into an answer, a file that cannot be read.
+/// A signal that does not exist, more rows than fit into an answer, a file that cannot be read.
 pub fn rows(trace: &Path, wanted: &Wanted) -> Result<Value, String> {
     let failed = |error: std::io::Error| format!("the trace: {error}");
     let every = wanted.every.unwrap_or(1).max(1);
@@ -33,7 +33,7 @@ pub fn rows(trace: &Path, wanted: &Wanted) -> Result<Value, String> {
         let line = line.map_err(failed)?;
         let row: Map<String, Value> =
             serde_json::from_str(&line).map_err(|error| format!("the trace: {error}"))?;
-        // The header has none.
+        // The header has no scan.
         let Some(scan) = row.get("scan").and_then(Value::as_u64) else {
             continue;
         };

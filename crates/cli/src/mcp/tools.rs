@@ -14,7 +14,7 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// What a tool answers.
+/// The answer of a tool.
 #[derive(Debug)]
 pub enum Answer {
     /// For people.
@@ -196,7 +196,7 @@ async fn check(asked: Check, place: &Place) -> Result<Answer, String> {
         place,
     )?;
     if at.is_text() {
-        // It has no golden, and may say that it needs none.
+        // It has no golden, and may state that it needs none.
         command.extend(arguments(&["--golden", "none"]));
     }
     told(at.run(place, command).await?)
@@ -291,7 +291,7 @@ async fn explain(asked: Explain, place: &Place) -> Result<Answer, String> {
     let Answer::Json(mut answer) = told(bounded::run(place, place.root(), &command, &[]).await?)? else {
         return Err("the program did not answer in JSON".to_owned());
     };
-    // The names that were asked for, because the run used temporary files.
+    // The requested names, because the run used temporary files.
     join(
         &mut answer,
         json!({"expected": asked.expected, "found": asked.found}),
@@ -299,7 +299,7 @@ async fn explain(asked: Explain, place: &Place) -> Result<Answer, String> {
     Ok(Answer::Json(answer))
 }
 
-/// The trace at a path, or that of the script there, which is then run.
+/// The trace at a path, or that of the script at the path, which is then run.
 async fn trace(
     path: &str,
     changes: &Map<String, Value>,
@@ -316,7 +316,7 @@ async fn trace(
     let mut command = arguments(&["run", "--json"]);
     command.extend(set(changes)?);
     command.push(format!("--trace={}", text(target)?));
-    // Claims may fail, because the failure is the question.
+    // Claims may fail: the failure is the subject of the question.
     let ran = Script::of(Some(path.to_owned()), None, place)?
         .run(place, command)
         .await?;
@@ -399,7 +399,7 @@ fn look_up_errors(asked: Errors) -> Result<Answer, String> {
     }
 }
 
-/// What a command of this program prints that needs no file.
+/// The output of a command of this program that needs no file.
 fn printed(command: impl FnOnce(&mut dyn Write) -> Result<Exit, Failure>) -> Result<String, String> {
     let mut out = Vec::new();
     match command(&mut out) {
@@ -478,7 +478,7 @@ fn set(values: &Map<String, Value>) -> Result<Vec<String>, String> {
     values.iter().map(one).collect()
 }
 
-/// Whether a command could do its work; a negative result is no failure of the call.
+/// Whether a command could do its work. A negative result is no failure of the call.
 fn judged(said: &Said) -> Result<(), String> {
     let (passed, failed) = (i32::from(Exit::Passed as u8), i32::from(Exit::Failed as u8));
     match said.status {
@@ -493,7 +493,7 @@ fn judged(said: &Said) -> Result<(), String> {
     }
 }
 
-/// The output of a command with `--json`. If it could not run at all that is an error; failures of single
+/// The output of a command with `--json`. It is an error if the command could not run at all; failures of single
 /// scripts are in the answer.
 fn told(said: Said) -> Result<Answer, String> {
     match serde_json::from_str::<Value>(&said.out) {

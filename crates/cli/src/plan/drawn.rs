@@ -10,10 +10,10 @@ use standstill_report::{Source, html};
 use standstill_trace::file::replace;
 use standstill_trace::{self as trace, Axis, Cell, Header, Trace};
 
-/// Number of moments of a segment that are drawn.
+/// Number of points of a segment that are drawn.
 const STEPS: u32 = 24;
 
-/// Most rows of a plan on a page (scans).
+/// Largest number of rows of a plan on a page (scans).
 const ROWS_MAX: u32 = 1_000_000;
 
 /// The name of the axis that a plan moves on its page.
@@ -25,7 +25,7 @@ pub struct Drawn {
     plans: Vec<picture::Plan>,
     /// Label and rows of each.
     traces: Vec<(String, Trace)>,
-    /// Plans that were not drawn any more.
+    /// Number of plans that were not drawn.
     left_out: usize,
 }
 
@@ -60,7 +60,7 @@ impl Drawn {
         Ok(())
     }
 
-    /// Writes what is wanted.
+    /// Writes the requested files.
     pub fn finish(self, files: Files<'_>) -> Result<(), Failure> {
         if self.left_out > 0 {
             let (all, drawn) = (self.left_out + PLANS_MAX, PLANS_MAX);
@@ -123,8 +123,8 @@ fn label(id: &str, method: &str, planned: &Planned) -> String {
     )
 }
 
-/// The course of a plan from its segments: they give the velocity and its derivatives, and the end gives
-/// the position.
+/// The course of a plan from its segments. They give the velocity and its derivatives, and the end gives the
+/// position.
 fn course(planned: &Planned) -> Vec<[f64; 6]> {
     let (mut course, mut begin, mut way) = (Vec::new(), 0.0, 0.0);
     for segment in &planned.segments {

@@ -10,7 +10,7 @@ use standstill_planner::{DirectedLimits, Field, Limits, Setpoint};
 use std::borrow::Cow;
 use std::fmt;
 
-/// The fields every method takes. What only some take stands in the table of methods.
+/// The fields that every method takes. The table of methods has those that only some take.
 const COMMON: [&str; 12] = [
     "id",
     "Ts",
@@ -41,16 +41,16 @@ pub struct Fields<'a> {
     velocity_limits: Members<'a>,
 }
 
-/// Start of a move and its limits: what every method reads.
+/// Start and limits of a move, which every method reads.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem {
-    /// Where the move starts (u and derivatives).
+    /// The start of the move (u and derivatives).
     pub start: Setpoint,
     /// Velocity at the target (u/s).
     pub end_velocity: f64,
     /// Acceleration at the target (u/s^2).
     pub end_acceleration: f64,
-    /// The limits; infinite where none is given.
+    /// The limits; infinite if not given.
     pub limits: Limits,
 }
 
@@ -90,7 +90,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// The fields from a host that has them separately. Keys are checked as those of a line.
+    /// The fields from a host that has them separately. Keys are checked as those of a line are.
     pub fn of_members(members: Vec<Member<'a>>) -> Self {
         Self {
             members: Members(members),
@@ -139,7 +139,7 @@ impl<'a> Fields<'a> {
         Ok(opened)
     }
 
-    /// The members of a field that is an object; none if it is null or not there.
+    /// The members of a field that is an object. None if it is null or absent.
     fn opened(&self, field: &str) -> Result<Members<'a>, Refusal> {
         let wrong = || self.invalid(field, format!("`{field}` must be an object of numbers"));
         match self.members.get(field) {
@@ -150,7 +150,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// The fields of each object of a list, each of them `known`; none if the list is null or not there.
+    /// The fields of each object of a list, each of them `known`. None if the list is null or absent.
     pub fn list(
         &self,
         field: &str,
@@ -221,7 +221,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// A finite number, if the field is there.
+    /// A finite number, if the field is present.
     pub fn number(&self, field: &str) -> Result<Option<f64>, Refusal> {
         let text = match self.given(field) {
             None => return Ok(None),
@@ -245,27 +245,27 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// A finite number that has to be there.
+    /// A finite number that must be present.
     pub fn required(&self, field: &str) -> Result<f64, Refusal> {
         self.number(field)?
             .ok_or_else(|| self.invalid(field, format!("`{field}` is missing")))
     }
 
-    /// A string, if the field is there.
+    /// A string, if the field is present.
     pub fn string(&self, field: &str) -> Result<Option<String>, Refusal> {
         let given = self.given(field).map(Given::json);
         let read = given.as_deref().map(serde_json::from_str).transpose();
         read.map_err(|_| self.invalid(field, format!("`{field}` must be a string")))
     }
 
-    /// A list of pairs of finite numbers, if the field is there.
+    /// A list of pairs of finite numbers, if the field is present.
     pub fn pairs(&self, field: &str) -> Result<Option<Vec<(f64, f64)>>, Refusal> {
         let given = self.given(field).map(Given::json);
         let read = given.as_deref().map(serde_json::from_str).transpose();
         read.map_err(|_| self.invalid(field, format!("`{field}` must be a list of pairs of numbers")))
     }
 
-    /// A bound of `limits`; `absent` if it is null or not there.
+    /// A bound of `limits`; `absent` if it is null or not given.
     fn limit(&self, field: &str, absent: f64) -> Result<f64, Refusal> {
         if self.given(field).is_some_and(Given::is_null) {
             return Ok(absent);
@@ -332,7 +332,7 @@ impl<'a> Fields<'a> {
         self.members.get(field).is_some()
     }
 
-    /// The limits of an object; those it does not give are as in `absent`.
+    /// The limits of an object; limits that it does not give are those of `absent`.
     fn limits(&self, object: &str, absent: &Limits) -> Result<Limits, Refusal> {
         let bound = |name: &str, absent| self.limit(&format!("{object}.{name}"), absent);
         let acceleration = bound("acceleration", absent.acceleration)?;
@@ -383,9 +383,9 @@ fn cause(error: &serde_json::Error) -> String {
 pub enum Given<'a> {
     /// JSON.
     Json(&'a str),
-    /// A number, of a host that has it as one.
+    /// A number from a host.
     Number(f64),
-    /// An object, of a host that has it apart.
+    /// An object from a host that has its members separately.
     Object(&'a [Member<'a>]),
 }
 

@@ -86,8 +86,8 @@ fn counts(plan: &GridPlan) -> Counts {
     })
 }
 
-/// The least value of the limit a refusal names with which the move can be counted; none if it is not this
-/// limit alone that makes it too long. Bounded: one trial per bit of an `f64`, at most 64.
+/// The least value of the limit that a refusal names with which the move can be counted. None if other limits also
+/// make it too long. Bounded: one trial for each bit of an `f64`, at most 64.
 fn nearest_limit(error: PlanError, limits: &Limits, works: impl Fn(&Limits) -> bool) -> Option<f64> {
     let PlanError::TooLong { field, value } = error else {
         return None;

@@ -16,7 +16,7 @@ pub struct MethodInfo {
     pub name: &'static str,
     /// Its fields in addition to those of all methods.
     fields: &'static [&'static str],
-    /// What plans.
+    /// Its function.
     plan: PlanFn,
 }
 
@@ -97,15 +97,15 @@ pub struct Planned {
     pub boxes: Option<Vec<u32>>,
     /// Lengths of the published segments (scans), if the method has them.
     pub counts: Option<Counts>,
-    /// Which of its cases the method found, if it has some.
+    /// The case that the method found, if it has cases.
     pub case: Option<&'static str>,
     /// The velocity at the target (u/s), of methods that may change the requested one.
     pub end_velocity: Option<f64>,
-    /// By how much the start state forces the plan out of its limits, if it does.
+    /// The excess that the start state forces on the plan, if there is any.
     pub unavoidable: Option<Excess>,
     /// The rung of the ladder an online plan is from.
     pub rung: Option<&'static str>,
-    /// What is published last.
+    /// The last set-point.
     pub end: Setpoint,
     /// The set-points in between.
     pub setpoints: Setpoints,
@@ -172,7 +172,7 @@ pub fn plan(fields: &Fields<'_>) -> Result<(&'static str, Planned), Refusal> {
     Ok((method.name, plan_with(fields, &problem, method)?))
 }
 
-/// Plans with a method, whichever the line names.
+/// Plans with the given method; the name on the line is not used.
 pub fn plan_with(fields: &Fields<'_>, problem: &Problem, method: &MethodInfo) -> Result<Planned, Refusal> {
     for name in fields.names() {
         check_extra_field(fields, name, method)?;

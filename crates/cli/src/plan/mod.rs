@@ -46,7 +46,7 @@ pub fn plan(input: &mut dyn BufRead, name: &str, out: &mut dyn Write) -> Result<
     answer(input, name, out, &mut |_| Ok(()))
 }
 
-/// As [`plan`]; planned lines also go to the files.
+/// The same as [`plan`]; planned lines also go to the files.
 pub fn plan_to_files(
     input: &mut dyn BufRead,
     name: &str,

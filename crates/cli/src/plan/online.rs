@@ -11,7 +11,7 @@ use crate::plan::shared::{
 use standstill_planner::papers::{Tracking, peaks, scans};
 use standstill_planner::{Excess, Field, Goal, OnlinePlan, Order, PlanError, Setpoint};
 
-/// The limits both need.
+/// The limits that both need.
 const NEEDED: [Field; 2] = [Field::LimitVelocity, Field::LimitAcceleration];
 
 /// `online`: from any state to a position, at rest there or with a velocity and an acceleration.
@@ -56,7 +56,7 @@ pub fn online(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal
     let end = if *end_velocity == 0.0 && *end_acceleration == 0.0 {
         plan.at(plan.scans().into())
     } else {
-        // The place at the first instant with both, not at the scan after it.
+        // The position at the first instant with both velocity and acceleration, not at the scan after it.
         Setpoint {
             velocity: *end_velocity,
             acceleration: *end_acceleration,
@@ -134,7 +134,7 @@ pub fn tracking(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refus
     })
 }
 
-/// The larger of each part of what two plans exceed.
+/// The larger one of each part of the excess of two plans.
 fn larger(one: Option<Excess>, other: Option<Excess>) -> Option<Excess> {
     let (Some(a), Some(b)) = (one, other) else {
         return one.or(other);
@@ -170,7 +170,7 @@ fn targets(fields: &Fields<'_>, cycle: f64) -> Result<Vec<(u32, f64)>, Refusal> 
     let mut changes = Vec::new();
     for (time, target) in pairs {
         let scan = scans(time, cycle).ok_or_else(|| too_long(fields))?;
-        // If there are several targets at one scan the last one counts.
+        // If there are several targets in one scan the last one counts.
         changes.pop_if(|(last, _)| *last == scan);
         changes.push((scan, target));
     }

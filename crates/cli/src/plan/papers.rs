@@ -51,7 +51,7 @@ pub fn trapezoid(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refu
     let target = fields.required("target")?;
     let duration = fields.number("duration")?;
     let needed = [Field::LimitVelocity, Field::LimitAcceleration];
-    // In a given time the acceleration results.
+    // With a given time the acceleration is a result.
     let needed = if duration.is_some() { &needed[..1] } else { &needed };
     check_limits(
         fields,
@@ -116,7 +116,7 @@ pub fn short_path(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Ref
     })
 }
 
-/// What `short-path` does where the end velocity is out of reach.
+/// The policy of `short-path` if the end velocity cannot be reached.
 fn policy(fields: &Fields<'_>) -> Result<ShortPathPolicy, Refusal> {
     match fields.string("policy")?.as_deref() {
         None | Some("nearest") => Ok(ShortPathPolicy::Nearest),

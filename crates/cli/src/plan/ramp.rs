@@ -9,7 +9,7 @@ use crate::plan::shared::{
 };
 use standstill_planner::{Field, RampPlan, Setpoint};
 
-/// From any state to the constant `end_velocity`, wherever that is reached.
+/// From any state to the constant `end_velocity`, at any position.
 pub fn ramp(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal> {
     let Problem {
         start,

@@ -11,7 +11,7 @@ pub enum Code {
     InvalidInput,
     /// The move takes more scans than a plan can count.
     TooLong,
-    /// The goal cannot be reached on the way given.
+    /// The goal cannot be reached with the given path.
     Unreachable,
 }
 
@@ -38,7 +38,7 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    /// Of a line as a whole.
+    /// A refusal of a line as a whole.
     pub fn of_line(message: impl Into<String>) -> Self {
         Self {
             code: Code::InvalidInput,
@@ -49,7 +49,7 @@ impl Refusal {
         }
     }
 
-    /// Of one field; its value is that of the line, if it has one.
+    /// A refusal of one field. Its value is that of the line, if it has one.
     pub fn of_field(code: Code, fields: &Fields<'_>, field: &str, message: impl Into<String>) -> Self {
         Self {
             code,
@@ -60,25 +60,25 @@ impl Refusal {
         }
     }
 
-    /// The same, of an object of a list: its field is one of that object.
+    /// The same for an object of a list: the field belongs to that object.
     pub fn inside(mut self, list: &str, place: usize) -> Self {
         self.field = self.field.map(|field| format!("{list}[{place}].{field}"));
         self
     }
 
-    /// With the value, as JSON, that was refused.
+    /// Adds the refused value, as JSON.
     pub fn value(mut self, json: &str) -> Self {
         self.value = Some(json.to_owned());
         self
     }
 
-    /// With the value that would have been taken.
+    /// Adds the nearest permitted value.
     pub fn nearest(mut self, json: Option<String>) -> Self {
         self.nearest = json;
         self
     }
 
-    /// Of the planner.
+    /// A refusal by the planner.
     pub fn of_plan_error(fields: &Fields<'_>, error: PlanError) -> Self {
         let (code, field, value, nearest) = match error {
             PlanError::InvalidInput { field, value } => (Code::InvalidInput, field.name(), Some(value), None),
@@ -97,7 +97,7 @@ impl Refusal {
                 value,
                 nearest,
             } => (Code::Unreachable, field.name(), Some(value), Some(nearest)),
-            // The planner may get further reasons before this program knows them.
+            // The planner may have further reasons that this program does not know yet.
             other => return Self::of_line(other.to_string()),
         };
         let mut refusal = Self::of_field(code, fields, field, error.to_string());
@@ -105,27 +105,27 @@ impl Refusal {
         refusal.nearest(nearest.map(number))
     }
 
-    /// The code as answers write it.
+    /// The code in answers.
     pub const fn code(&self) -> &'static str {
         self.code.name()
     }
 
-    /// The field that was refused; none where it is the line as a whole.
+    /// The refused field; none if the line as a whole was refused.
     pub fn field(&self) -> Option<&str> {
         self.field.as_deref()
     }
 
-    /// The value that was refused, as JSON.
+    /// The refused value, as JSON.
     pub fn value_json(&self) -> Option<&str> {
         self.value.as_deref()
     }
 
-    /// The nearest value that would have been taken, as JSON.
+    /// The nearest permitted value, as JSON.
     pub fn nearest_json(&self) -> Option<&str> {
         self.nearest.as_deref()
     }
 
-    /// Why, for people.
+    /// The reason, for people.
     pub fn message(&self) -> &str {
         &self.message
     }

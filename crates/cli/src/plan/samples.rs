@@ -16,7 +16,7 @@ const HEADER: &str = "\
 id,scan,position,velocity,acceleration,jerk,snap
 ";
 
-/// What set-points of a plan are computed from.
+/// The source of a plan's set-points.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Setpoints {
     /// A grid plan.
@@ -25,7 +25,7 @@ pub enum Setpoints {
     Unequal(UnequalPlan),
     /// A ramp to a velocity.
     Ramp(Box<RampPlan>),
-    /// Plans that follow each other, each with the scan it begins with; never empty.
+    /// Plans that follow each other, each with the scan in which it begins; never empty.
     Online(Vec<(u32, OnlinePlan)>),
     /// A profile of a paper.
     Sampled(Box<SampledPlan>),
@@ -48,7 +48,7 @@ impl Setpoints {
             }
             Self::Sampled(plan) => plan.at(scan.into()),
             Self::Shaped(plain, shapers) => {
-                // At its end a plan stays.
+                // A plan stays at its end.
                 let plain = |scan: u64| plain.at(u32::try_from(scan).unwrap_or(u32::MAX));
                 shapers.at(scan.into(), plain)
             }
@@ -77,7 +77,7 @@ impl Samples {
         Ok(samples)
     }
 
-    /// Adds a plan, one row a scan from its start to its end; `id` is JSON.
+    /// Adds a plan, one row for each scan from its start to its end; `id` is JSON.
     pub fn add(&mut self, id: &str, planned: &Planned) -> Result<(), Failure> {
         let id = table::cell_of_json(id);
         self.checked(|file| {

@@ -1,4 +1,5 @@
-//! `vibration` on a line: the plan of any method from rest to rest, shaped so that a load on a spring stops swinging.
+//! `vibration` on a line: the plan of any method from rest to rest, shaped so that a load on a spring does not
+//! vibrate at its end.
 
 use crate::json::number;
 use crate::plan::fields::Fields;
@@ -12,16 +13,16 @@ use standstill_planner::{
     Field, Order, PlanError, Segment, Shaper, ShaperKind, Shapers, VibrationMode, grid,
 };
 
-/// Most steps to make the stretches of a shaped plan: so many of them times the parts of the shapers.
+/// Largest number of steps to make the stretches of a shaped plan: their number times the parts of the shapers.
 const STEPS_MAX: usize = 200_000_000;
 
-/// Where two stretches begin that are no further apart (scans), one does.
+/// Two begins of stretches that are no further apart than this (scans) count as one.
 const SAME: f64 = 1e-9;
 
 /// The field.
 pub const NAME: &str = "vibration";
 
-/// The plan as the line wants it: shaped where it has modes.
+/// The plan that the line requests: shaped if it has modes.
 pub fn shaped(fields: &Fields<'_>, planned: Planned) -> Result<Planned, Refusal> {
     let cycle = cycle(fields)?;
     let modes = modes(fields, cycle)?;
@@ -49,7 +50,7 @@ pub fn shaped(fields: &Fields<'_>, planned: Planned) -> Result<Planned, Refusal>
             snap: planned.peak.snap.map(|_| largest.snap),
         },
         segments,
-        // They are those of another motion.
+        // They belong to another motion.
         boxes: None,
         counts: None,
         setpoints: Setpoints::Shaped(Box::new(planned.setpoints), shapers),
@@ -57,7 +58,7 @@ pub fn shaped(fields: &Fields<'_>, planned: Planned) -> Result<Planned, Refusal>
     })
 }
 
-/// What of a plan is no rest, at its start or its end.
+/// The first part of a plan that is not at rest, at its start or its end.
 fn first_motion(planned: &Planned) -> Option<(&'static str, f64)> {
     let (start, end) = (planned.setpoints.at(0), planned.end);
     let parts = [
@@ -81,7 +82,7 @@ fn modes(fields: &Fields<'_>, cycle: f64) -> Result<[Option<VibrationMode>; MODE
     }
     for (place, (slot, given)) in modes.iter_mut().zip(&given).enumerate() {
         let mode = mode(given).and_then(|mode| {
-            // Alone, so that a refusal is of this one.
+            // Made separately, so that a refusal is about this one.
             Shaper::new(&mode, cycle).map_err(|error| refuse(given, error))?;
             Ok(mode)
         });
@@ -112,7 +113,7 @@ fn mode(given: &Fields<'_>) -> Result<VibrationMode, Refusal> {
     })
 }
 
-/// Why a mode can't be shaped.
+/// The reason why a mode can't be shaped.
 fn refuse(given: &Fields<'_>, error: PlanError) -> Refusal {
     let (name, nearest) = match error {
         PlanError::OutOfRange {
@@ -132,7 +133,7 @@ fn refuse(given: &Fields<'_>, error: PlanError) -> Refusal {
     given.invalid(name, message).nearest(nearest.map(number))
 }
 
-/// The delays of all parts of the mean, each with its weight, the one that is not late included.
+/// The delays of all parts of the mean, each with its weight. The part without delay is included.
 fn parts(shapers: &Shapers) -> Vec<(u32, f64)> {
     let mut weights = vec![1.0];
     for shaper in shapers.iter() {
@@ -151,7 +152,7 @@ fn parts(shapers: &Shapers) -> Vec<(u32, f64)> {
     (0..).zip(weights).filter(|(_, weight)| *weight > 0.0).collect()
 }
 
-/// The stretches of constant snap of a shaped plan: one begins wherever one of a part does.
+/// The stretches of constant snap of a shaped plan. A new one begins at every begin of a stretch of any part.
 fn segments(
     fields: &Fields<'_>,
     plain: &[Segment],
@@ -159,7 +160,7 @@ fn segments(
     shapers: &Shapers,
 ) -> Result<Vec<Segment>, Refusal> {
     let parts = parts(shapers);
-    // In scans, from where those of a grid plan come out whole.
+    // In scans from the start, so that those of a grid plan are whole.
     let mut begins = vec![0.0];
     let mut time = 0.0;
     for segment in plain {
@@ -211,7 +212,7 @@ fn segments(
     Ok(times.windows(2).map(stretch).collect())
 }
 
-/// A number of scans that is whole but for rounding is whole.
+/// Rounds a number of scans that is whole except for rounding.
 fn whole(scans: f64) -> f64 {
     let nearest = scans.round();
     if (scans - nearest).abs() <= SAME * nearest.max(1.0) {

@@ -64,7 +64,7 @@ pub fn check_limits(
     Ok(())
 }
 
-/// Refuses an end velocity above its limit; the limit is the nearest.
+/// Refuses an end velocity above its limit. The limit is the nearest permitted value.
 pub fn check_end_velocity(fields: &Fields<'_>, problem: &Problem) -> Result<(), Refusal> {
     let (value, limit) = (problem.end_velocity, problem.limits.velocity);
     // The planner refuses an invalid limit.
@@ -76,7 +76,8 @@ pub fn check_end_velocity(fields: &Fields<'_>, problem: &Problem) -> Result<(), 
     Ok(())
 }
 
-/// Refuses an end velocity above the bound of its direction, which is the nearest: it cannot be reached.
+/// Refuses an end velocity above the bound of its direction, because it cannot be reached. The bound is the nearest
+/// permitted value.
 pub fn check_end_direction(
     fields: &Fields<'_>,
     end_velocity: f64,
@@ -87,7 +88,7 @@ pub fn check_end_direction(
     } else {
         (limits.positive, "velocity_limits.positive")
     };
-    // A limit that makes no sense is for the planner to refuse.
+    // The planner refuses an invalid limit.
     if !(side > 0.0 && end_velocity.abs() > side) {
         return Ok(());
     }
@@ -107,7 +108,7 @@ pub fn too_long(fields: &Fields<'_>) -> Refusal {
     Refusal::of_field(Code::TooLong, fields, "Ts", message)
 }
 
-/// Peaks with nothing where the order leaves them unbounded.
+/// Peaks that are empty where the order leaves them unbounded.
 pub fn bounded(peaks: &Peaks) -> grid::Peaks {
     let bounded = |value: f64| value.is_finite().then_some(value);
     grid::Peaks {

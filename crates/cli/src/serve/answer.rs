@@ -1,4 +1,4 @@
-//! What is sent back.
+//! The answers of the server.
 
 use http_body_util::Full;
 use hyper::body::Bytes;
@@ -7,8 +7,8 @@ use hyper::{Response, StatusCode};
 use serde_json::Value;
 use standstill_trace::printable;
 
-/// The headers of every answer: its type is as declared, no other page may read or frame it, and the
-/// browser must ask for it anew.
+/// The headers of every answer. Its type is as declared, no other page may read or frame it, and the browser must
+/// request it again each time.
 const ALWAYS: [(&str, &str); 5] = [
     ("x-content-type-options", "nosniff"),
     ("cross-origin-resource-policy", "same-origin"),
@@ -57,13 +57,13 @@ impl Answer {
         .with("etag", tag.to_owned())
     }
 
-    /// With one more header, its name in small letters.
+    /// Adds a header; its name is in lower case.
     pub fn with(mut self, name: &'static str, value: String) -> Self {
         self.headers.push((name, value));
         self
     }
 
-    /// As it is sent.
+    /// The response in the form of the HTTP library.
     pub fn response(self) -> Response<Full<Bytes>> {
         let mut response = Response::new(Full::from(self.body));
         *response.status_mut() =

@@ -17,14 +17,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::SystemTime;
 
-/// Most bytes of a script, and of a file that it names; the page reads no more.
+/// Largest number of bytes of a script, and of a file that it names; the page reads no more.
 const BYTES_MAX: usize = 1 << 20;
 
-/// Most scripts in the list, and most names that are checked for it.
+/// Largest number of scripts in the list, and of names that are checked for it.
 const LISTED_MAX: usize = 2_000;
 const NAMES_MAX: usize = 100_000;
 
-/// Most scripts whose last answer is remembered.
+/// Largest number of scripts whose last answer is kept.
 const KNOWN_MAX: usize = 32;
 
 /// Folders without edited files: they may have very many files.
@@ -33,10 +33,10 @@ const LEFT_OUT: [&str; 2] = ["target", "node_modules"];
 /// The time of saving and the length of a file; none for a missing one.
 type Stamp = Option<(Option<SystemTime>, u64)>;
 
-/// A script as it was sent last.
+/// The last answer for a script.
 #[derive(Debug)]
 struct Known {
-    /// The files it was made of.
+    /// The files from which it was made.
     stamps: Vec<(PathBuf, Stamp)>,
     tag: String,
     body: Value,
@@ -53,7 +53,7 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// The folder at `path`; its scripts may read files from those `allowed`, too.
+    /// The folder at `path`; its scripts may also read files from those in `allowed`.
     pub fn new(path: PathBuf, allowed: &[PathBuf]) -> Result<Self, Failure> {
         let shown = shown(&path);
         let root = path.canonicalize().map_err(|error| Failure::io(&shown, &error))?;
@@ -69,7 +69,7 @@ impl Folder {
         })
     }
 
-    /// What it is called.
+    /// Its name.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -118,9 +118,9 @@ impl Folder {
         found
     }
 
-    /// A script with the files it names: `{"name", "text", "files", "lacks"}`. A file that is no text is
-    /// `{"base64": ".."}`, and `lacks` gives the reasons why others are missing. `tag` belongs to the
-    /// answer that the page has.
+    /// A script with the files that it names: `{"name", "text", "files", "lacks"}`. A file that is no text is
+    /// `{"base64": ".."}`, and `lacks` gives the reasons why others are missing. `tag` belongs to the answer that
+    /// the page already has.
     pub fn script(&self, path: &str, tag: Option<&str>) -> Result<Answer, Answer> {
         let inner = within(path)?;
         if !path.ends_with(EXTENSION) {

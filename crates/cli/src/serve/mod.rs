@@ -15,7 +15,7 @@ mod site;
 #[cfg(any(unix, windows))]
 pub use desk::serve;
 
-/// For systems without a network.
+/// The replacement on systems without a network.
 #[cfg(not(any(unix, windows)))]
 pub fn serve(_: &crate::args::ServeArguments) -> Result<crate::exit::Exit, crate::exit::Failure> {
     Err(crate::exit::Failure::usage(
@@ -48,11 +48,11 @@ mod desk {
     use tokio::net::TcpListener;
     use tokio::runtime;
 
-    /// Consecutive failures to accept a connection before it gives up, because there may be too many for
-    /// a moment.
+    /// Consecutive failures to accept a connection before the server gives up. There may be too many connections
+    /// for a moment.
     const FAILED_MAX: u32 = 100;
 
-    /// Where the scripts of the folder are, beside the pages.
+    /// The path of the folder's scripts, beside the pages.
     const SCRIPTS: &str = "/folder/";
 
     /// The list of scripts for the page; here it includes those of the folder.
@@ -80,7 +80,7 @@ mod desk {
             Failure::Told(Exit::Io, format!("error: port {port}: {why}; {remedy}"))
         };
         let asked = arguments.port;
-        // One thread answers all, because it waits only for the network.
+        // One thread answers all requests, because it only waits for the network.
         let runtime = runtime::Builder::new_current_thread().enable_all().build();
         let runtime = runtime.map_err(|error| failed(asked, &error))?;
         let listener = runtime.block_on(TcpListener::bind((Ipv4Addr::LOCALHOST, asked)));
@@ -103,7 +103,7 @@ mod desk {
     }
 
     impl Desk {
-        /// Answers every connection, even while others are silent; returns what ended it.
+        /// Answers every connection, even while others are silent. Returns the reason for its end.
         async fn answer_all(self, listener: &TcpListener) -> io::Error {
             let desk = Arc::new(self);
             let mut failed = 0;
@@ -170,8 +170,7 @@ mod desk {
         }
     }
 
-    /// Whether a page under this host name is ours: the owner of any other name may let it refer to this
-    /// machine.
+    /// Whether a page under this host name is ours. The owner of any other name may let it refer to this machine.
     fn is_ours(host: &str, port: u16) -> bool {
         let host = host.to_ascii_lowercase();
         let name = match host.strip_suffix(&format!(":{port}")) {
@@ -182,7 +181,7 @@ mod desk {
         matches!(name, "127.0.0.1" | "localhost")
     }
 
-    /// The name of a folder for people: the last part of its path at least.
+    /// The name of a folder for people: at least the last part of its path.
     pub(super) fn name_of(folder: &std::path::Path) -> String {
         let real = folder.canonicalize().ok();
         let last = real.as_deref().and_then(|path| path.file_name());

@@ -11,7 +11,7 @@ use std::path::{Component, Path, PathBuf};
 /// A file that a folder must have to count as the page.
 const FIRST: &str = "playground/index.html";
 
-/// Most bytes of a file that is sent, because it is read as a whole.
+/// Largest number of bytes of a file that is sent, because it is read as a whole.
 const BYTES_MAX: usize = 256 << 20;
 
 /// Types by file name extension; a browser needs some of them.
@@ -31,7 +31,7 @@ const KINDS: [(&str, &str); 10] = [
 /// The folder of the page.
 #[derive(Debug)]
 pub struct Site {
-    /// As the system itself knows it.
+    /// The system's own path of it.
     root: PathBuf,
 }
 
@@ -55,7 +55,7 @@ impl Site {
         Ok(Self { root })
     }
 
-    /// The file at the path of an address; of a folder its first page.
+    /// The file at the path of an address; for a folder its first page.
     pub fn file(&self, path: &str) -> Result<Answer, Answer> {
         let mut inner = within(path.trim_start_matches('/'))?;
         if path.ends_with('/') {
@@ -75,7 +75,7 @@ impl Site {
         let kind = KINDS.iter().find(|(known, _)| Some(*known) == ending);
         let kind = kind.map_or("application/octet-stream", |(_, kind)| *kind);
         let mut bytes = Vec::new();
-        // A file that grows meanwhile is cut where it ended.
+        // A file that grows meanwhile is cut at its old length.
         let read = file.take(length as u64).read_to_end(&mut bytes);
         read.map_err(|error| failed(&shown(&inner), &error))?;
         Ok(Answer::bytes(kind, bytes))
@@ -101,7 +101,7 @@ fn expected() -> Vec<PathBuf> {
     places
 }
 
-/// The path of an address as one that leads down only.
+/// The path of an address as one that leads only downwards.
 pub fn within(path: &str) -> Result<PathBuf, Answer> {
     let is_plain = |part: Component<'_>| matches!(part, Component::Normal(_));
     // A separator of one system is part of a name on another; a colon names drives and streams.

@@ -11,7 +11,7 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
-/// Failing episodes that are made smaller and kept as scripts; further ones are only counted.
+/// Failing episodes that are made smaller and kept as scripts. Further ones are only counted.
 const KEPT: usize = 10;
 
 /// The results of the episodes so far. The sum of two equals the result of all their episodes.
@@ -20,7 +20,7 @@ const KEPT: usize = 10;
 struct Episodes {
     scans: u64,
     accepted: u64,
-    /// In Done, CommandAborted, Error.
+    /// Ended with Done, CommandAborted, Error.
     ended: [u64; 3],
     refused: u64,
     faults: u64,

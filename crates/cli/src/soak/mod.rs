@@ -30,7 +30,7 @@ const SAVE_EVERY: Duration = Duration::from_secs(5);
 
 /// A kind of case, and the sum of its results.
 trait Trial: Default + Send + Serialize + DeserializeOwned {
-    /// What one case is called, in the plural.
+    /// The name of cases, in the plural.
     const CASES: &str;
 
     /// Cases of a chain.
@@ -42,7 +42,7 @@ trait Trial: Default + Send + Serialize + DeserializeOwned {
     /// The first `links` cases of a chain.
     fn chain(seed: u64, number: u64, links: u64) -> Self;
 
-    /// Adds what came after.
+    /// Adds later results.
     fn add(&mut self, later: Self);
 
     /// Cases that failed.
@@ -103,7 +103,7 @@ fn run<T: Trial>(state: &mut State<T>, chains: u64, file: Option<&Path>) -> Resu
         Ok(())
     };
     let workers = thread::available_parallelism().map_or(1, |count| count.get());
-    // Not every system has threads.
+    // Some systems have no threads.
     if workers == 1 {
         let mut begin = first;
         while begin < chains {
@@ -134,7 +134,7 @@ fn run<T: Trial>(state: &mut State<T>, chains: u64, file: Option<&Path>) -> Resu
     })
 }
 
-/// Where the batch that begins with this chain ends.
+/// The end of the batch that begins with this chain.
 fn batch_end<T: Trial>(begin: u64, chains: u64) -> u64 {
     chains.min(begin.saturating_add(T::BATCH))
 }

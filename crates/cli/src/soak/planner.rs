@@ -69,7 +69,7 @@ mod tests {
     use standstill_planner::Limits;
     use standstill_soak::{Case, Goal, Plan};
 
-    /// The replans of some chains with their plans, and the scans at which they are left.
+    /// The replans of some chains with their plans, and the scans at which the next replan begins.
     fn replans(chains: u64) -> Vec<(Case, Plan, u64)> {
         let mut replans = Vec::new();
         for number in 0..chains {

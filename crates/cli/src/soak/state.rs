@@ -23,7 +23,7 @@ pub struct State<T> {
     pub seed: u64,
     /// Chains done.
     pub chains: u64,
-    /// What came of them.
+    /// Their results.
     pub tally: T,
 }
 

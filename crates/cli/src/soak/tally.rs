@@ -21,7 +21,7 @@ pub struct Tally {
     /// Plans that reported an excess.
     exceeding: u64,
     rungs: [u64; 4],
-    /// Most ramps solved for a plan, steps of a root, segments.
+    /// Largest numbers of ramps solved for a plan, steps of a root, segments.
     work: [u32; 3],
     excess: [f64; 4],
     untold: [f64; 3],
@@ -38,7 +38,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Counts a plan that holds.
+    /// Counts a plan that passes.
     pub fn passed(&mut self, case: &Case, plan: &Plan, measured: &Measured) {
         self.count(case);
         self.exceeding += u64::from(plan.excess().is_some());
@@ -85,7 +85,7 @@ impl Tally {
         self.viable += u64::from(case.viable);
     }
 
-    /// Adds what came after.
+    /// Adds later results.
     pub fn join(&mut self, later: Self) {
         let sum = |a, b| a + b;
         raise(&mut self.goals, later.goals, sum);

@@ -15,7 +15,7 @@ fn blocks_are_listed_with_every_pin_as_data() {
     let blocks = blocks.as_array().expect("a list");
     for block in blocks {
         let keys: Vec<_> = block.as_object().expect("an object").keys().collect();
-        // serde_json sorts keys; the order of the text is looked at below.
+        // serde_json sorts keys; the order of the text is checked below.
         assert_eq!(keys, ["doc", "group", "in_outs", "inputs", "name", "outputs"]);
         let groups = [
             "administrative",

@@ -1,11 +1,11 @@
-//! Files of strangers: their texts cannot forge the output, nothing is written outside the allowed
-//! places, and work and memory stay in proportion.
+//! Files from strangers: their texts cannot forge the output, nothing is written outside the permitted places, and
+//! work and memory are bounded in proportion.
 
 use crate::support::{LONG, SCRIPT, command, ended, read, scratch, standstill, with_script, write};
 use std::fs;
 use std::time::{Duration, Instant};
 
-/// A script whose texts try to do something to who reads them; its claim fails.
+/// A script whose texts try to affect their reader; its claim fails.
 fn hostile() -> String {
     SCRIPT
         .replace(
@@ -16,7 +16,7 @@ fn hostile() -> String {
         .replace("\"at\": 21", "\"at\": 19")
 }
 
-/// Whether a text has nothing in it but what can be seen, and line ends.
+/// Checks that a text has only visible characters and line ends.
 #[track_caller]
 fn is_plain(what: &str, text: &str) {
     let hidden = |character: &char| {
@@ -122,12 +122,12 @@ fn a_line_without_end_is_told_by_its_place() {
     assert!(begin.elapsed() < Duration::from_secs(10));
 }
 
-/// Names that Windows does not have.
+/// Names that Windows does not permit.
 #[cfg(unix)]
 mod names {
     use super::*;
 
-    /// As given, and as it is printed.
+    /// The name, and its printed form.
     const NAMES: [(&str, &str); 3] = [
         (r"a\b", r"a\b"),
         ("a\nok  a", r"a\u{a}ok  a"),
@@ -210,7 +210,7 @@ mod links {
         assert_eq!(proposed.status, 1, "{}", proposed.err);
         is_untouched(&folder, "outside");
         assert!(read(&suite, "move.snap.new").contains("expression: golden"));
-        // A golden whose exact trace is not its own: it is written anew.
+        // A golden with an exact trace of another run: it is written again.
         write(&suite, "kept.scan.json", SCRIPT);
         fs::remove_file(suite.join("kept.exact")).expect("the link");
         assert_eq!(
@@ -222,7 +222,7 @@ mod links {
         let kept = standstill(&suite, &["test", "kept.scan.json"]);
         assert_eq!(kept.status, 0, "{}{}", kept.out, kept.err);
         is_untouched(&folder, "outside");
-        // Its proposal is taken back: the link goes, not what it leads to.
+        // Its proposal is withdrawn: the link is removed, not its target.
         symlink("../outside", suite.join("kept.snap.new")).expect("a link");
         assert_eq!(standstill(&suite, &["test", "kept.scan.json"]).status, 0);
         is_untouched(&folder, "outside");
@@ -340,7 +340,7 @@ mod links {
         assert_eq!(standstill(&folder, &["test", "--accept", "."]).status, 0);
         let golden = read(&folder, "move.snap").replace("+Execute", "+Other");
         write(&folder, "move.snap", &golden);
-        // Whoever may do all may not do this either.
+        // A user with all permissions cannot do this either.
         fs::create_dir(folder.join("move.snap.new")).expect("a folder");
         let ended = standstill(&folder, &["test", "."]);
         assert_eq!(ended.status, 1, "{}", ended.err);
@@ -352,7 +352,7 @@ mod links {
         );
     }
 
-    /// The program where files cannot grow beyond half a kilobyte, as on a full disk.
+    /// Runs the program with a file size limit of half a kilobyte, as on a full disk.
     fn on_a_full_disk(folder: &Path, arguments: &[&str]) -> crate::support::Ended {
         let mut shell = std::process::Command::new("sh");
         shell.args(["-c", "ulimit -f 1; exec \"$@\"", "sh"]);
@@ -432,7 +432,7 @@ fn a_time_limit_ends_any_command_with_what_it_was_at() {
         assert!(told.is_some_and(|told| told.contains(at)), "{}", ended.err);
         assert!(begin.elapsed() < Duration::from_secs(10), "{arguments:?}");
     }
-    // What was printed before stands there, and who is in time knows nothing of it.
+    // The earlier output is there, and a command that ends in time has no message about it.
     write(&folder, "move.scan.json", SCRIPT);
     let both = [
         "run",
@@ -530,7 +530,7 @@ fn guests_have_no_more_memory_than_the_command_line_gives_them() {
     }
     let none = standstill(&folder, &["run", "-q", "one.scan.json", "--guest-memory", "4GB"]);
     assert_eq!(none.status, 2);
-    // Those that do not say how much they need share what there is.
+    // Programs that do not state their need share the available memory.
     let many: Vec<_> = (0..16)
         .map(|n| format!(r#""G{n}":{{"wasm":"large.wat","fuel":1000000000}}"#))
         .collect();
@@ -539,7 +539,7 @@ fn guests_have_no_more_memory_than_the_command_line_gives_them() {
     assert_eq!(many.status, 0, "{}", many.err);
 }
 
-/// A golden's exact trace in which so many rows of zeros stand, deflated to a thousandth.
+/// A golden's exact trace with this number of rows of zeros, compressed to a thousandth.
 fn inflated(rows: u64, zeros: usize) -> Vec<u8> {
     let mut body = Vec::new();
     let mut put = |mut number: u64| {
@@ -561,7 +561,7 @@ fn inflated(rows: u64, zeros: usize) -> Vec<u8> {
     file
 }
 
-/// The program in a shell that gives it so many kilobytes of memory.
+/// Runs the program in a shell that permits this number of kilobytes of memory.
 #[cfg(target_os = "linux")]
 fn within(kilobytes: u32, folder: &std::path::Path, arguments: &[&str]) -> crate::support::Ended {
     let mut shell = std::process::Command::new("sh");
@@ -578,7 +578,8 @@ fn within(kilobytes: u32, folder: &std::path::Path, arguments: &[&str]) -> crate
 fn exact_traces_take_memory_in_proportion() {
     let folder = with_script("borders_exact");
     assert_eq!(standstill(&folder, &["test", "--accept", "."]).status, 0);
-    // As if the run had changed, so that the exact trace is asked where; its digest is the one of the golden's text.
+    // Simulates a changed run, so that the exact trace is read for the difference; its digest is the one of the
+    // golden's text.
     let golden = read(&folder, "move.snap").replace("+Execute", "+Other");
     let digest = golden
         .trim_end()

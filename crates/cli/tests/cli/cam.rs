@@ -13,8 +13,8 @@ use serde_json::Value;
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// A law: its name, its largest velocity, acceleration and jerk for a lift of 1 over 1 (VDI 2143), and its acceleration where that is
-/// a function of its own; the other half is its mirror.
+/// A law: its name, its largest velocity, acceleration and jerk for a lift of 1 over 1 (VDI 2143), and its
+/// acceleration as a function where needed; the other half is its mirror.
 struct Law {
     name: &'static str,
     peaks: [f64; 3],
@@ -64,7 +64,8 @@ const LAWS: [Law; 5] = [
 ];
 
 impl Law {
-    /// The position at `x` for a lift that is not made 1: the integral of (x - t) a(t), eighth by eighth by Simpson's rule.
+    /// The position at `x` for a lift that is not scaled to 1: the integral of (x - t) a(t), by Simpson's rule for
+    /// each eighth.
     fn raw(&self, x: f64) -> f64 {
         const PARTS: u32 = 128;
         let mut sum = 0.0;
@@ -76,7 +77,7 @@ impl Law {
             }
             let h = (to - from) / f64::from(PARTS);
             for part in 0..=PARTS {
-                // Inside the eighth, where the acceleration jumps at none of its ends.
+                // Inside the eighth, because the acceleration may jump at its ends.
                 let t = (from + h * f64::from(part)).clamp(from, (from + 0.125).next_down());
                 let weight = match part {
                     0 | PARTS => 1.0,
@@ -116,7 +117,7 @@ fn rows(text: &str) -> Vec<Row> {
         .collect()
 }
 
-/// The coefficients of the stretch between two rows, in powers of the way from the first.
+/// The coefficients of the stretch between two rows, in powers of the distance from the first row.
 fn stretch((from, law): &Row, (to, _): &Row) -> Vec<f64> {
     let (width, way) = (to[0] - from[0], to[1] - from[1]);
     let per = |power: i32| way / width.powi(power);
@@ -226,7 +227,7 @@ fn every_law_has_its_positions_and_its_published_peaks() {
     }
 }
 
-/// A master that passes the cam at `v`, and a slave with limits of which one alone is near.
+/// A master that passes the cam at `v`, and a slave with limits of which only one is nearly reached.
 fn script(limits: &str) -> String {
     let axis =
         |limits: &str, more: &str| format!("{{\"limits\": {limits}, \"state\": \"Standstill\"{more}}}");
@@ -267,7 +268,8 @@ fn script(limits: &str) -> String {
     )
 }
 
-/// At 0.999 of MaxMasterVelocity the slave is in sync all along and keeps its limits; at 1.03 it is not, and keeps them all the same.
+/// At 0.999 of MaxMasterVelocity the slave is in sync all the time and keeps its limits. At 1.03 it is not in sync,
+/// but still keeps its limits.
 #[test]
 fn just_below_the_highest_velocity_a_law_is_kept_and_above_it_the_slave_lags() {
     let place = scratch("cam_laws");
@@ -467,7 +469,7 @@ fn what_a_slave_cannot_follow_is_status_1_with_place_value_limit_and_remedy() {
             assert!(!found["findings"][0][key].is_null(), "{key}: {}", ended.out);
         }
     }
-    // The same cam where the slave is, and for a slave without a jerk limit.
+    // The same cam at the position of the slave, and for a slave without a jerk limit.
     write(&place, "knife.csv", "0,0\n90,130\n");
     assert_eq!(
         checked(&place, &["--axis", "cell.machine.json#S", "--relative"]).status,
@@ -677,7 +679,7 @@ fn a_slave_that_takes_corners_is_told_where_it_rests() {
         standstill(&place, &[&asked[..], more].concat())
     };
     let takes = ", \"coupling\": {\"cam_continuity\": 0}";
-    // At row 2 the straight lines go on as one.
+    // At row 2 the straight lines continue as one.
     let ended = check(takes, &["cell.machine.json#S", "--periodic"]);
     assert_eq!(ended.status, 0, "{}", ended.err);
     assert!(
@@ -717,7 +719,7 @@ fn a_slave_that_takes_corners_is_told_where_it_rests() {
         );
         assert!(!ended.out.contains("rests at"), "{}", ended.out);
     }
-    // Without a jerk limit a slope at the ends is taken.
+    // Without a jerk limit a slope at the ends is permitted.
     write(&place, "knife.csv", "Master,Slave,Law\n0,0,3\n90,50,3\n");
     let ended = check("", &["cell.machine.json#T"]);
     assert_eq!(ended.status, 0, "{}", ended.out);

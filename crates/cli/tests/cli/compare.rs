@@ -115,7 +115,7 @@ fn samples_go_from_the_start_to_the_end_of_each_plan() {
         if answer["id"] != "ramp" {
             assert_eq!(number(last, 2), answer["end"]["position"].as_f64().unwrap());
         }
-        // No step is longer than the largest velocity allows: nothing jumps, also where plans meet.
+        // No step is longer than the largest velocity allows. So nothing jumps, not even between plans.
         for pair in own.windows(2) {
             let step = number(pair[1], 2) - number(pair[0], 2);
             assert!(step.abs() <= 0.001 * (1.0 + 1e-9), "{pair:?}");

@@ -1,10 +1,10 @@
-//! The examples of the guides print what stands there.
+//! The examples of the guides print the text that is shown there.
 //!
 //! A `console` block is run, with the last `jsonl` block before it on standard input. A table whose first column is
-//! `id` shows answers of `standstill plan` to the lines of that `jsonl` block, its other columns named after fields,
-//! rounded to the digits shown. A picture `pictures/plan-NAME.svg` is that of these lines, as `plan --svg` draws it, and that of a cam
-//! what `cam plot` draws; with `STANDSTILL_WRITE_DOCS=1` the test writes it. Files named `out.` something are written to, and read
-//! from, a folder of the test.
+//! `id` shows answers of `standstill plan` to the lines of that `jsonl` block. Its other columns are named after
+//! fields, and its values are rounded to the digits shown. A picture `pictures/plan-NAME.svg` is that of these
+//! lines, as `plan --svg` draws it. The picture of a cam is that of `cam plot`. With `STANDSTILL_WRITE_DOCS=1` the
+//! test writes the pictures. Files named `out.` something are written to, and read from, a folder of the test.
 
 use serde_json::Value;
 use std::io::{ErrorKind, Write};
@@ -34,22 +34,22 @@ fn standstill(arguments: &str, input: &str, folder: &Path) -> String {
         .spawn()
         .unwrap();
     let fed = child.stdin.take().unwrap().write_all(input.as_bytes());
-    // A command that takes no input may have ended before it was there.
+    // A command that takes no input may end before the input is written.
     if let Err(error) = fed {
         assert_eq!(error.kind(), ErrorKind::BrokenPipe, "{arguments}");
     }
     let out = String::from_utf8(child.wait_with_output().unwrap().stdout).unwrap();
-    // Where a file is put is no part of the example.
+    // The place of a file is no part of the example.
     out.replace(&format!("{}/", env!("CARGO_TARGET_TMPDIR")), "")
 }
 
-/// Checks a page; the number of examples, of cells in its tables, and of pictures of plans.
+/// Checks a page; returns the number of examples, of cells in its tables, and of pictures of plans.
 fn checked(page: &str) -> (usize, usize, usize) {
     let text = std::fs::read_to_string(root().join("docs").join(page)).unwrap();
     let (mut input, mut shown, mut cells, mut pictures) = (String::new(), 0, 0, 0);
     for (index, part) in text.split("```").enumerate() {
         if index % 2 == 0 {
-            // Without lines to plan a table is of something else.
+            // A table without lines to plan has another subject.
             if !input.is_empty() {
                 cells += checked_tables(page, part, &input);
                 pictures += checked_pictures(page, part, &input);
@@ -57,7 +57,7 @@ fn checked(page: &str) -> (usize, usize, usize) {
         } else if let Some(lines) = part.strip_prefix("jsonl\n") {
             input = lines.to_owned();
         } else if let Some(console) = part.strip_prefix("console\n") {
-            // Other commands, such as those of contributors, are only shown.
+            // Other commands, such as those for contributors, are only shown.
             if console.starts_with("$ standstill ") {
                 checked_console(page, console, &input, &root());
                 shown += 1;
@@ -67,7 +67,7 @@ fn checked(page: &str) -> (usize, usize, usize) {
     (shown, cells, pictures)
 }
 
-/// Draws the pictures of plans that are shown between two fenced blocks; their number.
+/// Draws the pictures of plans that are shown between two fenced blocks; returns their number.
 fn checked_pictures(page: &str, text: &str, input: &str) -> usize {
     let names = text.split("(pictures/plan-").skip(1);
     let names = names
@@ -92,7 +92,7 @@ fn checked_pictures(page: &str, text: &str, input: &str) -> usize {
         .count()
 }
 
-/// Runs a console block: its first line is the command, the rest what it prints; `...` stands for any lines.
+/// Runs a console block: its first line is the command, the rest its output; `...` represents any lines.
 fn checked_console(page: &str, console: &str, input: &str, folder: &Path) {
     let (command, expected) = console.split_once('\n').unwrap();
     let arguments = command.strip_prefix("$ standstill ").unwrap();
@@ -113,7 +113,7 @@ fn checked_console(page: &str, console: &str, input: &str, folder: &Path) {
     }
 }
 
-/// Checks the tables of plans between two fenced blocks; the number of their cells.
+/// Checks the tables of plans between two fenced blocks; returns the number of their cells.
 fn checked_tables(page: &str, text: &str, input: &str) -> usize {
     let (mut fields, mut answers, mut count) = (Vec::new(), Vec::new(), 0);
     for line in text.lines() {
@@ -152,7 +152,7 @@ fn checked_tables(page: &str, text: &str, input: &str) -> usize {
     count
 }
 
-/// Whether a value rounds to these digits; `-` is nothing, anything but a number stands as it is.
+/// Whether a value rounds to these digits; `-` is nothing, and anything but a number is compared unchanged.
 fn is_shown_as(value: &Value, cell: &str) -> bool {
     match (value.as_f64(), cell.parse::<f64>()) {
         (Some(value), Ok(shown)) => {
@@ -185,7 +185,7 @@ fn pages(folder: &str) -> Vec<String> {
 
 #[test]
 fn every_console_block_and_every_table_of_plans_is_true() {
-    // What must be found, so that a change of form does not leave a page unread.
+    // The least numbers that must be found, so that a change of form does not leave a page unread.
     let least = [
         ("cams.md", 3, 0),
         ("choosing-limits.md", 1, 30),
@@ -248,8 +248,8 @@ fn the_picture_of_a_cam_is_drawn_by_the_commands_beside_it() {
     );
 }
 
-/// A JSON block whose text before it names a file is saved as that file; one that begins indented replaces what has its
-/// `name` in the file before.
+/// A JSON block whose text before it names a file is saved as that file. An indented block replaces the item with
+/// its `name` in the previous file.
 #[test]
 fn the_tutorial_does_what_it_says() {
     let page = "tutorial.md";
@@ -291,7 +291,7 @@ fn with_block(script: &str, block: &str) -> String {
     format!("{before}    {{\n{}{after}", block.trim_end())
 }
 
-/// The example workflow's own commands, on a folder called as it calls it.
+/// Runs the commands of the example workflow on a folder with the name used there.
 #[test]
 fn the_commands_of_the_example_workflow_work() {
     let workflow = std::fs::read_to_string(root().join("docs/how-to/standstill.yml")).unwrap();

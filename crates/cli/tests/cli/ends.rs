@@ -4,7 +4,7 @@ use crate::support::{command, ended, standstill, with_script, write};
 use std::io::{Write, pipe};
 use std::process::Stdio;
 
-/// The status and the messages of a command whose output nobody reads.
+/// The status and the messages of a command whose output has no reader.
 fn unread(folder: &std::path::Path, arguments: &[&str]) -> (Option<i32>, String) {
     let (reader, writer) = pipe().expect("a pipe");
     drop(reader);
@@ -23,7 +23,7 @@ fn unread(folder: &std::path::Path, arguments: &[&str]) -> (Option<i32>, String)
 #[test]
 fn a_closed_pipe_ends_quietly() {
     let folder = with_script("ends_pipe");
-    // With the status of what it found out: a claim fails at another velocity, and there is no golden yet.
+    // The status is that of the result: a claim fails at another velocity, and there is no golden yet.
     for (arguments, status) in [
         (&["run", "move.scan.json"][..], 0),
         (&["run", "-q", "--set", "v=2", "move.scan.json"], 1),
@@ -84,7 +84,7 @@ fn a_pipe_that_closes_in_between_ends_quietly() {
         .expect("the program starts");
     let mut stdin = child.stdin.take().expect("a pipe");
     drop(child.stdout.take());
-    // It may stop to read before all is written.
+    // It may stop reading before everything is written.
     while writeln!(stdin, r#"{{"Ts":0.01,"target":1,"limits":{{"velocity":1}}}}"#).is_ok() {}
     let output = child.wait_with_output().expect("it ends");
     assert_eq!(

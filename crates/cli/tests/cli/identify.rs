@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// A load on a spring, damped so much, is turned; then it swings.
+/// A load on a spring with this damping is turned; then it vibrates.
 fn script(damping: f64) -> String {
     let plant = format!(
         r#"{{"inertia": 0.02, "viscous": 0.01, "load": {{"inertia": 0.05, "stiffness": 200, "damping": {damping}}}}}"#
@@ -30,7 +30,7 @@ fn script(damping: f64) -> String {
     )
 }
 
-/// Runs it into `swing.csv`; how far the motor is from the target, once the set-point rests.
+/// Runs it into `swing.csv`. Returns the distance of the motor from the target, once the set-point is at rest.
 fn recorded(folder: &Path, damping: f64) -> Vec<f64> {
     write(folder, "swing.scan.json", &script(damping));
     let run = standstill(
@@ -110,7 +110,7 @@ fn a_simulated_load_swings_as_its_peaks_say() {
             (of_damping - ratio).abs() < 0.1 * ratio.abs() + 0.001,
             "{damping}: {found}, {ratio}"
         );
-        // The load alone, the motor held, swings a little faster.
+        // The load alone, with the motor held, vibrates a little faster.
         let held = (200.0_f64 / 0.05).sqrt() / (2.0 * PI);
         assert!(
             frequency < held && frequency > 0.9 * held,
@@ -141,7 +141,7 @@ fn the_text_says_with_how_much_error() {
         "{}",
         ended.out
     );
-    // Loops that feed a swing are told as that.
+    // A vibration that the loops feed is reported as such.
     recorded(&folder, 0.0);
     let ended = standstill(&folder, &["identify", "swing.csv"]);
     assert!(ended.out.contains("it grows, the loops feed it"), "{}", ended.out);
@@ -234,7 +234,7 @@ fn what_is_wrong_is_said_with_its_remedy() {
         );
         assert!(ended.err.contains(told), "{arguments:?}: {}", ended.err);
     }
-    // Where nothing swings that is a result, with status 1.
+    // No vibration is a result, with status 1.
     for (arguments, told) in [
         (&["--signal", "move.Position"][..], "nothing moves"),
         (&["--from", "1990ms"], "it takes 16: take a longer window"),

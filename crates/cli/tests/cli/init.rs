@@ -130,7 +130,7 @@ fn no_link_is_followed_and_what_cannot_be_written_leaves_nothing() {
     assert_eq!(link.status, 2);
     assert!(link.err.contains("cell/.idea exists already"), "{}", link.err);
     assert_eq!(below(&folder).len(), 0);
-    // A folder in which nobody may write, also not root.
+    // A folder that nobody may write to, not even root.
     if Path::new("/proc/self").is_dir() {
         let refused = standstill(&folder, &["init", "/proc/self"]);
         assert_eq!((refused.status, refused.out.as_str()), (4, ""));

@@ -24,7 +24,7 @@ mod linux {
     use std::thread;
     use std::time::{Duration, Instant};
 
-    /// Nothing but the speed that an axis comes to within 0.1 s, for a minute.
+    /// The axis only accelerates within 0.1 s, and then runs for a minute.
     const ENDLESS: &str = r#"{
   "standstill": 1, "cycle": "T#1ms", "scans": 60000,
   "axes": {"X": {"limits": {"velocity": 20, "acceleration": 100}, "state": "Standstill"}},

@@ -5,7 +5,7 @@ use crate::support::{Ended, command, ended, read, scratch, standstill, write};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-/// A timer that turns round for a long time; `ENDS` ends the run by itself.
+/// A timer that repeats for a long time; `ENDS` ends the run by itself.
 const SCRIPT: &str = r#"{
   "standstill": 1, "title": "A long run", "cycle": "T#1ms", "scans": 1000000000, ENDS
   "axes": {"X": {"unit": "mm", "limits": {"velocity": 20, "acceleration": 100}, "state": "Standstill"}},
@@ -30,7 +30,7 @@ fn with_scripts(name: &str) -> PathBuf {
     folder
 }
 
-/// The paragraphs of a text, without the drawing or what stands in its place.
+/// The paragraphs of a text, without the drawing or its replacement.
 fn without_drawing(text: &str) -> String {
     let is_drawn = |part: &str| {
         let curve = ["X.Position (", "X.Velocity ("]
@@ -58,7 +58,7 @@ fn a_long_run_tells_what_a_short_one_tells_but_draws_nothing() {
     assert_eq!(same(&long.out), same(&short.out));
     assert!(same(&long.out).contains("long.scan.json: passed, 3 of 3 claims, 10000 scans, digest "));
     assert_eq!(read(&folder, "long.csv"), read(&folder, "short.csv"));
-    // But for what tells one script from the other.
+    // Except for the parts that differ between scripts.
     let meta = |name: &str| {
         let mut meta: serde_json::Value = serde_json::from_str(&read(&folder, name)).expect("JSON");
         meta.as_object_mut().expect("an object").remove("script_hash");
@@ -68,7 +68,7 @@ fn a_long_run_tells_what_a_short_one_tells_but_draws_nothing() {
     assert!(!folder.join("long.csv.partial").exists());
 }
 
-/// Programs that were left out should have seen what happened, which is behind the first rows that were written.
+/// Programs that were left out should have seen the event, which is behind the first written rows.
 #[test]
 fn a_run_that_is_broken_off_goes_on_scan_by_scan_where_it_had_told_of() {
     let folder = scratch("long_broken");
@@ -127,7 +127,7 @@ fn a_streamed_trace_is_read_like_any_other() {
     assert_eq!(page.status, 0, "{}", page.err);
 }
 
-/// What a trace needs beside its rows is written beside it, not where the system has its temporary files.
+/// Additional data of a trace are written beside it, not in the system's folder for temporary files.
 #[test]
 fn a_long_run_needs_no_folder_but_that_of_its_trace() {
     let folder = with_scripts("long_temporary");
@@ -196,7 +196,8 @@ fn rows(folder: &Path, name: &str) -> usize {
 fn a_disk_that_fills_leaves_whole_rows_and_says_where() {
     let folder = with_scripts("long_full");
     write(&folder, "x.csv", "what was there\n");
-    // A file that may not grow fails as a full disk does, and can be had anywhere; the signal that comes with it ends nothing.
+    // A file that may not grow fails as a full disk does, and needs no special system. The signal that comes with
+    // it ends nothing.
     let program = env!("CARGO_BIN_EXE_standstill");
     let line = format!("ulimit -f 100; '{program}' run -q endless.scan.json --trace x.csv");
     let run = ended(

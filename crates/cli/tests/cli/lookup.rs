@@ -89,7 +89,7 @@ fn every_shell_has_its_completions() {
         );
     }
     assert_eq!(asked(&["completions", "tcsh"]).status, 2);
-    // What bash does with them: a command and one of its options are completed.
+    // The use by bash: a command and one of its options are completed.
     let script = asked(&["completions", "bash"]).out;
     let complete = format!(
         "{script}\nCOMP_WORDS=(standstill test --str); COMP_CWORD=2; _standstill standstill --str test; echo \"${{COMPREPLY[@]}}\""

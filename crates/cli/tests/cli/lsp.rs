@@ -1,4 +1,4 @@
-//! `lsp`: whole sessions of an editor over pipes, and what is no session.
+//! `lsp`: whole sessions of an editor over pipes, and inputs that are no session.
 
 use crate::support::{command, scratch};
 use serde_json::{Value, json};
@@ -40,7 +40,7 @@ const SCRIPT: &str = r#"{
 }
 "#;
 
-/// An editor: the server, and what went to and fro.
+/// An editor: the server, and the messages in both directions.
 struct Editor {
     server: Child,
     to: Option<ChildStdin>,
@@ -114,7 +114,7 @@ impl Editor {
         self.send(&json!({"jsonrpc": "2.0", "method": method, "params": params}));
     }
 
-    /// The answer to a request, whatever was published before it.
+    /// The answer to a request; other messages before it are skipped.
     fn answer(&mut self, method: &str, params: Value) -> Value {
         self.requests += 1;
         let id = self.requests;
@@ -157,7 +157,7 @@ impl Editor {
         );
     }
 
-    /// What is published next of a document: first lines, columns and messages.
+    /// The next published diagnostics of a document: first lines, columns and messages.
     fn diagnostics(&mut self, name: &str) -> Vec<(u64, u64, String)> {
         let uri = self.uri(name);
         loop {
@@ -179,7 +179,7 @@ impl Editor {
         }
     }
 
-    /// Asks at the mark in a text that is made the document's.
+    /// Sends a request for the mark in a text, which becomes the document's text.
     fn at(&mut self, method: &str, name: &str, marked: &str) -> Value {
         let at = marked.find('|').expect("a mark");
         let text = marked.replacen('|', "", 1);
@@ -216,7 +216,7 @@ impl Editor {
         )
     }
 
-    /// The end of the session: the status, and what stood on standard error.
+    /// Ends the session; returns the status and the text on standard error.
     fn end(mut self) -> (i32, String) {
         drop(self.to.take());
         let mut rest = Vec::new();
@@ -300,7 +300,7 @@ fn names_of_a_program_are_told_found_and_offered() {
             .labels("cell.st", &CELL.replace("Count : INT", "Count : |"))
             .contains(&"TON".to_owned())
     );
-    // What is offered replaces what is typed.
+    // The offered text replaces the typed one.
     let found = editor.at(
         "textDocument/completion",
         "cell.st",
@@ -439,7 +439,7 @@ fn what_is_wrong_is_answered_and_the_session_goes_on() {
     assert_eq!(editor.receive()["error"]["code"], -32600);
     editor.tell("textDocument/didChange", json!({"textDocument": 7}));
     editor.tell("$/unknown", json!({}));
-    // Neither of a file nor of a text that is known.
+    // The document is neither a file nor a known text.
     for uri in ["untitled:1", "file:///nowhere/at/all.st", "file:///x.txt"] {
         let at =
             json!({"textDocument": {"uri": uri}, "position": {"line": 4_000_000_000_u32, "character": 7}});
@@ -447,7 +447,7 @@ fn what_is_wrong_is_answered_and_the_session_goes_on() {
             assert_eq!(editor.ask(method, at.clone()), Value::Null, "{uri}");
         }
     }
-    // More than is read: said, and the server is there as before.
+    // More than the server reads: it reports this and continues.
     editor.did_open("huge.st", &"x".repeat(17 << 20));
     let message = editor.receive();
     assert_eq!(message["method"], "window/showMessage");

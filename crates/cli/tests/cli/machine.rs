@@ -1,4 +1,4 @@
-//! `standstill compare`: recordings in the shapes of common tools against a trace, and everything that can be wrong.
+//! `standstill compare`: recordings in the forms of common tools against a trace, and all errors.
 
 use crate::support::{Ended, standstill, with_script, write};
 use std::fs;

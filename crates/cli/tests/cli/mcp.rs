@@ -55,7 +55,7 @@ impl Client {
         answer["result"].clone()
     }
 
-    /// What a tool answers that could do what it was asked to.
+    /// The answer of a tool that could do its work.
     fn call(&mut self, tool: &str, arguments: Value) -> Value {
         let result = self.ask("tools/call", json!({"name": tool, "arguments": arguments}));
         assert_eq!(result["isError"], false, "{result}");
@@ -65,14 +65,14 @@ impl Client {
             .clone()
     }
 
-    /// What a tool says that could not.
+    /// The message of a tool that could not do its work.
     fn refused(&mut self, tool: &str, arguments: Value) -> String {
         let result = self.ask("tools/call", json!({"name": tool, "arguments": arguments}));
         assert_eq!(result["isError"], true, "{result}");
         result["content"][0]["text"].as_str().unwrap().to_owned()
     }
 
-    /// The client goes; the status of the server.
+    /// Disconnects the client; returns the status of the server.
     fn leave(mut self) -> Option<i32> {
         drop(self.input.take());
         self.child.wait().unwrap().code()
@@ -277,7 +277,7 @@ fn a_call_takes_no_more_than_it_may() {
     let mut client = Client::of(&folder, &["--call-time", "1s"]);
     let refused = client.refused("run", json!({"path": "long.scan.json"}));
     assert!(refused.contains("the time is up; it was at "), "{refused}");
-    // It serves on, and more than fits is refused.
+    // It continues to serve, and refuses more than fits.
     let lines: Vec<Value> = (0..1001).map(|_| json!({})).collect();
     assert!(
         client
@@ -287,7 +287,8 @@ fn a_call_takes_no_more_than_it_may() {
     assert_eq!(client.leave(), Some(0));
     #[cfg(target_os = "linux")]
     {
-        // The most scans of which all rows are kept; what rests takes no memory, so much changes all the time.
+        // The largest number of scans of which all rows are kept. Constant signals take no memory, so many signals
+        // change all the time.
         let reader = |number| {
             format!(
                 r#"{{"name": "r{number}", "type": "MC_ReadActualPosition", "pins": {{"Axis": "X", "Enable": true}}}},"#

@@ -247,7 +247,7 @@ fn a_line_that_is_no_text_is_refused_and_the_next_one_is_read() {
     assert!(answers[1].contains("\"scans\":"));
 }
 
-/// A new target in the middle of a turn that could not be avoided makes it longer: that is told, too.
+/// A new target in the middle of an unavoidable turn makes the turn longer. This excess is reported, too.
 #[test]
 fn tracking_tells_the_excess_of_every_plan() {
     let line = |targets: &str| {
@@ -290,7 +290,7 @@ fn plans_are_drawn_over_each_other() {
         &["plan", "--svg", &svg, "--report", &html, "--samples", &csv],
         lines.as_bytes(),
     );
-    // A line that is refused is answered as always, and not drawn.
+    // A refused line is answered as usual, and not drawn.
     assert_eq!(
         (drawn.status, drawn.out.lines().count(), drawn.err.as_str()),
         (1, 3, "")

@@ -1,4 +1,5 @@
-//! The README is true: its script prints what stands under it, its mistake is reported as shown, and its run
+//! The README is true: its script prints the output shown under it, its mistake is reported as shown, and its run
+//! command runs.
 //! command runs.
 
 use std::path::{Path, PathBuf};
@@ -64,7 +65,7 @@ fn the_script_is_laid_out_by_fmt_and_fits_a_page() {
     let folder = folder_with_script("readme_fmt", |script| script);
     let output = standstill(&folder, &["fmt", "--check", "there.scan.json"]);
     assert_eq!(output.status.code(), Some(0));
-    // What a page of GitHub shows of a line before it scrolls.
+    // The part of a line that a page of GitHub shows without scrolling.
     for block in [blocks("json"), blocks("text"), blocks("console")].concat() {
         for line in block.lines() {
             assert!(line.chars().count() <= 98, "{line}");

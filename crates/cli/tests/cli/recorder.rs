@@ -1,4 +1,4 @@
-//! What the flight recorder of the C library dumps is read by the commands that read traces.
+//! The commands that read traces read the dumps of the flight recorder of the C library.
 #![allow(unsafe_code)]
 
 use standstill_capi::*;
@@ -20,7 +20,7 @@ fn standstill(arguments: &[&str], folder: &Path) -> (Option<i32>, String) {
     (output.status.code(), text(output.stdout) + &text(output.stderr))
 }
 
-/// The texts of the recorder in all of its forms, of an axis that is pushed into a limit switch if wanted.
+/// The texts of the recorder in all of its forms, for an axis that may be pushed into a limit switch.
 fn dumps(is_pushed: bool) -> [Vec<u8>; 3] {
     let config = RuntimeConfig {
         size: size_of::<RuntimeConfig>() as u32,
@@ -42,7 +42,8 @@ fn dumps(is_pushed: bool) -> [Vec<u8>; 3] {
         *to = *from as c_char;
     }
     let mut runtime = null_mut();
-    // SAFETY: structures of numbers, with their sizes in front; storage as long as it says, which lives to the end.
+    // SAFETY: structures of numbers, with their sizes in front; storage of the stated length, which lives to the
+    // end.
     unsafe {
         let mut bytes = 0;
         assert_eq!(standstill_runtime_size(&config, &mut bytes), 0);

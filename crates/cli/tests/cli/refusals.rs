@@ -1,4 +1,4 @@
-//! What a command says and leaves behind where it cannot do its work.
+//! The output and the remaining files of a command that cannot do its work.
 
 use crate::support::{
     Ended, LONG, SCRIPT, command, ended, is_an_outcome, read, scratch, standstill, with_script, write,
@@ -216,7 +216,7 @@ fn a_link_to_a_folder_is_another_way_to_the_same_file_and_a_device_takes_two() {
             "--report",
             "other/a.csv",
         ],
-        // What the link leads to is read, not the link.
+        // The target of the link is read, not the link.
         [
             "run",
             "-q",
@@ -284,7 +284,7 @@ fn a_claim_without_a_value_says_so_and_why() {
         "  expect[1].that.=1 / TRUNC(n) = 1: no value at scan 5, expected TRUE; it was so in no scan\n",
         "  expect[1]: =1 / TRUNC(n) = 1 has no value at scan 5: a division by zero: the dividend is 1\n",
         "  expect[2].always.=1 / TRUNC(n) = 1: no value at scan 0, expected TRUE; it was so in no scan; broken in 30 scans: 0, 1, 2, 3, 4 .. 29\n",
-        // It has the value of a block that was never called, and the reason tells of that.
+        // It has the value of a block that was never called, and the reason reports this.
         "  expect[3].that.=late.Done: FALSE at scan 5, expected TRUE; it was so in no scan\n",
         "    late is never called: its task asked never runs\n",
     ] {

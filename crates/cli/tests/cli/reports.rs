@@ -24,7 +24,7 @@ fn traces(name: &str) -> PathBuf {
     folder
 }
 
-/// The names in a folder that no test put there.
+/// The names in a folder that no test has written.
 fn left(folder: &Path) -> Vec<String> {
     let names = fs::read_dir(folder)
         .unwrap()

@@ -10,7 +10,7 @@ use std::process::{Child, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// The program, serving; it is ended when this is dropped.
+/// The serving program; it is ended when this is dropped.
 struct Served {
     child: Child,
     port: u16,
@@ -23,7 +23,7 @@ impl Drop for Served {
     }
 }
 
-/// What came back.
+/// The answer received.
 #[derive(Debug)]
 struct Got {
     status: u16,
@@ -63,7 +63,7 @@ impl Served {
         Self { child, port }
     }
 
-    /// Sends this text as it is; everything that comes back.
+    /// Sends this text unchanged; returns the whole answer.
     fn send(&self, request: &str) -> Got {
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).expect("it listens");
         stream
@@ -183,7 +183,7 @@ fn a_saved_file_is_another_answer_and_nothing_else_is() {
     assert_eq!((same.status, same.body.as_str()), (304, ""));
     write(&folder, "cells/one.scan.json.bak", "beside it");
     assert_eq!(ask(&tag).status, 304);
-    // A file that it names comes to be, and changes.
+    // A file that the script names is created, and changes.
     write(&folder, "cells/x.machine.json", MACHINE);
     let there = ask(&tag);
     assert_eq!(there.json()["files"]["x.machine.json"], MACHINE);

@@ -13,7 +13,7 @@ fn replans_hold_and_an_interrupted_run_ends_as_one_that_is_not() {
         "{}",
         whole.out
     );
-    // It stops in the middle of a chain, and goes on.
+    // It stops in the middle of a chain, and continues.
     let part = soak(&["--count", "7007", "--resume", "state.json"]);
     assert!(
         part.out.ends_with("seed 1: 7007 replans, 0 failed\n"),

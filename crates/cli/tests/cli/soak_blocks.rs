@@ -13,7 +13,7 @@ fn programs_hold_and_an_interrupted_run_ends_as_one_that_is_not() {
         "{}",
         whole.out
     );
-    // It stops in the middle of an episode, and goes on.
+    // It stops in the middle of an episode, and continues.
     let part = soak(&["--count", "30001", "--resume", "state.json"]);
     assert!(
         part.out.ends_with("seed 1: 30001 scans, 0 episodes failed\n"),

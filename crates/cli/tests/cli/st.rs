@@ -132,7 +132,7 @@ fn files_are_laid_out_in_place_and_only_those_that_change_are_named() {
     assert!(ended.err.contains("bad.st:1:16"), "{}", ended.err);
 }
 
-/// What is executed is counted beside the run that is judged.
+/// Executed statements are counted in a run beside the judged one.
 #[test]
 fn a_test_says_which_statements_and_branches_were_executed() {
     let place = scratch("st_coverage");

@@ -81,7 +81,7 @@ pub fn fed(arguments: &[&str], input: &[u8]) -> Ended {
     let mut child = piped.spawn().expect("the program starts");
     let mut stdin = child.stdin.take().expect("a pipe");
     thread::scope(|scope| {
-        // Beside the reading of its output, or both sides could wait for each other.
+        // In parallel with reading its output, or both sides could wait for each other.
         scope.spawn(move || stdin.write_all(input).expect("it reads all"));
         let output = child.wait_with_output().expect("it ends");
         Ended {
@@ -117,7 +117,7 @@ pub fn read(folder: &Path, name: &str) -> String {
     fs::read_to_string(folder.join(name)).expect("a file that was written")
 }
 
-/// What a command prints with `--json` is as the program's own schema says.
+/// Checks that the output of a command with `--json` fulfils the program's own schema.
 #[track_caller]
 pub fn is_an_outcome(outcome: &serde_json::Value) {
     let schema = ended(&mut command(&["schema", "json"])).out;

@@ -32,7 +32,7 @@ fn column<'t>(table: &'t str, name: &str) -> Vec<&'t str> {
 fn a_row_tells_what_came_of_its_case() {
     let folder = folder("sweep_rows");
     let ended = standstill(&folder, &["sweep", "move.sweep.json"]);
-    // Below 10 mm/s the move is not done in time.
+    // Below 10 mm/s the move does not end in time.
     assert_eq!((ended.status, ended.err.as_str()), (1, ""));
     let table = &ended.out;
     assert_eq!(column(table, "case"), ["0", "1", "2", "3", "4", "5"]);
@@ -107,7 +107,7 @@ fn threads_shards_and_interruptions_leave_no_trace_in_a_table() {
     assert_eq!(again.err, "2 of 60 cases are there from an interrupted run\n");
     assert_eq!(read(&folder, "again.csv"), all);
     assert!(!folder.join("again.csv.part").exists());
-    // What is there is not computed again: a row that was tampered with stays so.
+    // Existing rows are not computed again: a changed row stays as it is.
     let marked = rows[7].replacen("failed", "refused", 1);
     write(&folder, "again.csv.part", &format!("{key}\n{marked}\n"));
     let ended = standstill(&folder, &["sweep", "move.sweep.json", "-o", "again.csv"]);
@@ -117,7 +117,7 @@ fn threads_shards_and_interruptions_leave_no_trace_in_a_table() {
 
 /// The first line of a part, as an interrupted run leaves it.
 fn part_key(folder: &Path) -> String {
-    // A table that cannot take its place leaves its part behind.
+    // A table that cannot be put into its place leaves its part behind.
     fs::create_dir_all(folder.join("key.csv/in")).unwrap();
     let ended = standstill(folder, &["sweep", "move.sweep.json", "-o", "key.csv"]);
     assert_eq!(ended.status, 4, "{}", ended.err);
@@ -172,7 +172,7 @@ fn a_table_without_digests_is_the_same_but_for_them() {
             .unwrap()
             .split(',')
             .position(|name| name == "digest");
-        // Only what stands behind digests may have commas of its own.
+        // Only cells behind digests may have commas of their own.
         let without = |line: &str| {
             let mut fields: Vec<&str> = line.splitn(digest.unwrap() + 2, ',').collect();
             fields.remove(digest.unwrap());
@@ -247,7 +247,7 @@ fn shards_that_do_not_make_a_whole_are_refused() {
 #[test]
 fn a_case_that_cannot_be_run_is_a_row_and_the_others_go_on() {
     let folder = folder("sweep_refused");
-    // A limit of 0 is none an axis can have.
+    // No axis can have a limit of 0.
     let script = SCRIPT.replace("\"velocity\": 20", "\"velocity\": {\"param\": \"v\"}");
     write(&folder, "move.scan.json", &script);
     write(&folder, "move.sweep.json", &SWEEP.replace("[4, 5,", "[0, 10,"));
@@ -351,7 +351,7 @@ fn what_a_sweep_names_must_be_there() {
         );
         assert!(!folder.join("a.csv.part").exists(), "{to}");
     }
-    // The script of a sweep lies below its folder.
+    // The script of a sweep must be below its folder.
     write(
         &folder,
         "in/move.sweep.json",

@@ -24,7 +24,7 @@ fn a_golden_is_accepted_once_and_judges_from_then_on() {
         (passed.status, passed.out.as_str()),
         (0, "ok        ./move.scan.json\n1 script: 1 passed\n")
     );
-    // Another run under the same claims: Done comes at the same scan, the position of one scan differs.
+    // Another run with the same claims: Done comes in the same scan, the position differs in one scan.
     write(
         &folder,
         "move.scan.json",
@@ -128,7 +128,7 @@ fn orphans_fail_and_broken_scripts_do_not_hide_the_others() {
     assert_eq!(orphan.status, 1);
     assert!(orphan.out.contains("ORPHAN    ./gone.snap\n"), "{}", orphan.out);
     assert!(orphan.out.ends_with("1 script: 1 passed, 1 orphaned\n"));
-    // A script of another name has its golden, too.
+    // A script of another name also has its golden.
     fs::copy(folder.join("move.scan.json"), folder.join("gone.json")).unwrap();
     let kept = standstill(&folder, &["test", "."]);
     assert!(kept.out.ends_with("1 script: 1 passed\n"), "{}", kept.out);
@@ -207,7 +207,7 @@ fn the_outcome_goes_into_a_junit_file_that_a_reader_understands() {
     assert!(no.2.starts_with("error[syntax]"), "{no:?}");
 }
 
-/// Whatever ends first, what is told stands in the order of the files.
+/// The output is in the order of the files, whichever ends first.
 #[test]
 fn any_number_of_threads_prints_the_same() {
     let folder = with_script("test_threads");
@@ -238,7 +238,7 @@ fn any_number_of_threads_prints_the_same() {
     for threads in [&["--threads", "2"][..], &["--threads", "7"], &[]] {
         assert_eq!(run(threads), one, "{threads:?}");
     }
-    // One that is named twice is judged once after the other: both write the same golden.
+    // A script that is named twice is judged twice in succession: both runs write the same golden.
     let twice = standstill(
         &folder,
         &["test", "move.scan.json", "./move.scan.json", "--accept"],
@@ -291,7 +291,7 @@ fn a_failing_script_gets_a_page_of_golden_and_run() {
         .matches("<script type=\"text/plain\" class=\"rows\">")
         .count();
     assert_eq!(traces, 2);
-    // The output that differs first: Done goes out with Execute.
+    // The first output that differs: Done falls with Execute.
     assert!(page.contains("why: scan 25</button>"), "{page:.3000}");
     assert!(page.contains("<b>A</b>expected: golden of ./move.scan.json: 30 scans"));
     assert!(page.contains("<b>B</b>found: ./move.scan.json: 30 scans"));
@@ -327,7 +327,7 @@ fn a_page_of_one_run_where_there_is_nothing_to_lay_it_over() {
     );
 }
 
-/// As [`SCRIPT`], to another target.
+/// The same as [`SCRIPT`], to another target.
 fn moved_to(position: &str) -> String {
     SCRIPT
         .replace("\"Position\": 1,", &format!("\"Position\": {position},"))
@@ -365,7 +365,7 @@ fn by_events_a_golden_admits_what_no_machine_notices() {
     assert!(close.out.ends_with("1 script: 1 passed\n"), "{}", close.out);
     assert!(read(&folder, "out.xml").contains("failures=\"0\""));
     assert!(!folder.join("pages/move.html").exists());
-    // A closer look finds it, names what it is about, and marks it in the report and for JUnit.
+    // The strict mode finds it, names its subject, and marks it in the report and for JUnit.
     let strict = [
         "--abs", "0", "--rel", "1e-13", "--junit", "out.xml", "--report", "pages",
     ];
@@ -436,7 +436,7 @@ fn files_outside_the_folder_are_included_only_where_that_is_allowed() {
         let allowed = standstill(&folder, &[command, "jobs/in.scan.json", "--allow-outside"]);
         assert_ne!(allowed.status, 3, "{}", allowed.err);
     }
-    // A mistake in the machine file is told there.
+    // A mistake in the machine file is reported there.
     write(
         &folder,
         "machines/m.machine.json",
@@ -515,7 +515,7 @@ fn a_recording_is_judged_by_the_claims_of_a_script() {
         )
     );
     assert!(read(&folder, "out.xml").contains("it came at 26, 5 later"));
-    // A recording that has less than the script, and begins amid the move.
+    // A recording that has less than the script, and begins during the move.
     let csv = "scan,time_ns,X.State,X.Position,X.Velocity,X.Acceleration,X.Jerk,X.Snap,X.ActualPosition\n";
     let row = |scan: i32| {
         format!(
@@ -670,7 +670,7 @@ fn a_failing_test_says_why_in_every_form() {
     }
 }
 
-/// The script with an input that nobody reads and a velocity per minute.
+/// The script with an input that is never read and a velocity per minute.
 fn doubtful() -> String {
     SCRIPT
         .replace("\"GO\": false", "\"GO\": false, \"STOP\": false")
@@ -703,7 +703,7 @@ fn what_tests_nothing_is_told_and_fails_only_under_strict() {
     let quiet = standstill(&folder, &["run", "-q", "a.scan.json"]);
     assert_eq!(quiet.status, 0);
     assert!(quiet.err.contains(clamped), "{}", quiet.err);
-    // What is meant is said.
+    // An intended item is marked as such.
     let meant = doubtful()
         .replace(
             "\"STOP\": false",
@@ -737,7 +737,7 @@ fn claims_decide_alone_where_no_golden_is_asked_for() {
     assert!(!folder.join("a.snap").exists() && !folder.join("a.exact").exists());
     let both = standstill(&folder, &["test", "--accept", "--golden", "none", "a.scan.json"]);
     assert_eq!(both.status, 2);
-    // A script without either tests nothing.
+    // A script without steps and claims tests nothing.
     let empty = said.replace("\"expect\": [", "\"expect\": [],\n  \"covers\": [");
     let start = empty.find("\"covers\": [").unwrap();
     write(
@@ -809,7 +809,7 @@ fn mutants_that_no_claim_notices_survive() {
     write(&folder, "a.scan.json", &loose);
     let first = standstill(&folder, &["test", "--mutate", "a.scan.json"]);
     assert_eq!((first.status, first.err.as_str()), (0, ""));
-    // With a higher acceleration, velocity or limit nothing is otherwise: a move of 20 scans has no time for it.
+    // With a higher acceleration, velocity or limit nothing changes: a move of 20 scans has no time for it.
     assert_eq!(
         first.out,
         "survived  axes.X.limits.acceleration: 100.0 to 90.0\n\
@@ -822,7 +822,7 @@ fn mutants_that_no_claim_notices_survive() {
     );
     let again = standstill(&folder, &["test", "--mutate", "a.scan.json", "--seed", "7"]);
     assert_eq!(again.out, first.out, "all fit, so none is drawn");
-    // Two claims more, and no survivors are left.
+    // With two more claims there are no survivors.
     let told = r#"{"duration": [{"move.Busy": true}, {"move.Done": true}], "ge": 20, "le": 20},
         {"never": {"move.Busy": true}, "to": 0}, {"never": {"move.Error""#;
     let better = loose.replace("{\"never\": {\"move.Error\"", told);

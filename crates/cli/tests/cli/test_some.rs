@@ -24,7 +24,7 @@ fn a_word_picks_scripts_and_list_only_names_them() {
         "./Press/close.scan.json\n./broken.scan.json\n./move.scan.json\n"
     );
     assert_eq!(run(&["--list", "-k", "press"]).out, "./Press/close.scan.json\n");
-    // Neither the broken script nor the golden without a script is asked for.
+    // Neither the broken script nor the golden without a script is requested.
     let some = run(&["-k", "PRESS", "--golden", "none"]);
     assert_eq!(
         (some.status, some.out.as_str()),
@@ -59,7 +59,7 @@ fn what_was_saved_is_judged_again_failures_first() {
         .stderr(Stdio::piped());
     let mut child = piped.spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
-    // The names of the scripts as they were judged, up to the line with the counts.
+    // The names of the scripts in the order of judging, up to the line with the counts.
     let mut round = || {
         let mut judged = Vec::new();
         for line in lines.by_ref() {
@@ -75,7 +75,7 @@ fn what_was_saved_is_judged_again_failures_first() {
     let (judged, counts) = round();
     assert_eq!(judged, ["move.scan.json", "z.scan.json"]);
     assert_eq!(counts, "2 scripts: 1 passed, 1 failed");
-    // What it wrote itself, the page, starts nothing; a script that is saved does.
+    // The page, which it wrote itself, starts nothing; a saved script does.
     write(
         &folder,
         "move.scan.json",
@@ -116,7 +116,7 @@ fn a_review_asks_for_each_golden_that_differs_and_takes_only_what_is_answered_ye
             String::from_utf8(output.stderr).unwrap(),
         )
     };
-    // What is no answer is asked for again; what was not looked at stays as it is.
+    // After an invalid answer it asks again; goldens that were not reviewed stay unchanged.
     let (status, out, err) = review("perhaps\nno\nq\n");
     assert_eq!(status, Some(3), "{out}{err}");
     assert!(
@@ -131,7 +131,7 @@ fn a_review_asks_for_each_golden_that_differs_and_takes_only_what_is_answered_ye
     assert!(out.ends_with("4 scripts: 3 failed, 1 broken\n"), "{out}");
     let is_there = |name: &str| folder.join(name).exists();
     assert!(!is_there("b.snap") && !is_there("move.snap") && !is_there("b.snap.new"));
-    // A script whose claims fail is not asked for.
+    // It does not ask about a script whose claims fail.
     let (_, out, err) = review("y\n");
     assert!(out.contains("accepted  ./b.scan.json\n"), "{out}");
     assert_eq!(err.matches("take it as the golden?").count(), 2, "{err}");
@@ -141,7 +141,7 @@ fn a_review_asks_for_each_golden_that_differs_and_takes_only_what_is_answered_ye
         out.contains("ok        ./b.scan.json\n") && out.contains("accepted  ./move.scan.json\n"),
         "{out}"
     );
-    // Nothing is taken where nobody reviews.
+    // Without a reviewer nothing is accepted.
     let under_ci = ended(
         command(&["test", "--review"])
             .current_dir(&folder)
@@ -199,7 +199,7 @@ fn a_terminal_has_colours_and_nothing_else_has() {
     );
     let without = with(&[("CLICOLOR_FORCE", "1"), ("NO_COLOR", "1")], test);
     assert_eq!((without.out, without.err), (plain.out, plain.err));
-    // Data has none, whoever asks.
+    // Data have no colours, for any setting.
     let json = with(&[("CLICOLOR_FORCE", "1")], &["run", "--json", "move.scan.json"]);
     assert!(!json.out.contains('\u{1b}'), "{}", json.out);
 }

@@ -42,10 +42,10 @@ mod terminal {
     use std::thread::{self, JoinHandle};
     use std::time::{Duration, Instant};
 
-    /// Longer than a busy machine takes for anything here.
+    /// Longer than any step here takes on a busy machine.
     const PATIENCE: Duration = Duration::from_secs(30);
 
-    /// A terminal with the program in it.
+    /// A terminal in which the program runs.
     struct Watched {
         ours: File,
         theirs: File,
@@ -122,7 +122,7 @@ mod terminal {
             }
         }
 
-        /// Takes nothing any more of what is written to the terminal.
+        /// Stops reading what is written to the terminal.
         fn take_nothing(&mut self) {
             self.deaf.store(true, Ordering::Relaxed);
             if let Some(reader) = self.reader.take() {
@@ -135,9 +135,9 @@ mod terminal {
             Pid::from_raw(id).expect("not zero")
         }
 
-        /// The status of a program that has to end at once, and by itself.
+        /// The status of a program that must end at once, and by itself.
         fn ends_at_once(mut child: Child) -> ExitStatus {
-            // A second is what is promised; the rest is for a busy machine.
+            // One second is promised; the rest is for a busy machine.
             let begin = Instant::now();
             loop {
                 if let Some(status) = child.try_wait().expect("it is our child") {
@@ -156,7 +156,7 @@ mod terminal {
             String::from_utf8_lossy(&self.shown.lock().expect("nobody panicked")).into_owned()
         }
 
-        /// Waits until a piece of text was written. Of a new screen only what changed is.
+        /// Waits until a text was written. For a new screen only the changes are written.
         fn expect(&self, text: &str) {
             let begin = Instant::now();
             while !self.text().contains(text) {
@@ -171,7 +171,7 @@ mod terminal {
                 .expect("a terminal takes keys");
         }
 
-        /// Waits for the end; the terminal must be as it was.
+        /// Waits for the end; the terminal must be in its original state.
         fn ended(mut self) -> (ExitStatus, String) {
             let begin = Instant::now();
             let status = loop {
@@ -263,7 +263,7 @@ mod terminal {
             let (status, text) = watched.ended();
             assert_eq!(status.signal(), Some(number), "{text:?}");
         }
-        // As a key, as terminals give it that were taken over.
+        // As a key, as terminals send it after they were taken over.
         let mut watched = Watched::new(&folder, &["move.scan.json"]);
         watched.expect("One short move");
         watched.press("\u{3}");
@@ -273,7 +273,7 @@ mod terminal {
     #[test]
     fn it_ends_with_its_terminal() {
         let folder = with_script("watch_hangup");
-        // Without end at the speed of the clock.
+        // Without an end, at the speed of the clock.
         write(
             &folder,
             "long.scan.json",
@@ -308,7 +308,7 @@ mod terminal {
         kill_process(watched.id(), Signal::TERM).expect("it runs");
         let status = Watched::ends_at_once(watched.child);
         assert_eq!(status.signal(), Some(15), "{status:?}");
-        // Amid a key that never ends, too: a terminal sends those in pieces.
+        // Also in the middle of a key that never ends: a terminal sends those in pieces.
         let mut watched = Watched::new(&folder, &["long.scan.json"]);
         watched.expect("One short move");
         watched.press("\u{1b}[");
@@ -343,7 +343,7 @@ mod terminal {
         };
         tcsetwinsize(&watched.theirs, size).expect("a terminal has a size");
         watched.press("s");
-        // Words are written one by one, blanks are there already.
+        // Words are written one by one; blanks are already there.
         watched.expect("40x10,");
         watched.press("q");
         assert_eq!(watched.ended().0.code(), Some(0));

@@ -1,5 +1,6 @@
-//! Every file format under random damage to files of this repository, with a bound on time and memory. Seeded, so a
-//! failure comes back; the fuzz target `formats` does the same with bytes that libFuzzer looks for.
+//! Every file format under random damage to files of this repository, with a bound on time and memory. It is
+//! seeded, so a failure can be repeated. The fuzz target `formats` does the same with bytes that libFuzzer
+//! searches.
 
 mod play;
 
@@ -18,7 +19,7 @@ const LONGEST: Duration = Duration::from_secs(10);
 /// Peak of the whole test (kB): each case is in proportion to a small file.
 const PEAK: u64 = 400_000;
 
-/// Largest file to begin with (bytes).
+/// Largest initial file (bytes).
 const LARGEST: u64 = 8_000;
 
 /// Files of the repository with this ending, sorted.
@@ -54,7 +55,7 @@ fn seeds(format: &str, ending: &str) -> Vec<Vec<u8>> {
         .iter()
         .map(|path| fs::read(path).expect("readable"))
         .collect();
-    // Those that stand nowhere as a file.
+    // Formats of which no file exists.
     let own: &[&str] = match format {
         "plan" => &[
             r#"{"id":1,"Ts":0.01,"target":1,"limits":{"velocity":1,"acceleration":2,"jerk":30,"snap":900}}"#,
@@ -109,7 +110,7 @@ const PIECES: [&[u8]; 16] = [
     b"99999999999999999999",
 ];
 
-/// A file with some damage: bytes changed, pieces put in, cut out or repeated, or the halves of two files.
+/// A file with some damage: bytes changed, pieces inserted, removed or repeated, or the halves of two files.
 fn damaged(random: &mut Random, seeds: &[Vec<u8>]) -> Vec<u8> {
     let mut bytes = seeds[random.place(seeds.len())].clone();
     for _ in 0..=random.place(4) {
@@ -134,7 +135,7 @@ fn damaged(random: &mut Random, seeds: &[Vec<u8>]) -> Vec<u8> {
     bytes
 }
 
-/// The most memory this process has had (kB), where the system tells.
+/// The peak memory of this process (kB), if the system reports it.
 fn peak() -> u64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
@@ -149,7 +150,7 @@ fn no_file_takes_more_than_its_share() {
         let seeds = seeds(format, ending);
         let mut random = Random(0x5eed + u64::from(number));
         for case in 0..count {
-            // The whole ones first.
+            // The undamaged ones first.
             let bytes = match seeds.get(case) {
                 Some(seed) if case < count / 4 => seed.clone(),
                 _ => damaged(&mut random, &seeds),

@@ -1,5 +1,4 @@
-//! Bytes as a file of any format the program reads. Nothing may panic, and work and memory stay in
-//! proportion: the caller bounds both.
+//! Bytes as a file of any format that the program reads. Nothing may panic. The caller bounds work and memory.
 
 use standstill_cli::plan::plan;
 use standstill_picture::{plot, report};
@@ -11,7 +10,7 @@ use standstill_trace::{Loaded, Trace, csv, events_text, exact, foreign, jsonl, v
 use std::fs;
 use std::path::PathBuf;
 
-/// The formats, each with files to begin with: what stands in this repository, by its ending.
+/// The formats, each with the ending of its initial files in this repository.
 pub const FORMATS: [(&str, &str); 9] = [
     ("script", ".scan.json"),
     ("machine", ".machine.json"),
@@ -24,7 +23,7 @@ pub const FORMATS: [(&str, &str); 9] = [
     ("plan", ".plan.jsonl"),
 ];
 
-/// Scans of the longest run that is made of a script: how a run is bounded is not looked at here.
+/// Largest number of scans of a run that is made of a script. The limits of runs are not tested here.
 const SCANS: u64 = 2000;
 
 /// A script that includes the machine file.
@@ -75,7 +74,7 @@ fn script(text: &str, machine: &str) {
     }
 }
 
-/// What is done with traces.
+/// The uses of traces.
 fn loaded(loaded: Option<Loaded>) {
     let Some(Loaded { trace, .. }) = loaded else {
         return;
@@ -98,7 +97,7 @@ fn loaded(loaded: Option<Loaded>) {
     assert_eq!(again.scans(), trace.scans());
 }
 
-/// A trace to hold other files against.
+/// A trace for comparison with other files.
 fn known() -> Trace {
     let text =
         "scan,time_ns,X.State,X.Position,go\n0,0,Standstill,0.0,FALSE\n1,1000000,DiscreteMotion,0.5,TRUE\n";
@@ -127,7 +126,7 @@ fn recording(bytes: &[u8], text: &str) {
     {
         let _ = compare(&recorded, &trace, &map).map(|comparison| comparison.to_string());
     }
-    // What stands beside a table comes after a line of its own.
+    // The header beside a table is behind a line of its own.
     let (rows, meta) = text.split_once("\n#meta\n").unwrap_or((text, ""));
     loaded(csv::read(rows, (!meta.is_empty()).then_some(meta)).ok());
 }
