@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// The input a [`PlanError`] speaks of.
+/// The input that a [`PlanError`] refers to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Field {
@@ -103,7 +103,7 @@ pub enum PlanError {
     },
     /// No bound is given, so the move would take no time.
     Unbounded,
-    /// A value that does not fit the rest of the request, where another one would.
+    /// A value that does not fit the rest of the request, although another value would.
     OutOfRange {
         /// The input.
         field: Field,
@@ -112,7 +112,7 @@ pub enum PlanError {
         /// The nearest value that fits.
         nearest: f64,
     },
-    /// The goal cannot be reached on the way given.
+    /// The goal cannot be reached with the given path.
     Unreachable {
         /// The input that is out of reach.
         field: Field,

@@ -1,9 +1,9 @@
-//! The law of an electronic gear: the slave's place for a place of its master, or of its two masters.
+//! The law of an electronic gear: the slave's position for a position of its master, or of its two masters.
 //!
-//! This module has a ratio of integers, places with whole turns, and the law as a pure function of the
-//! master's place. So no error accumulates from scan to scan. A master that returns to a place returns
-//! the slave to the same bits, and after any number of turns the slave has the place of the exact ratio.
-//! The module does not bring a slave onto the law.
+//! This module has a ratio of integers, places with whole turns, and the law as a pure function of the master's
+//! place. So no error accumulates from scan to scan. A master that returns to a place returns the slave to the same
+//! bits. After any number of turns the slave has the place of the exact ratio. The module does not bring a slave
+//! onto the law.
 
 use crate::turns::{two_product, two_sum};
 
@@ -19,7 +19,7 @@ const LARGE: f64 = 8.452_712_498_170_644e270;
 /// Larger numbers are first multiplied by this factor, which changes no bit of them: 2^-120.
 const SMALLER: f64 = 7.523_163_845_262_64e-37;
 
-/// Ways times the ratio down to this size are found without a product that underflows.
+/// Distances times the ratio down to this size are found without a product that underflows.
 const SHORTEST: f64 = 1e-200;
 
 /// The remaining error of a few operations, relative to the summands: 2^-98.
@@ -33,19 +33,19 @@ pub struct Place {
     pub turns: i64,
     /// Position (u).
     pub position: f64,
-    /// The shift by which it is seen ahead of that (u); it is not part of the place. For a slave's place
-    /// in an [`Anchor`]: the distance added to the law.
+    /// The phase shift by which the axis is seen ahead of that (u); it is not part of the place. For a slave's
+    /// place in an [`Anchor`]: the distance added to the law.
     pub phase: f64,
 }
 
 /// A place of the master, and the slave's place when the master is there.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Anchor {
-    /// Of the master.
+    /// The place of the master.
     pub master: Place,
-    /// Of the second master, for a slave that has two.
+    /// The place of the second master, for a slave that has two.
     pub second: Place,
-    /// Of the slave.
+    /// The place of the slave.
     pub slave: Place,
 }
 
@@ -62,7 +62,7 @@ pub struct Gear {
     /// Integers: of 16 bits and a sign, and of 16 bits.
     numerator: f64,
     denominator: f64,
-    /// Length of a turn (u), of an axis that has turns.
+    /// Length of a turn (u), for axes that have turns.
     master_turn: Option<f64>,
     slave_turn: Option<f64>,
     /// Where both have turns.
@@ -73,11 +73,11 @@ pub struct Gear {
 pub(crate) type Double = (f64, f64);
 
 impl Gear {
-    /// The slave moves `numerator` / `denominator` times as far as the master. The turns (u) are those of modulo axes, above 0
-    /// and finite.
+    /// The slave moves `numerator` / `denominator` times the distance of the master. The turns (u) are those of
+    /// modulo axes, above 0 and finite.
     ///
-    /// `None` if the denominator is 0, or if both axes have turns and the ratio of their turns is not a
-    /// ratio of integers below 2^63.
+    /// `None` if the denominator is 0, or if both axes have turns and the ratio of their turns is not a ratio of
+    /// integers below 2^63.
     pub fn new(
         numerator: i16,
         denominator: u16,
@@ -175,7 +175,7 @@ impl Gear {
         self.geared_shortly(anchor.slave.position, two_sum(master, -anchor.master.position))
     }
 
-    /// The slave's place for two masters at their places: the ways of both, each times its ratio, added,
+    /// The slave's place for two masters at their places: the distances of both, each times its ratio, are added
     /// and rounded once to less than an ulp.
     ///
     /// Cost: about 200 operations.
@@ -189,7 +189,7 @@ impl Gear {
         self.placed(anchor, turns.wrapping_add(more), position)
     }
 
-    /// The way of a master: the whole turns of the slave that it makes, and the rest (u of the master).
+    /// The distance of a master: the whole turns of the slave that it makes, and the rest (u of the master).
     #[inline(always)]
     fn way(&self, from: &Place, to: &Place) -> (i64, Double) {
         let whole = to.turns.wrapping_sub(from.turns);
@@ -200,11 +200,11 @@ impl Gear {
         self.way_round(whole, within, two_sum(to.phase, -from.phase))
     }
 
-    /// The same if it has wrapped, or is shifted.
+    /// The same if the slave has wrapped or the master is shifted.
     #[inline(never)]
     fn way_round(&self, whole: i64, within: Double, phase: Double) -> (i64, Double) {
-        // First, master turns that make whole turns of the slave are taken off, so that no number grows
-        // with them. The rest has the sign of the total, so that it is never the larger part.
+        // First, master turns that make whole turns of the slave are removed, so that no number grows with them.
+        // The rest has the sign of the total, so that it is never the larger part.
         let (turns, whole) = match &self.turns {
             Some(ratio) => (
                 // It is above 0, but nothing here proves it.
@@ -486,7 +486,7 @@ mod tests {
         let up = anchor.1 * denominator + numerator * (master - anchor.0);
         let (sign, up) = (up.signum(), up.unsigned_abs());
         let down = denominator.unsigned_abs();
-        // 104 bits of the quotient and whether anything is left decide the rounding.
+        // 104 bits of the quotient and whether there is a remainder decide the rounding.
         let shift = up.leading_zeros().saturating_sub(8);
         let (quotient, left) = ((up << shift) / down, (up << shift) % down);
         let odd = quotient | u128::from(left != 0);
@@ -516,7 +516,8 @@ mod tests {
         }
     }
 
-    /// Numbers of many and of few bits, of any size, so that sums are exact, lie in the middle of two numbers, or take away most of
+    /// Numbers of many and of few bits, of any size, so that sums are exact, are in the middle of two numbers, or
+    /// nearly cancel.
     /// each other.
     #[test]
     fn in_a_few_operations_the_law_is_the_same_to_the_bit() {
@@ -581,7 +582,7 @@ mod tests {
         assert!(told > rounds / 2, "{told} of {rounds}");
     }
 
-    /// A slave that returns to 0: the rest is far smaller than the numbers it is made of.
+    /// A slave that returns to 0: the result is far smaller than the numbers it is made of.
     ///
     /// Covers: G25
     #[test]
@@ -637,7 +638,7 @@ mod tests {
     /// Covers: G31
     #[test]
     fn ten_million_scans_at_three_sevenths_are_exact() {
-        // 1.8 in a scan, 200 scans a turn, as tenths: all in integers beside.
+        // 1.8 in a scan, 200 scans a turn; the reference uses integers, in tenths.
         let gear = Gear::new(3, 7, Some(360.0), Some(360.0)).unwrap();
         let anchor = Anchor::default();
         for scan in (0..10_000_000_u64).step_by(997) {

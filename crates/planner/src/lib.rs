@@ -1,9 +1,9 @@
 //! Motion planning on a sample grid.
 //!
-//! From limits, a start and a goal it makes a plan, and from a plan the set-point of any scan. It is the
-//! only home of motion maths. It knows no axis states, no function blocks and no PLCopen. It has no
-//! clock, no heap, no panic and no libm transcendental: only `+ - * /`, square root and integers, so that
-//! every processor gives the same bits.
+//! From limits, a start and a goal it makes a plan, and from a plan the set-point of any scan. All motion maths is
+//! here. The crate knows no axis states, no function blocks and no PLCopen. It has no clock, no heap, no panic and
+//! no libm transcendental. It uses only `+ - * /`, square root and integers, so that every processor gives the same
+//! bits.
 //!
 //! Lengths are in the user's unit `u`, times in seconds. The derivations with numbered equations are in
 //! `docs/planner.md` (rest to rest), `docs/planner-ramps.md` (to a velocity) and `docs/planner-online.md`

@@ -10,9 +10,9 @@ const SOONEST: f64 = 1.0 / 1024.0;
 /// The largest number of scans in which it reaches its bound: no plan has more.
 const LATEST: f64 = 2_147_483_648.0;
 
-/// The acceleration rises and falls with at most the jerk bound while the velocity goes from one bound to
-/// the other. It then stays below this factor times the square root of jerk bound times velocity bound.
-/// The same holds for the jerk, with the bounds of snap and acceleration.
+/// While the velocity goes from one bound to the other, the acceleration rises and falls with at most the jerk
+/// bound. So it stays below this factor times the square root of jerk bound times velocity bound. The same holds
+/// for the jerk, with the bounds of snap and acceleration.
 const REACHED: f64 = 4.0;
 
 /// The largest ratio of the velocity bound to the speed a motion may reach.
@@ -91,7 +91,7 @@ impl DirectedLimits {
         velocity.abs() - self.velocity(velocity)
     }
 
-    /// As [`Limits::or_larger`].
+    /// The same as [`Limits::or_larger`].
     pub fn or_larger(&self, before: &Self) -> Self {
         Self {
             positive: larger(self.positive, before.positive),
@@ -100,7 +100,7 @@ impl DirectedLimits {
         }
     }
 
-    /// As [`Limits::acting_for`].
+    /// The same as [`Limits::acting_for`].
     pub(crate) fn acting_for(&self, start: &Setpoint, end: f64, distance: f64, cycle: f64) -> Self {
         let given = self.either();
         let limits = given.acting_for(start, end, distance, cycle);
@@ -118,7 +118,7 @@ impl DirectedLimits {
         }
     }
 
-    /// As [`Limits::check`].
+    /// The same as [`Limits::check`].
     ///
     /// # Errors
     /// [`PlanError::InvalidInput`] names the first bound that is NaN, zero or negative.
@@ -252,7 +252,7 @@ impl Limits {
     /// others, the bounds used are not lower than theirs.
     pub fn acting(&self, cycle: f64) -> Self {
         let (soonest, latest) = (SOONEST * cycle, LATEST * cycle);
-        // In a plan of the most scans no derivative gets higher than this.
+        // In the longest plan no derivative can exceed this.
         let jerk = self.jerk.min(self.snap * latest);
         let highest = jerk * latest;
         let higher = self.acceleration.max(self.deceleration).min(highest);
@@ -299,12 +299,12 @@ impl Limits {
             return acting;
         }
         let Self { jerk, snap, .. } = acting;
-        // Until acceleration and jerk are zero.
+        // The time until acceleration and jerk are zero.
         let rising = start.jerk.abs() / snap;
         let steepest = start.acceleration.abs() + 0.5 * start.jerk.abs() * rising;
         let settled = rising + steepest / jerk + 2.0 * sqrt(steepest / snap);
         let speed = fastest + steepest * settled;
-        // Until it could be at rest, and from there to the position.
+        // The time until it could be at rest, and from there to the position.
         let stopped = speed / lower + 2.0 * sqrt(speed / jerk) + 2.0 * sqrt(lower / snap);
         let way = distance.abs() + speed * (settled + stopped);
         let reached = speed + (2.0 * sqrt(lower) * sqrt(way)).min(way / (SOONEST * cycle));

@@ -60,7 +60,7 @@ pub fn rough_cbrt(x: f64) -> f64 {
 
 /// `x` to the power of `exponent` within 1 %, for a normal `x` of at most 1 and an `exponent` of 0 to 1.
 pub fn rough_power(x: f64, exponent: f64) -> f64 {
-    /// How far a logarithm is above the straight line between two powers of two, as a parabola.
+    /// Largest distance of a logarithm above the straight line between two powers of two, as a parabola.
     const ABOVE: f64 = 0.335;
     const BIAS: f64 = 1023.0;
     let one = 1.0_f64.to_bits();

@@ -1,4 +1,4 @@
-//! The interface between an axis and the maths: the questions that an axis may ask any planner.
+//! The interface between an axis and the maths: the questions of an axis to a planner.
 
 use crate::grid::Family;
 use crate::{
@@ -63,10 +63,10 @@ pub trait Planner {
         before: &Limits,
     ) -> Result<Self::Plan, PlanError>;
 
-    /// A move that passes `target` (u) as `passage` says, with the wanted speed or the nearest one that
-    /// needs no overshoot and no reversal; `None` if there is none. The wanted speed may be above that of
-    /// `limits`, which then applies until just before the target. If it is to turn there, [`Plan::turn`] tells when it does.
-    /// `before` as in [`Planner::move_to`].
+    /// A move that passes `target` (u) as `passage` says, with the wanted speed or the nearest one that needs no
+    /// overshoot and no reversal; `None` if there is none. The wanted speed may be above that of `limits`, which
+    /// then applies until just before the target. If the move turns there, [`Plan::turn`] gives the scan. `before`
+    /// as in [`Planner::move_to`].
     ///
     /// # Errors
     /// [`PlanError`] if an input is not usable or the move too long.
@@ -113,9 +113,9 @@ pub trait Planner {
         range: Option<(f64, f64)>,
     ) -> Result<Self::Plan, ProfileFault>;
 
-    /// The largest speed (u/s), at most `wanted`, at which a move over `distance` (u, not negative) can
-    /// begin up to one scan late and still pass its end with no more than the speed `exit`. With `brake` it begins slowing down with
-    /// that acceleration (u/s^2); 0 if it can't.
+    /// The largest speed (u/s), at most `wanted`, at which a move over `distance` (u, not negative) can begin up to
+    /// one scan late and still pass its end with no more than the speed `exit`. With `brake` it begins while
+    /// slowing down with that acceleration (u/s^2); 0 if that is not possible.
     fn entry_speed(&self, wanted: f64, brake: f64, distance: f64, exit: f64, limits: &Limits) -> f64;
 
     /// Whether two plans, each at its number of scans after its start, together keep `limits` from now on
@@ -136,18 +136,19 @@ pub trait Planner {
     /// given scan if it never does again.
     fn next_switch(&self, rest: (&Self::Plan, u64)) -> u64;
 
-    /// The ways (u) of the rest of a plan up to its goal: upwards, and downwards.
+    /// The distances (u) that the rest of a plan covers up to its goal: upwards, and downwards.
     fn ways(&self, rest: (&Self::Plan, u64)) -> (f64, f64);
 
-    /// How far (u) the rest of a plan leads from where it is now: to its lowest place and to its highest one.
+    /// The range (u) of the rest of a plan, relative to its present position: to its lowest and to its highest
+    /// position.
     fn reach(&self, rest: (&Self::Plan, u64)) -> (f64, f64) {
         let (up, down) = self.ways(rest);
         (-down, up)
     }
 
-    /// Whether the rest of the masters' plans and the slave's motion beside them together keep `limits`
-    /// from now on, and no derivative jumps whose own derivative is bounded. `now` is the sum as
-    /// published. A planner that can't decide returns FALSE; its slaves are then checked scan by scan.
+    /// Whether the rest of the masters' plans and the slave's additional motion together keep `limits` from now on,
+    /// and no derivative jumps whose own derivative is bounded. `now` is the sum as published. A planner that can't
+    /// decide returns FALSE; its slaves are then checked scan by scan.
     fn fits_behind(
         &self,
         _leads: &Leads<'_, Self::Plan>,
@@ -184,7 +185,7 @@ pub trait Planner {
         None
     }
 
-    /// The same for the next scan alone, including all that begins and ends in it.
+    /// The same for the next scan alone, including everything that begins and ends in it.
     fn peaks_in_scan(&self, _rest: (&Self::Plan, u64)) -> Option<Setpoint> {
         None
     }
@@ -214,15 +215,15 @@ pub enum MoveProfile {
     Sequential,
     /// Switches anywhere: [`OnlinePlan`].
     Online,
-    /// `Overlapped` or `Online`, whichever has fewer scans; `Overlapped` if they are equal.
+    /// `Overlapped` or `Online`: the one with fewer scans, or `Overlapped` if they are equal.
     Fastest,
     /// [`SCurve`](crate::papers::SCurve): moves from rest with a bound on jerk and none on snap; the
     /// lower one of acceleration and deceleration applies to both.
     SCurve,
     /// [`Trapezoid`](crate::papers::Trapezoid): moves from rest with no bound on jerk and none on snap.
     Trapezoid,
-    /// [`ShortPath`](crate::papers::ShortPath): moves with a bound on jerk and none on snap, from rest or
-    /// from a velocity towards the target without acceleration, if the way is long enough to stop.
+    /// [`ShortPath`](crate::papers::ShortPath): moves with a bound on jerk and none on snap, from rest or from a
+    /// velocity towards the target without acceleration, if the distance is long enough to stop.
     ShortPath,
 }
 
@@ -265,8 +266,7 @@ pub trait Plan: Copy + core::fmt::Debug {
     /// velocity kept for ever.
     fn at(&self, scan: u64) -> Setpoint;
 
-    /// As [`Plan::at`], for the motion in progress, in rising scans. A plan may remember its present
-    /// phase.
+    /// The same as [`Plan::at`], for the motion in progress, in rising scans. A plan may store its present phase.
     #[inline]
     fn next(&mut self, scan: u64) -> Setpoint {
         self.at(scan)
@@ -285,20 +285,20 @@ pub trait Plan: Copy + core::fmt::Debug {
         None
     }
 
-    /// The scan in which the plan turns at the target of [`Planner::blend`]: behind that it comes to rest somewhere.
+    /// The scan in which the plan turns at the target of [`Planner::blend`]; behind it the plan comes to rest
+    /// somewhere.
     fn turn(&self) -> Option<u32> {
         None
     }
 
-    /// The same motion in coordinates moved by `by` (u): every position of the plan is that much larger.
+    /// Shifts the motion to other coordinates: every position of the plan becomes larger by `by` (u).
     fn shift(&mut self, by: f64);
 
-    /// If `scan` is past the goal of an endless motion: makes that scan the start, and takes whole
-    /// `length`s (u) off its position so that it starts within one. Returns their number. `None`, and no
-    /// change, for any other scan or plan.
+    /// If `scan` is past the goal of an endless motion: makes that scan the start, and takes whole `length`s (u)
+    /// off its position so that it starts within one. Returns their number. `None`, and no change, for any other
+    /// scan or plan.
     ///
-    /// A motion that is brought back many times has the error of a rounding or two, and not one for each
-    /// time.
+    /// A motion that is brought back many times has the error of one or two roundings, and not one for each time.
     fn bring_back(&mut self, _scan: u64, _length: f64) -> Option<i64> {
         None
     }
@@ -393,7 +393,7 @@ impl Standard {
 }
 
 impl StandardPlan {
-    /// From now on it is `cruise`, its own motion at its end, brought back.
+    /// Replaces the plan by `cruise`, its own motion at its end, brought back.
     fn bring_back_cruise(&mut self, mut cruise: RampPlan, scan: u64, length: f64) -> Option<i64> {
         let turns = cruise.bring_back(scan, length);
         *self = Self::Ramp(cruise);
@@ -628,7 +628,7 @@ impl Plan for StandardPlan {
         }
     }
 
-    // What most scans of a motion are in is inlined too.
+    // The case of most scans of a motion is inlined, too.
     #[inline(always)]
     fn next(&mut self, scan: u64) -> Setpoint {
         match self {

@@ -1,31 +1,31 @@
-//! Filters that let a load come to rest without swinging (docs/planner.md, section 15).
+//! Filters that let a load come to rest without residual vibration (docs/planner.md, section 15).
 //!
-//! A shaper publishes a mean of set-points of the past: `sum w_i x(t - d_i)` with weights above 0 that sum to one, at delays of
-//! whole scans. Such a mean keeps every bound that the motion itself keeps, of its derivatives and of its positions, and it has
-//! come to the target when the last part of it has. The weights are chosen so that what each part of the mean lets swing, the
-//! others take away.
+//! A shaper publishes a mean of past set-points: `sum w_i x(t - d_i)` with weights above 0 that sum to one, at
+//! delays of whole scans. Such a mean keeps every bound that the motion itself keeps, of its derivatives and of its
+//! positions. It is at the target when its last part is. The weights are chosen such that the vibrations excited by
+//! the parts of the mean cancel.
 
 use crate::math::{floor, sqrt};
 use crate::{Field, PlanError, Setpoint};
 use core::f64::consts::{FRAC_PI_2, TAU};
 
-/// Most modes that one motion is shaped for.
+/// Largest number of modes for which one motion is shaped.
 pub const MODES: usize = 2;
 
 /// Longest period of a mode (scans); shortest is [`SHORTEST_PERIOD`].
 pub const LONGEST_PERIOD: f64 = 4096.0;
 
-/// Shortest period of a mode (scans): a faster one is hardly seen by set-points.
+/// Shortest period of a mode (scans): set-points hardly show a faster one.
 pub const SHORTEST_PERIOD: f64 = 4.0;
 
-/// Highest damping ratio: what is damped more does not swing.
+/// Highest damping ratio: with more damping there is no vibration.
 pub const DAMPING_MAX: f64 = 0.9;
 
-/// The swing that `ei` leaves of a mode whose frequency is known exactly, as a part of the unshaped one. Usual is 0.05, for
-/// frequencies known to 20 %; this one is for those known to 15 %.
+/// The residual vibration that `ei` leaves of a mode whose frequency is known exactly, as a part of the unshaped
+/// one. The usual value is 0.05, for frequencies known to 20 %; this one is for those known to 15 %.
 const TOLERATED: f64 = 0.03;
 
-/// A delay this near to a whole number of scans is one (scans): 1 / (12.5 Hz * 0.001 s) means 80.
+/// A delay this near to a whole number of scans counts as one (scans): 1 / (12.5 Hz * 0.001 s) means 80.
 const WHOLE: f64 = 1e-6;
 
 /// How a shaper spreads a motion over the period of a mode.
@@ -35,7 +35,7 @@ pub enum ShaperKind {
     Period,
     /// Two parts, half a period apart: the shortest; for a frequency that is known well.
     Zv,
-    /// Three parts over a period, which a small error of the frequency leaves without a swing, too.
+    /// Three parts over a period, which leave almost no vibration for a small error of the frequency, too.
     Zvd,
     /// Three parts over a period, which leave 3 % at the frequency itself, and no more than that within 15 % of it.
     #[default]
@@ -57,7 +57,7 @@ impl ShaperKind {
     }
 }
 
-/// A way in which a load swings, and how that is avoided.
+/// A vibration mode of a load, and the shaper against it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VibrationMode {
     /// Frequency without damping (Hz).
@@ -79,7 +79,7 @@ impl VibrationMode {
     }
 }
 
-/// A part of the mean: its weight, and how many scans it is late.
+/// A part of the mean: its weight, and its delay.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tap {
     /// Delay (scans), not 0.
@@ -100,8 +100,8 @@ pub struct Shaper {
 enum Form {
     /// Parts at a few delays; those not needed have weight 0.
     Parts([Tap; 4]),
-    /// A part at each delay: that after the first weighs `second`, every other `ratio` times the one before, and the last one
-    /// `last` times what it would.
+    /// A part at each delay. The one after the first weighs `second`, each further one `ratio` times the one
+    /// before, and the last one in addition `last` times that.
     Every { second: f64, ratio: f64, last: f64 },
 }
 
@@ -111,8 +111,8 @@ impl Shaper {
     /// Cost: for `period` a product for each scan of it, at most [`LONGEST_PERIOD`].
     ///
     /// # Errors
-    /// [`PlanError::InvalidInput`] for a value that is no number or not positive, [`PlanError::OutOfRange`] for a period that
-    /// is too short or too long, or too much damping; each names the nearest that fits.
+    /// [`PlanError::InvalidInput`] for a value that is no number or not positive, [`PlanError::OutOfRange`] for a
+    /// period that is too short or too long, or too much damping; each names the nearest permitted value.
     pub fn new(mode: &VibrationMode, cycle: f64) -> Result<Self, PlanError> {
         let wave = Wave::new(mode, cycle)?;
         Ok(match mode.shaper {
@@ -126,13 +126,13 @@ impl Shaper {
         })
     }
 
-    /// Its longest delay (scans), at least 1: so much later than the motion itself ends the shaped one.
+    /// Its longest delay (scans), at least 1: the shaped motion ends this much later than the motion itself.
     pub const fn delay(&self) -> u32 {
         self.delay
     }
 
-    /// The parts that are late, in order of their delays, at most one for each scan of [`Shaper::delay`]. What their weights
-    /// leave to one is the weight of the part that is not.
+    /// The delayed parts, in order of their delays, at most one for each scan of [`Shaper::delay`]. The rest of the
+    /// weights up to one is that of the part without delay.
     pub fn taps(&self) -> impl Iterator<Item = Tap> + '_ {
         let (parts, second, ratio, last) = match &self.form {
             Form::Parts(parts) => (parts.as_slice(), 0.0, 0.0, 0.0),
@@ -149,10 +149,12 @@ impl Shaper {
         parts.chain(each)
     }
 
-    /// What the mean of `now` and of the `past`, what the motion was so many scans ago, is more than `now`.
+    /// The difference between the mean and `now`. The mean is that of `now` and of the `past`, the motion a number
+    /// of scans ago.
     ///
-    /// Where the motion rests, or has a constant velocity, for as long as [`Shaper::delay`], that of its velocity and what is
-    /// above it is exactly 0, and that of a position at rest is. Cost: one set-point for each of [`Shaper::taps`].
+    /// If the motion has had a constant velocity for as long as [`Shaper::delay`], the difference of velocity and
+    /// higher derivatives is exactly 0. If it has been at rest, that of the position is, too. Cost: one set-point
+    /// for each of [`Shaper::taps`].
     pub fn lag(&self, now: &Setpoint, past: impl Fn(u32) -> Setpoint) -> Setpoint {
         let mut late = Setpoint::default();
         for tap in self.taps() {
@@ -169,9 +171,9 @@ impl Shaper {
 
 /// A mode in scans.
 struct Wave {
-    /// Its period, damped.
+    /// Its period, with damping.
     period: f64,
-    /// By this, in a scan, its amplitude falls: `exp(-sigma)`.
+    /// The decay of its amplitude in a scan: `exp(-sigma)`.
     sigma: f64,
 }
 
@@ -213,11 +215,11 @@ impl Wave {
         })
     }
 
-    /// Parts of these weights, each given with its delay (periods); the first of all is not late.
+    /// Parts of these weights, each given with its delay (periods); the first of all has no delay.
     ///
-    /// What is late also weighs less, as a damped swing does, and what is due between two scans is shared by them, so that the
-    /// mode sees it where and as large as it is due: with `a` before, `b` after and a share `f` of a scan between,
-    /// `a + b exp(-p) = exp(-p f)` for the pole `p` of the mode.
+    /// A later part also weighs less, as a damped vibration does. A part that is due between two scans is divided
+    /// between them, so that the mode sees it at its time and with its size: with `a` before, `b` after and a share
+    /// `f` of a scan between, `a + b exp(-p) = exp(-p f)` for the pole `p` of the mode.
     fn parts(&self, first: f64, later: &[(f64, f64)]) -> Shaper {
         let angle = TAU / self.period;
         let mut taps = [Tap::default(); 4];
@@ -247,7 +249,7 @@ impl Wave {
         }
     }
 
-    /// A part for each scan of a period, of the last one the share that belongs to it.
+    /// A part for each scan of a period, and for the last one the share that belongs to it.
     fn every(&self) -> Shaper {
         let (whole, share) = self.place(self.period);
         let ratio = decay(self.sigma);
@@ -268,7 +270,7 @@ impl Wave {
         }
     }
 
-    /// A delay as whole scans and the share of one that is left.
+    /// A delay as whole scans and the remaining share of one.
     fn place(&self, delay: f64) -> (u32, f64) {
         let nearest = floor(delay + 0.5);
         if (delay - nearest).abs() <= WHOLE {
@@ -302,7 +304,7 @@ impl Shapers {
     /// The shapers for `modes` with sample time `cycle` (s); those that are `None` change nothing.
     ///
     /// # Errors
-    /// The place of the mode and what [`Shaper::new`] refuses.
+    /// The index of the mode, and the error of [`Shaper::new`].
     pub fn new(modes: &[Option<VibrationMode>; MODES], cycle: f64) -> Result<Self, (usize, PlanError)> {
         let mut shapers = Self::default();
         for (place, (shaper, mode)) in shapers.0.iter_mut().zip(modes).enumerate() {
@@ -314,7 +316,7 @@ impl Shapers {
         Ok(shapers)
     }
 
-    /// In the order in which they shape.
+    /// The shapers in the order in which they apply.
     pub fn iter(&self) -> impl Iterator<Item = &Shaper> {
         self.0.iter().flatten()
     }
@@ -324,7 +326,7 @@ impl Shapers {
         self.iter().map(Shaper::delay).sum()
     }
 
-    /// Scans until a motion of `scans` scans is at its target when shaped; 0 if there is nothing to do.
+    /// Scans until a shaped motion of `scans` scans is at its target; 0 if there is nothing to do.
     pub fn scans(&self, scans: u32) -> u32 {
         match scans {
             0 => 0,
@@ -332,8 +334,8 @@ impl Shapers {
         }
     }
 
-    /// Set-point `scan` of a motion from rest to rest, shaped: `plan` tells its set-points, from 0, the start, on. From
-    /// [`Shapers::scans`] on it is exactly the target.
+    /// Set-point `scan` of a shaped motion from rest to rest. `plan` returns the set-points of the motion, from 0,
+    /// the start, on. From [`Shapers::scans`] on it is exactly the target.
     ///
     /// Cost: the product of the numbers of [`Shaper::taps`], each one set-point of the plan.
     pub fn at(&self, scan: u64, plan: impl Fn(u64) -> Setpoint) -> Setpoint {
@@ -354,7 +356,7 @@ impl Shapers {
 mod tests {
     use super::*;
 
-    // The library is what they are held against.
+    // The library is the reference.
     #[allow(clippy::disallowed_methods)]
     #[test]
     fn decay_and_sine_are_those_of_the_library() {

@@ -1,17 +1,17 @@
 //! Several motions at once: whether their sum keeps the limits.
 //!
-//! This module adds two plans piece by piece, and finds the room that one leaves. It does not choose the
-//! second motion. Between two switches of either plan the sum is a polynomial of constant snap, so its
-//! extremes are those of [`extremes`](crate::ramp::path::Path::extremes) (R20).
+//! This module adds two plans piece by piece, and finds the room that one leaves. It does not choose the second
+//! motion. Between two switches of either plan the sum is a polynomial of constant snap, so its extremes are those
+//! of [`extremes`](crate::ramp::path::Path::extremes) (R20).
 
 use crate::ramp::excess;
 use crate::ramp::path::{Path, moved};
 use crate::{Limits, Order, Plan, Segment, Setpoint, StandardPlan};
 
-/// Most switches of two plans: a path, a wait and a grid plan each.
+/// Largest number of switches of two plans: a path, a wait and a grid plan each.
 const MAX_SWITCHES: usize = 96;
 
-/// Most switches of three plans.
+/// Largest number of switches of three plans.
 const MAX_SWITCHES_BEHIND: usize = 144;
 
 /// Shorter pieces of the sum, relative to a cycle, are rounding and not motion. They occur if two
@@ -80,7 +80,7 @@ impl<I: Iterator<Item = Segment>> Walk<I> {
         walk.turn();
         let mut skip = elapsed as f64 * cycle;
         for _ in 0..MAX_SWITCHES {
-            // A switch that is over except for rounding is over.
+            // A switch that is over except for rounding counts as over.
             if skip < walk.left - GRAIN * cycle {
                 break;
             }
@@ -139,13 +139,13 @@ fn stands((plan, elapsed): Part<'_>) -> bool {
     elapsed >= u64::from(plan.scans()) && plan.at(elapsed).velocity == 0.0
 }
 
-/// Whether the sum of two plans keeps `limits` from now until both have ended, and does not turn outside
-/// `range` (u), which applies to the sum of their positions.
+/// Whether the sum of two plans keeps `limits` from now until both have ended, and does not turn outside `range`
+/// (u), which applies to the sum of their positions.
 ///
-/// A sum may start or end outside `range`: the caller has decided on both ends. One that starts outside
-/// and comes in must stay in. Limits are kept to 1e-9 of each, positions to 1e-9 of the range's numbers.
-/// Bounded by [`MAX_SWITCHES`] pieces with at most two roots each. A curve through points fits only a
-/// standing plan, and is bounded by 64 pieces for each of its stretches.
+/// A sum may start or end outside `range`: the caller has decided on both ends. One that starts outside and comes
+/// in must stay in. Limits are kept to 1e-9 of each, positions to 1e-9 of the range's numbers. Bounded by
+/// [`MAX_SWITCHES`] pieces with at most two roots each. A curve through points fits only a plan at rest, and is
+/// bounded by 64 pieces for each of its stretches.
 pub(crate) fn fits(
     first: Part<'_>,
     second: Part<'_>,
@@ -180,8 +180,8 @@ pub(crate) fn fits(
     false
 }
 
-/// The sum of at most three plans, followed piece by piece: those of the masters, and the slave's motion
-/// beside them.
+/// The sum of at most three plans, followed piece by piece: those of the masters, and the slave's additional
+/// motion.
 struct Behind<I> {
     walks: [Option<Walk<I>>; 3],
 }
@@ -235,8 +235,8 @@ impl<'a> Lead<'a, StandardPlan> {
     }
 }
 
-/// Whether the rest of the masters' plans and the slave's motion beside them together keep `limits` from
-/// now on. A curve through points is not known, so it does not fit.
+/// Whether the rest of the masters' plans and the slave's additional motion together keep `limits` from now on. A
+/// curve through points is not known, so it does not fit.
 ///
 /// A jump of a derivative does not fit if `limits` bound the next one; `now` is the sum published for
 /// this instant.
@@ -272,9 +272,8 @@ pub(crate) fn fits_behind(
     false
 }
 
-/// The lowest and the highest velocity of the rest of the masters' plans together with the slave's motion
-/// beside them. `None` on a curve through points. Bounded by [`MAX_SWITCHES_BEHIND`] pieces with at most
-/// two roots each.
+/// The lowest and the highest velocity of the rest of the masters' plans together with the slave's additional
+/// motion. `None` on a curve through points. Bounded by [`MAX_SWITCHES_BEHIND`] pieces with at most two roots each.
 pub(crate) fn velocities_behind(
     leads: &Leads<'_, StandardPlan>,
     beside: Part<'_>,
@@ -349,7 +348,7 @@ struct Room {
     /// The range, with the end of the motion inside, and rounding (u).
     min: f64,
     max: f64,
-    /// Where it starts (u), and whether it is or has come inside since.
+    /// Its start (u), and whether it is inside, or has come inside since.
     from: f64,
     is_in: bool,
     /// Velocity at the end of the piece before (u/s): a sum may turn just at a switch.
@@ -377,7 +376,7 @@ impl Room {
         }
     }
 
-    /// The motion passes `position`; whether it may turn there.
+    /// The motion passes `position`; returns whether it may turn there.
     fn takes(&mut self, position: f64) -> bool {
         let is_inside = |min: f64, max: f64| min <= position && position <= max;
         if is_inside(self.min, self.max) {
@@ -498,7 +497,7 @@ pub(crate) fn next_switch((plan, elapsed): Part<'_>, cycle: f64) -> u64 {
     elapsed.saturating_add(u64::from(scans.max(1)))
 }
 
-/// The ways (u) of the rest of a plan upwards and downwards, up to its goal: the sums over the stretches
+/// The distances (u) of the rest of a plan upwards and downwards, up to its goal: the sums over the stretches
 /// between its turns. Bounded by [`MAX_SWITCHES`] pieces with at most two roots each.
 pub(crate) fn ways(part: Part<'_>, cycle: f64) -> (f64, f64) {
     if let StandardPlan::Profile(profile) = part.0 {
@@ -515,8 +514,8 @@ pub(crate) fn ways(part: Part<'_>, cycle: f64) -> (f64, f64) {
     (up, down)
 }
 
-/// The lowest and the highest place (u) on the rest of a plan up to its goal, from where it is now; on a
-/// curve through points those are not known, and the sums of its ways are beyond them. Bounded as [`ways`].
+/// The range (u) of the rest of a plan up to its goal, relative to its present position. On a curve through points
+/// it is not known; the sums of its distances are then used, which are not smaller. Bounded as [`ways`].
 pub(crate) fn reach(part: Part<'_>, cycle: f64) -> (f64, f64) {
     if let StandardPlan::Profile(profile) = part.0 {
         let (up, down) = profile.ways(part.1);
@@ -531,7 +530,7 @@ pub(crate) fn reach(part: Part<'_>, cycle: f64) -> (f64, f64) {
     (lowest, highest)
 }
 
-/// The ways (u) of the rest of a plan one after the other, with their signs: none of them turns.
+/// The distances (u) of the rest of a plan one after the other, with their signs: none of them turns.
 fn each_way(part: Part<'_>, cycle: f64, mut go: impl FnMut(f64)) {
     let mut walk = Walk::new(part.0.segments(), part, cycle);
     for _ in 0..MAX_SWITCHES {

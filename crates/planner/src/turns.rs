@@ -36,7 +36,7 @@ pub fn two_product(a: f64, b: f64) -> (f64, f64) {
 #[inline]
 pub fn split(position: f64, length: f64) -> (i64, f64) {
     if position >= 0.0 && position < length {
-        // Adding 0 takes the sign from -0.
+        // Adding 0 removes the sign of -0.
         return (0, position + 0.0);
     }
     split_far(position, length)

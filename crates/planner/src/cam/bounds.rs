@@ -6,10 +6,10 @@ use crate::profile::check::{cut, halved, hull};
 use crate::profile::curve::Slopes;
 use crate::{Limits, Setpoint};
 
-/// Halvings of a piece to find its bounds.
+/// Number of halvings of a piece in the search for its bounds.
 const DEPTH: usize = 6;
 
-/// Most parts of a piece that are examined for one of its derivatives.
+/// Largest number of parts of a piece that are examined for one of its derivatives.
 const PARTS: u32 = 2 << DEPTH;
 
 /// A bound may exceed the largest value by this factor.
@@ -18,10 +18,10 @@ const CLOSE: f64 = 1.01;
 /// Rounding of a bound, relative to it.
 const ROUNDING: f64 = 1e-9;
 
-/// Most pieces of a cam whose parts are examined one by one.
+/// Largest number of pieces of a cam whose parts are examined one by one.
 const PASSED: usize = 4;
 
-/// Most halvings of the limits of a shadow.
+/// Largest number of halvings of the limits of a shadow.
 const HALVINGS: u32 = 40;
 
 /// Bounds of the first four derivatives of a cam, each at most one per cent above its largest magnitude.
@@ -37,7 +37,7 @@ pub struct CamBounds {
     pub fourth: f64,
 }
 
-/// Parts that are left to examine, and how often each was halved.
+/// Parts that are left to examine, and the number of halvings of each.
 struct Parts<const N: usize> {
     waiting: [([f64; N], usize); DEPTH + 2],
     count: usize,
@@ -103,7 +103,7 @@ impl CamPiece {
         }
     }
 
-    /// The lowest and the highest place of the slave in it, by control points of its eighths.
+    /// The lowest and the highest position of the slave in it, by control points of its eighths.
     pub(super) fn range(&self) -> (f64, f64) {
         let (mut low, mut high) = (0.0_f64, 0.0_f64);
         let both = |points: [f64; 8]| {
@@ -202,7 +202,7 @@ impl Cam<'_> {
 }
 
 impl CamBounds {
-    /// The larger of both, each.
+    /// The larger one of each pair.
     #[must_use]
     pub fn or_larger(&self, other: &Self) -> Self {
         Self {
@@ -226,8 +226,8 @@ impl CamBounds {
         }
     }
 
-    /// The highest constant velocity of a master (u/s) with which the slave keeps `limits`; infinite for
-    /// a cam that does not move the slave.
+    /// The highest constant velocity of a master (u/s) at which the slave keeps `limits`; infinite for a cam that
+    /// does not move the slave.
     pub fn highest_velocity(&self, limits: &Limits) -> f64 {
         // Infinite if the derivative is 0, as intended. 0 by 0 does not occur, because no limit is 0.
         let [by_velocity, by_acceleration, by_jerk, by_snap] = [
@@ -239,7 +239,7 @@ impl CamBounds {
         by_velocity.min(by_acceleration).min(by_jerk).min(by_snap)
     }
 
-    /// Those of the first three derivatives.
+    /// The bounds of the first three derivatives.
     pub(super) const fn of_slopes(&self) -> Slopes {
         [self.first, self.second, self.third]
     }
@@ -276,12 +276,12 @@ impl CamBounds {
         }
     }
 
-    /// Limits of a master of the slave's own, behind which the slave keeps `limits` anywhere on the cam.
-    /// The velocity is `wanted` (u/s), or 0.98 of the highest velocity if that is less. The other three
-    /// are the rest of the limits while the velocity is at most that at `present` (u/s).
+    /// Limits of the slave's own virtual master, behind which the slave keeps `limits` anywhere on the cam. The
+    /// velocity is `wanted` (u/s), or 0.98 of the highest velocity if that is less. The other three are the rest of
+    /// the limits while the velocity is at most that at `present` (u/s).
     ///
-    /// `None` if nothing is left: at rest with nothing wanted, or already at the highest velocity. Cost:
-    /// at most 120 halvings.
+    /// `None` if nothing is left: at rest with nothing wanted, or already at the highest velocity. Cost: at most
+    /// 120 halvings.
     pub fn shadow(&self, limits: &Limits, wanted: f64, present: f64) -> Option<Limits> {
         let most = self.highest_velocity(limits);
         let velocity = (0.98 * most).min(wanted);
@@ -319,7 +319,8 @@ impl CamBounds {
                     + 6.0 * self.third * v * v * a
                     + self.second * (3.0 * a * a + 4.0 * v * jerk)
             };
-            // What the acceleration takes alone does not shrink with the jerk: half of what the velocity leaves is for that and the snap.
+            // The part for the acceleration alone does not shrink with the jerk. So half of what the velocity
+            // leaves is for that part and the snap.
             let half = 0.5 * (limits.snap + used(0.0, 0.0));
             for _ in 0..HALVINGS {
                 if used(acceleration, 0.0) <= half {

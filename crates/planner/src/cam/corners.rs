@@ -8,7 +8,7 @@ use crate::profile::curve::Slopes;
 /// A difference up to this part of the largest value of a derivative in the cam is no jump.
 const SAME: f64 = 1e-9;
 
-/// A place counts as at a row within this distance, relative to the numbers of both.
+/// A position counts as at a row within this distance, relative to the numbers of both.
 const THERE: f64 = 1e-12;
 
 /// The smoothness of a cam.
@@ -41,7 +41,7 @@ struct End {
 }
 
 impl CamPiece {
-    /// Where it begins, and where it ends.
+    /// The begin and the end of the piece.
     fn ends(&self) -> (End, End) {
         let (first, second, third, _) = self.curve().derivatives();
         let ([f, .., to_f], [s, .., to_s], [t, .., to_t]) = (first, second, third);
@@ -81,11 +81,11 @@ impl Cam<'_> {
             })
     }
 
-    /// The next row on the master's way from `x` (u, not reduced to one period), within `reach` (u), at
-    /// which one of the first `order` derivatives jumps. Returns its place, and the derivative as
-    /// [`Cam::jumps_at`] does. A row at `x`, except for rounding, is behind it.
+    /// The next row on the master's path from `x` (u, not reduced to one period), within `reach` (u), at which one
+    /// of the first `order` derivatives jumps. Returns its position, and the derivative as [`Cam::jumps_at`] does.
+    /// A row at `x`, except for rounding, counts as passed.
     ///
-    /// Cost: a check of each row on that way, at most one for each row of the cam.
+    /// Cost: a check of each row on that path, at most one for each row of the cam.
     pub fn next_corner(&self, x: f64, forwards: bool, reach: f64, order: usize) -> Option<(f64, usize)> {
         let head = self.head;
         let length = head.end - head.begin;

@@ -1,7 +1,7 @@
-//! The place of a cam between two axes: the slave's place as a pure function of the master's place.
+//! The position of a cam between two axes: the slave's position as a pure function of the master's position.
 //!
-//! Periods are counted in integers from the master's place alone, so no error accumulates: a master that
-//! returns to a place returns the slave to the same bits.
+//! Periods are counted in integers from the master's position alone, so no error accumulates: a master that returns
+//! to a position returns the slave to the same bits.
 
 use super::{Cam, CamBounds};
 use crate::gear::{Double, add, divided, in_first_turn, plus};
@@ -15,32 +15,33 @@ pub struct CamLaw {
     pub master_scaling: f64,
     /// Factor of lengths on the slave's side; not 0.
     pub slave_scaling: f64,
-    /// The place of the cam's master side (u) at the master's place in the anchor.
+    /// The position on the cam's master side (u) at the master's position in the anchor.
     pub origin: f64,
-    /// Length of a turn (u), of an axis that has turns.
+    /// Length of a turn (u) of the master, if it has turns.
     pub master_turn: Option<f64>,
-    /// Of the slave.
+    /// The same for the slave.
     pub slave_turn: Option<f64>,
 }
 
-/// A place on a cam.
+/// A point on a cam.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CamAt {
-    /// Of the slave.
+    /// The place of the slave.
     pub place: Place,
     /// Its derivatives; the position is that of `place`.
     pub state: Setpoint,
-    /// Whole periods before this one; on a cam without periods -1 before its first row and 1 from its last on.
+    /// Whole periods before this one. On a cam without periods it is -1 before the first row, and 1 from the last
+    /// row on.
     pub periods: i64,
-    /// Place on the master's side of the cam (u), in its period.
+    /// Position on the master's side of the cam (u), in its period.
     pub x: f64,
     /// Its piece.
     pub piece: u16,
 }
 
 impl CamLaw {
-    /// The master's place on its side of the cam (u), relative to the first row, as exact as the sum of
-    /// two numbers.
+    /// The master's position on its side of the cam (u), relative to the first row, as exact as the sum of two
+    /// numbers.
     fn way(&self, cam: &Cam<'_>, anchor: &Anchor, master: Place) -> Double {
         let from = &anchor.master;
         let turns = master.turns.wrapping_sub(from.turns);
@@ -63,7 +64,7 @@ impl CamLaw {
         }
     }
 
-    /// The master's place on its side of the cam (u), not reduced to one period.
+    /// The master's position on its side of the cam (u), not reduced to one period.
     pub fn unwound(&self, cam: &Cam<'_>, anchor: &Anchor, master: Place) -> f64 {
         plus(self.way(cam, anchor, master), cam.head.begin).0
     }

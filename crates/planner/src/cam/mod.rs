@@ -1,8 +1,8 @@
-//! Cams: the slave's place for each place of its master, as curves of degree 7 from point to point.
+//! Cams: the slave's position for each position of its master, as curves of degree 7 from point to point.
 //!
-//! This module makes pieces from rows ([`CamBuild`]), finds their bounds and their smoothness, evaluates
-//! the value and four derivatives at any place of the master, and places a cam between two axes
-//! ([`CamLaw`]). It does not bring a slave onto the curve, and does not store the pieces.
+//! This module makes pieces from rows ([`CamBuild`]), finds their bounds and their smoothness, evaluates the value
+//! and four derivatives at any position of the master, and places a cam between two axes ([`CamLaw`]). It does not
+//! bring a slave onto the curve, and does not store the pieces.
 //!
 //! | file | subject |
 //! | --- | --- |
@@ -27,10 +27,10 @@ pub use build::CamBuild;
 pub use corners::CamSmooth;
 pub use law::{CamAt, CamLaw};
 
-/// Most rows of a cam.
+/// Largest number of rows of a cam.
 pub const CAM_ROWS: usize = 512;
 
-/// Steps of a search among the pieces of a cam.
+/// Largest number of steps of a search among the pieces of a cam.
 const STEPS: u32 = 9;
 
 /// How the curve runs from one row to the next.
@@ -54,9 +54,9 @@ pub enum CamShape {
 /// A row of a cam.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CamRow {
-    /// Place of the master (u).
+    /// Position of the master (u).
     pub master: f64,
-    /// Place of the slave (y).
+    /// Position of the slave (y).
     pub slave: f64,
     /// First derivative (y/u).
     pub slope: f64,
@@ -98,19 +98,19 @@ impl CamPiece {
 /// The properties of a cam as a whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CamHead {
-    /// First and last place of the master (u).
+    /// First position of the master (u).
     pub begin: f64,
-    /// The last one.
+    /// Last position of the master (u).
     pub end: f64,
-    /// Place of the slave in the first row (y).
+    /// Position of the slave in the first row (y).
     pub from: f64,
-    /// In the last one.
+    /// Position of the slave in the last row (y).
     pub to: f64,
-    /// The lowest and the highest place of the slave (y), within a thousandth of the range.
+    /// The lowest and the highest position of the slave (y), within a thousandth of the range.
     pub range: (f64, f64),
     /// Whether the cam repeats: behind its last row it continues at its first.
     pub periodic: bool,
-    /// What its derivatives are bounded by.
+    /// The bounds of its derivatives.
     pub bounds: CamBounds,
     /// Its smoothness, including the rest before its first row and behind its last if it has no periods.
     pub smooth: CamSmooth,
@@ -141,14 +141,14 @@ pub enum CamCause {
     Count,
     /// A number is not finite, or so large or so small that a curve through it is not.
     NotFinite,
-    /// The place of the master is not after that of the row before.
+    /// The position of the master is not after that of the row before.
     Order,
 }
 
 /// The reason why the rows of a cam are refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CamFault {
-    /// What it is.
+    /// The kind of the fault.
     pub cause: CamCause,
     /// The row, from 1.
     pub row: usize,
@@ -161,9 +161,9 @@ pub struct CamFault {
 /// A cam: its properties, and its pieces.
 #[derive(Clone, Copy, Debug)]
 pub struct Cam<'a> {
-    /// As a whole.
+    /// The properties.
     pub head: &'a CamHead,
-    /// In order of the master.
+    /// The pieces, in order of the master.
     pub pieces: &'a [CamPiece],
 }
 
@@ -216,10 +216,10 @@ impl<'a> Cam<'a> {
         self.pieces.get(usize::from(index))
     }
 
-    /// The slave's place at `place` (u) and four derivatives by the master, as position to snap, in the
-    /// piece of that number. The place is the sum of two numbers, the second far smaller.
+    /// The slave's position at `place` (u) and four derivatives by the master, as position to snap, in the piece
+    /// with that number. The place is the sum of two numbers, the second far smaller.
     ///
-    /// Returns the slave's place as the begin of the piece and the way from there. Cost: some 80
+    /// Returns the slave's position as the begin of the piece and the distance from there. Cost: some 80
     /// operations.
     pub(crate) fn at(&self, place: (f64, f64), index: u16) -> (f64, Setpoint) {
         let Some(piece) = self.piece(index) else {

@@ -50,9 +50,8 @@ impl Rows<'_> {
         }
     }
 
-    /// The derivatives at row `index`, between pieces whose derivatives are estimated. They are those
-    /// that a neighbour of another shape has there, level at the ends of a cam without periods, and
-    /// otherwise estimated.
+    /// The derivatives at row `index`, between pieces whose derivatives are estimated. A neighbour of another shape
+    /// gives its own. At the ends of a cam without periods the curve is level. Otherwise they are estimated.
     fn slopes_at(&self, index: usize) -> Slopes {
         if let Some(slopes) = self.held(index) {
             return slopes;

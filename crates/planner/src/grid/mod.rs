@@ -1,7 +1,7 @@
 //! Rest to rest with every switching instant on the sample grid.
 //!
-//! A step run through m moving sums (boxes) of whole lengths is a profile of order m that lands exactly;
-//! planning is choosing the box lengths. `docs/planner.md` derives it.
+//! A step that passes through m moving sums (boxes) of whole lengths is a profile of order m that ends exactly on
+//! its target. Planning is the choice of the box lengths. `docs/planner.md` derives it.
 
 mod euler;
 mod plan;

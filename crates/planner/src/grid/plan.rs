@@ -10,7 +10,7 @@ use crate::{Field, Limits, Order, PlanError};
 ///
 /// Every output is computed from the scan count alone, so nothing accumulates: the last set-point is the
 /// target to the bit, and asking for scans in any order gives the same bits.
-// What a set-point at constant velocity needs comes first: many axes wait for memory.
+// The data of a set-point at constant velocity come first: many axes wait for memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct GridPlan {
@@ -67,7 +67,7 @@ impl GridPlan {
         Self::with_work(method, start, target, limits, cycle, &mut Work::default())
     }
 
-    /// As [`GridPlan::new`], with the work the search took.
+    /// The same as [`GridPlan::new`], with the work of the search.
     ///
     /// Bounded: `Sequential` takes at most seven bisections of 32 steps, `Grid` and `Overlapped` at most
     /// [`MAX_ROWS`](super::MAX_ROWS) rows and [`MAX_CANDIDATES`](super::MAX_CANDIDATES) candidates (measured
@@ -75,7 +75,7 @@ impl GridPlan {
     /// its best and the `Sequential` plan.
     ///
     /// # Errors
-    /// As [`GridPlan::new`].
+    /// Those of [`GridPlan::new`].
     pub fn new_counted(
         method: Method,
         start: f64,
@@ -143,12 +143,12 @@ impl GridPlan {
         self.target += by;
     }
 
-    /// Where the move starts (u).
+    /// Start of the move (u).
     pub const fn start(&self) -> f64 {
         self.start
     }
 
-    /// Where the move ends (u).
+    /// Target of the move (u).
     pub const fn target(&self) -> f64 {
         self.target
     }
@@ -158,7 +158,7 @@ impl GridPlan {
         self.cycle
     }
 
-    /// How smooth the plan is.
+    /// The order of the plan.
     pub const fn order(&self) -> Order {
         self.order
     }

@@ -6,7 +6,7 @@ use crate::{Field, Limits, Order, PlanError, math};
 /// their nominal counts (docs/planner.md, eq. 7).
 const ONE_LESS_SLACK: f64 = 1.0 - 1.0 / (1_u64 << 40) as f64;
 
-/// Most scans a plan can count: 2^31 - 1.
+/// Largest number of scans that a plan can count: 2^31 - 1.
 pub(super) const LONGEST: u64 = (1 << 31) - 1;
 
 /// Box lengths n1..n4 in scans; boxes that an order does not have are 0 (docs/planner.md, eq. 4).
@@ -17,7 +17,7 @@ pub(super) type Boxes = [u32; 4];
 /// The thresholds are whole numbers. As `f64` they are exact: a ratio of 2^53 or more is whole already.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Problem {
-    /// How many boxes there are.
+    /// The number of boxes.
     pub order: Order,
     /// Least n4, at most 2^31.
     pub k4: f64,
@@ -161,7 +161,7 @@ impl Ratio {
         let fraction = bits & ((1 << 52) - 1);
         let exponent = (bits >> 52) as i32;
         if exponent == 0 {
-            // Below every ratio that matters; 0 is where an absent bound is the denominator.
+            // Below every relevant ratio; 0 occurs if an absent bound is the denominator.
             return Self {
                 mantissa: 0,
                 exponent: 0,

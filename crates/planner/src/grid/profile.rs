@@ -167,9 +167,9 @@ pub(super) fn scale(order: Order, product: u128, distance: f64, cycle: f64) -> (
 impl GridPlan {
     /// The continuous profile at `scan` cycles after the start, in O(1): at most eight terms.
     ///
-    /// From [`GridPlan::scans`] on it is rest on the target, to the bit; only at order 4 the snap of the
-    /// last segment shows at the last scan itself. The position never leaves the way from start to target
-    /// and never steps back.
+    /// From [`GridPlan::scans`] on the profile is at rest on the target, to the bit. Only at order 4 the snap of
+    /// the last segment shows at the last scan itself. The position is always between start and target and never
+    /// steps back.
     #[inline(always)]
     pub fn at(&self, scan: u64) -> Setpoint {
         let scans = u64::from(self.scans);
@@ -228,7 +228,7 @@ impl GridPlan {
         }
     }
 
-    /// How many switching instants there are, in order: two to the power of the order.
+    /// The number of switching instants: two to the power of the order.
     fn instant_count(&self) -> usize {
         if self.scans == 0 {
             0
@@ -346,8 +346,8 @@ pub(super) fn backwards(target: f64, sums: &[f64; 5], scale: &[f64; 5]) -> Setpo
     }
 }
 
-/// The whole numbers in which the sums are computed, with wrapping arithmetic: partial sums may overflow,
-/// but the result is right whenever it fits.
+/// The whole numbers in which the sums are computed, with wrapping arithmetic: partial sums may overflow, but the
+/// result is right if it fits.
 trait Whole: Copy {
     /// The number as a wrapping one.
     fn of(value: i64) -> Self;

@@ -5,10 +5,10 @@ use super::problem::{Boxes, LONGEST, Problem};
 use crate::Order;
 use crate::math::{self, max, min, sqrt};
 
-/// Most rows (values of n1) a search may visit before it returns the best found.
+/// Largest number of rows (values of n1) that a search may visit before it returns the best found.
 pub const MAX_ROWS: u32 = 1024;
 
-/// Most pairs (n1, n2) a search may try before it returns the best found.
+/// Largest number of pairs (n1, n2) that a search may try before it returns the best found.
 pub const MAX_CANDIDATES: u32 = 2048;
 
 /// Share by which the budget of the real bound is raised, so that rounding can only add candidates, never lose one.
@@ -37,7 +37,7 @@ pub enum Family {
     Overlapped,
 }
 
-/// One search: the problem, what its bounds need often, and the best so far.
+/// One search: the problem, numbers that its bounds need often, and the best result so far.
 ///
 /// Box lengths are whole numbers held as `f64`, exact below 2^53, so that bounds and candidates share them.
 struct Search<'a> {

@@ -1,15 +1,15 @@
 //! Time-optimal transfers of a chain of integrators: push, then stop.
 //!
-//! What stands here: the least-time way from any state of a second- or third-order chain to rest at a
-//! value, under bounds on everything between. A value is whatever the caller integrates to: [`third`] takes
-//! `(velocity, acceleration, jerk)` to a velocity under a snap bound, and `(position, velocity,
-//! acceleration)` to a position under a jerk bound. What does not: units, limits with names, sampling.
+//! This module finds the least-time transfer from any state of a second- or third-order chain to rest at a value,
+//! under bounds on everything in between. The caller decides what the value is: [`third`] takes `(velocity,
+//! acceleration, jerk)` to a velocity under a snap bound, and `(position, velocity, acceleration)` to a position
+//! under a jerk bound. The module does not have units, limits with names, or sampling.
 //!
 //! Everything here is dimensionless: the bound on the highest derivative, the *input*, is 1 (see [`Scale`]).
 //! Equations (R1) and on are in `docs/planner-ramps.md`.
 //!
-//! Continuity is the point: a state within [`ON_LIMIT`] of a bound is on it, so that one rounding error
-//! outwards never turns into a braking manoeuvre.
+//! Continuity is important: a state within [`ON_LIMIT`] of a bound is on it, so that one rounding error outwards
+//! never turns into a braking manoeuvre.
 
 mod root;
 mod scale;
@@ -26,10 +26,10 @@ pub use third::{Bounds, Profile, THIRD_SPANS, third};
 pub(crate) use third::{append_third, gain};
 pub use zero::{Point, zero};
 
-/// How far outside a bound a state still counts as on it, relative to the bound.
+/// Largest distance outside a bound at which a state still counts as on it, relative to the bound.
 pub const ON_LIMIT: f64 = 1e-9;
 
-/// Gaps smaller than this, relative to what was added up to get them, are rounding: nothing moves for them.
+/// Gaps smaller than this, relative to the sum from which they result, are rounding: nothing moves because of them.
 pub(crate) const NOISE: f64 = 16.0 * f64::EPSILON;
 
 /// A pair of bounds as magnitudes: the value stays in `-minus ..= plus`. Infinite means no bound.

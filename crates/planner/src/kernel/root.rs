@@ -1,13 +1,13 @@
-//! The one root of the third-order problem: where a rising push has to turn into the stop.
+//! The one root of the third-order problem: the end of a rising push and the begin of the stop.
 
 use super::third::depth_term;
 use crate::math::{max, min, sqrt};
 
-/// Largest number of steps a root may take. What a false position needs at most is 94, what a [`zero`](super::zero)
-/// needs 114; the tests show how far from it the others stay.
+/// Largest number of steps that a root may take. A false position needs at most 94, a [`zero`](super::zero) 114;
+/// the tests show how many the others need.
 pub const MAX_STEPS: u32 = 116;
 
-/// A Newton step this small relative to the root is the last: the next would be of rounding size.
+/// A Newton step this small, relative to the root, is the last one: the next would be of rounding size.
 const CONVERGED: f64 = 1e-9;
 
 /// The switch from push to stop.
@@ -44,13 +44,13 @@ impl Rising {
         }
     }
 
-    /// The switch, which lies between the start and `highest`.
+    /// The switch, which is between the start and `highest`.
     ///
-    /// The left side of (R7) does not fall between them, and is smooth but at the two points where the
-    /// stop just touches its bound; which of the three stretches has the root is seen there.
+    /// The left side of (R7) does not fall between them. It is smooth except at the two points where the stop just
+    /// touches its bound. These points show which of the three stretches has the root.
     pub(super) fn solve(&self, highest: f64) -> Intercept {
         let Self { offset, brake, .. } = *self;
-        // Below these the stop follows the push, and nothing changes (R6).
+        // Below these the stop continues the push, and nothing changes (R6).
         let lowest = max(self.start, -brake);
         let lowest = if offset < 0.0 {
             min(max(sqrt(-offset), lowest), highest)
@@ -77,7 +77,7 @@ impl Rising {
         a * (a * a + 2.0 * self.offset) + depth_term(drop, self.brake) - self.budget
     }
 
-    /// The root where the stop does not reach its bound: a quartic in the sum of `a` and the depth (R9).
+    /// The root if the stop does not reach its bound: a quartic in the sum of `a` and the depth (R9).
     fn pointed(&self, lowest: f64, highest: f64) -> Intercept {
         let Self { offset, budget, .. } = *self;
         let sum = |a: f64| {
@@ -100,7 +100,7 @@ impl Rising {
         }
     }
 
-    /// The root where the stop holds its bound for a while: a quartic in `a + brake/2` (R10).
+    /// The root if the stop holds its bound for some time: a quartic in `a + brake/2` (R10).
     fn clipped(&self, lowest: f64, highest: f64) -> Intercept {
         let Self {
             offset,
@@ -166,7 +166,7 @@ fn rough_cube_root(x: f64) -> f64 {
 struct Sample {
     value: f64,
     slope: f64,
-    /// What of the value may be rounding.
+    /// The part of the value that may be rounding.
     noise: f64,
 }
 
@@ -182,8 +182,8 @@ impl Sample {
     }
 }
 
-/// The root of a function that does not fall between `low` and `high`: Newton's steps, kept in the bracket
-/// and halving it where they do not at least halve themselves.
+/// The root of a function that does not fall between `low` and `high`: Newton's steps, kept in the bracket. If a
+/// step is not at most half the one before, the bracket is halved.
 ///
 /// Ends when the value is rounding, with at most [`MAX_STEPS`] evaluations.
 fn bracketed(mut low: f64, mut high: f64, guess: f64, function: impl Fn(f64) -> Sample) -> (f64, u32) {
@@ -216,11 +216,11 @@ fn bracketed(mut low: f64, mut high: f64, guess: f64, function: impl Fn(f64) -> 
     (x, MAX_STEPS)
 }
 
-/// Where a continuous function that is positive at `low` and not at `high` first comes to zero, by false
-/// position with halved weights; also the steps taken, at most [`MAX_STEPS`].
+/// The first zero of a continuous function that is positive at `low` and not at `high`, by false position with
+/// halved weights. Also returns the number of steps, at most [`MAX_STEPS`].
 ///
-/// The result is an argument at which the function is not positive, to 1e-14 of the bracket or one unit in
-/// the last place: every other step halves it, so 94 steps are enough for any function.
+/// The result is an argument at which the function is not positive, to 1e-14 of the bracket or one unit in the last
+/// place. Every other step halves the bracket, so 94 steps are enough for any function.
 pub fn falling_root(low: f64, high: f64, function: impl Fn(f64) -> f64) -> (f64, u32) {
     let tolerance = 1e-14 * (high - low);
     let (mut low, mut high) = (low, high);
@@ -231,7 +231,7 @@ pub fn falling_root(low: f64, high: f64, function: impl Fn(f64) -> f64) -> (f64,
         let chord = low + (high - low) * (above / slope);
         let inside = step % 2 != 0 && chord > low && chord < high;
         let x = if inside { chord } else { 0.5 * (low + high) };
-        // In a narrow bracket far from zero no number may be left between its ends.
+        // In a narrow bracket far from zero there may be no number between its ends.
         if !(x > low && x < high) {
             return (high, step - 1);
         }

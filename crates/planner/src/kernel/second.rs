@@ -9,7 +9,7 @@ use crate::math::{max, sqrt};
 /// An `a` outside its bounds is brought inside first, at full input. Closed form; one square root.
 pub fn second(v: f64, a: f64, target: f64, rate: Sides) -> Spans<3> {
     let change = target - v;
-    // Where `v` goes while `a` is brought to zero as fast as the input allows.
+    // The change of `v` while `a` is brought to zero as fast as the input allows.
     let arrest = 0.5 * a * a.abs();
     let gap = change - arrest;
     let mut spans = Spans::new();

@@ -3,9 +3,9 @@
 /// A stretch of time in which the highest derivative is constant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Span {
-    /// How long; never negative.
+    /// Its duration; never negative.
     pub duration: f64,
-    /// The highest derivative held.
+    /// The constant highest derivative.
     pub input: f64,
 }
 
@@ -40,10 +40,10 @@ impl<const N: usize> Spans<N> {
         }
     }
 
-    /// Appends a span. One of no length vanishes; one with the input of the last span lengthens that.
+    /// Appends a span. A span of no length is dropped; one with the input of the last span lengthens that.
     ///
-    /// Callers choose `N` as the sum of what they append, so the list is never full; were it full, the
-    /// span would be dropped.
+    /// Callers choose `N` as the sum of what they append, so the list is never full. If it were full, the span
+    /// would be dropped.
     pub fn push(&mut self, duration: f64, input: f64) {
         if !(duration > 0.0) {
             return;
@@ -78,7 +78,7 @@ impl<const N: usize> Spans<N> {
         self.list.get(..self.len).unwrap_or_default()
     }
 
-    /// What is left of the spans after `time` of the first one.
+    /// Removes the first `time` of the spans.
     pub(crate) fn advance(&mut self, time: f64) {
         if let Some(first) = self.list.first_mut()
             && first.duration > time
@@ -105,7 +105,7 @@ impl<const N: usize> Spans<N> {
         self.len == 0
     }
 
-    /// What of the spans lies before `time`; where they end earlier, a span without input fills it.
+    /// The part of the spans before `time`. If they end earlier, a span without input fills the rest.
     #[must_use]
     pub fn until<const M: usize>(&self, time: f64) -> Spans<M> {
         let mut left = time;
@@ -149,14 +149,14 @@ impl<const N: usize> Spans<N> {
         self
     }
 
-    /// As [`Spans::mirrored`], in place.
+    /// The same as [`Spans::mirrored`], in place.
     pub fn mirror(&mut self) {
         for span in self.list.iter_mut().take(self.len) {
             span.input = -span.input;
         }
     }
 
-    /// Takes all spans out.
+    /// Removes all spans.
     pub const fn clear(&mut self) {
         self.len = 0;
     }

@@ -4,7 +4,7 @@ use super::root::{Intercept, Rising};
 use super::{NOISE, Sides, Span, Spans, raised_to, second};
 use crate::math::{max, min, sqrt};
 
-/// Most spans of a [`third`] profile: three of the push, a cruise, three of the stop.
+/// Largest number of spans of a [`third`] profile: three of the push, a cruise, three of the stop.
 pub const THIRD_SPANS: usize = 7;
 
 /// Bounds of a third-order problem; the input bound is 1.
@@ -26,12 +26,12 @@ impl Bounds {
     }
 }
 
-/// What [`third`] found.
+/// The result of [`third`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Profile {
     /// The spans in order of time.
     pub spans: Spans<THIRD_SPANS>,
-    /// Steps of root finding taken, at most [`MAX_STEPS`](super::MAX_STEPS); 0 if a closed form did.
+    /// Steps of root finding, at most [`MAX_STEPS`](super::MAX_STEPS); 0 for a closed form.
     pub steps: u32,
 }
 
@@ -62,7 +62,7 @@ impl State {
 
 /// The least-time spans from `(x, v, a)` to `(target, 0, 0)`.
 ///
-/// The start `(v, a)` may be anything, also outside `bounds`; it is then brought inside first. Bounded work:
+/// The start `(v, a)` may be any state, also one outside `bounds`; it is then brought inside first. Bounded work:
 /// closed forms, or one root of at most [`MAX_STEPS`](super::MAX_STEPS) steps (R4 to R10).
 pub fn third(x: f64, v: f64, a: f64, target: f64, bounds: &Bounds) -> Profile {
     let mut spans = Spans::new();
@@ -71,8 +71,8 @@ pub fn third(x: f64, v: f64, a: f64, target: f64, bounds: &Bounds) -> Profile {
     Profile { spans, steps }
 }
 
-/// Appends to `spans` those of [`third`], where the fastest `stop` is known, the way from `(v, a)` to `(0, 0)`; the steps
-/// of root finding taken.
+/// Appends the spans of [`third`] to `spans`, with a known fastest `stop`: the path from `(v, a)` to `(0, 0)`.
+/// Returns the steps of root finding.
 pub(crate) fn append_third<const N: usize>(
     spans: &mut Spans<N>,
     stop: &Spans<3>,
@@ -84,7 +84,7 @@ pub(crate) fn append_third<const N: usize>(
     let start = State { x: 0.0, v, a };
     let gap = distance - start.after_all(stop).x;
     let t = stop.duration();
-    // What the input makes of `a` is no more than twice its bound, however long the stop takes.
+    // The input changes `a` by at most twice its bound, for any duration of the stop.
     let changed = min(t, a.abs() + 2.0 * max(bounds.a.plus, bounds.a.minus));
     let added_up = x.abs() + target.abs() + t * (v.abs() + t * (a.abs() + changed));
     if gap.abs() <= NOISE * added_up {
@@ -103,18 +103,19 @@ pub(crate) fn append_third<const N: usize>(
     }
 }
 
-/// How much larger the integral of the value along the spans of [`third`] to zero gets for each unit of `a` more at their
+/// The growth of the integral of the value along the spans of [`third`] to zero, for each unit of `a` more at their
 /// start (O21).
 ///
-/// Back in time from the end: a change of `a` makes none where the input switches, since the switch moves with it.
+/// It is computed back in time from the end. Where the input switches, a change of `a` has no effect, because the
+/// switch moves with it.
 pub(crate) fn gain(spans: &[Span]) -> f64 {
-    // What brings `a` to zero at last.
+    // The spans that finally bring `a` to zero.
     let (push, hold, release) = match spans {
         [.., push, hold, release] if hold.input == 0.0 => (push.duration, hold.duration, release.duration),
         [.., push, release] => (push.duration, 0.0, release.duration),
         _ => return 0.0,
     };
-    // A start on a bound comes back to it.
+    // A start on a bound returns to it.
     if spans.first().is_some_and(|first| first.input == 0.0) {
         return 0.0;
     }
@@ -131,7 +132,7 @@ pub(crate) fn gain(spans: &[Span]) -> f64 {
     for span in spans.iter().rev() {
         gains.a = 0.0;
         match earlier.next() {
-            // `v` is on its bound: a change of it before makes none later.
+            // `v` is on its bound: an earlier change of it has no later effect.
             Some(before) if span.input == 0.0 && before.input == next_input => {
                 gains.x += span.duration;
                 gains.v = between_switches(before.duration, gains.x);
@@ -143,7 +144,7 @@ pub(crate) fn gain(spans: &[Span]) -> f64 {
     max(gains.a, 0.0)
 }
 
-/// What an integral gains for each unit of the value, of `v` and of `a` at one instant.
+/// The growth of an integral for each unit of the value, of `v` and of `a` at one instant.
 struct Gains {
     x: f64,
     v: f64,
@@ -151,7 +152,7 @@ struct Gains {
 }
 
 impl Gains {
-    /// The same `t` earlier.
+    /// The same at an instant `t` earlier.
     fn back(&mut self, t: f64) {
         self.a += t * (self.v + t * (0.5 * self.x + t / 6.0));
         self.v += t * (self.x + 0.5 * t);
@@ -159,12 +160,12 @@ impl Gains {
     }
 }
 
-/// The gain of `v` at the end of a span of the duration `t` with a switch at either end, if that of the value is `x`.
+/// The gain of `v` at the end of a span of duration `t` with a switch at both ends; `x` is the gain of the value.
 fn between_switches(t: f64, x: f64) -> f64 {
     -t * (0.5 * x + t / 6.0)
 }
 
-/// A list of spans to append to those of a problem mirrored where `side` is -1.
+/// A list of spans, to which those of a problem are appended. The problem is mirrored if `side` is -1.
 struct Appended<'a, const N: usize> {
     spans: &'a mut Spans<N>,
     side: f64,
@@ -189,11 +190,11 @@ impl<const N: usize> Appended<'_, N> {
     }
 }
 
-/// The case that the fastest stop ends short of `distance`: push towards the upper bound of `v`, then stop; the steps of
-/// root finding taken.
+/// The case in which the fastest stop ends short of `distance`: push towards the upper bound of `v`, then stop.
+/// Returns the steps of root finding.
 ///
-/// The place where the stop ends grows only while the push raises `a` or holds it above zero (R6); so the
-/// root is looked for in those spans alone, and the first one whose end stops beyond the target has it.
+/// The end position of the stop grows only while the push raises `a` or holds it above zero (R6). So the search
+/// uses those spans alone. The first one from whose end the stop ends beyond the target has the root.
 fn push_up<const N: usize>(spans: &mut Appended<'_, N>, distance: f64, start: State, bounds: &Bounds) -> u32 {
     let brake = bounds.a.minus;
     let arrest = start.v + 0.5 * start.a * start.a.abs();
@@ -203,7 +204,7 @@ fn push_up<const N: usize>(spans: &mut Appended<'_, N>, distance: f64, start: St
     for span in push.iter() {
         let end = state.after(span.duration, span.input);
         let grows = span.input > 0.0 || (span.input == 0.0 && state.a > 0.0);
-        // A stop that starts upwards follows the push for a while: nothing grows yet (R6).
+        // A stop that starts upwards first continues the push: nothing grows yet (R6).
         let stops_downwards = end.v + 0.5 * end.a * end.a.abs() > 0.0;
         if grows && stops_downwards && end.x + stopping_distance(end, brake) >= distance {
             return intercept(spans, distance - state.x, state, *span, brake);
@@ -217,8 +218,8 @@ fn push_up<const N: usize>(spans: &mut Appended<'_, N>, distance: f64, start: St
     0
 }
 
-/// Ends the push inside a `span` that starts at `state`, where the stop ends `left` further; the steps of root finding
-/// taken.
+/// Ends the push inside a `span` that starts at `state`, such that the stop ends `left` further. Returns the steps
+/// of root finding.
 fn intercept<const N: usize>(
     spans: &mut Appended<'_, N>,
     left: f64,
@@ -243,7 +244,7 @@ fn intercept<const N: usize>(
     }
 }
 
-/// How far the downward stop from `state` moves the value (R5).
+/// The distance by which the downward stop from `state` moves the value (R5).
 fn stopping_distance(state: State, brake: f64) -> f64 {
     let State { v, a, .. } = state;
     let drop = v + 0.5 * a * a;

@@ -1,7 +1,7 @@
-//! Moves that pass their target with a wanted speed, or the nearest there is without turning.
+//! Moves that pass their target with a wanted speed, or with the nearest one that is possible without turning.
 //!
-//! What stands here: the choice of that speed, and the largest one the next move can begin with. What does
-//! not: buffer modes, queues, which velocity is wanted. Equations (O11) to (O13) are in
+//! This module chooses that speed, and the largest speed with which the next move can begin. It does not have
+//! buffer modes or queues, and does not choose the wanted velocity. Equations (O11) to (O13) are in
 //! `docs/planner-online.md`.
 
 use super::search::{Search, follow};
@@ -10,20 +10,20 @@ use crate::kernel::{NOISE, ON_LIMIT, Point, Sides, zero};
 use crate::ramp::solve::{Course, Ramps, heading};
 use crate::{Limits, PlanError, Setpoint};
 
-/// How far a speed on the border of what can be reached is moved inside until a plan agrees, as parts of the
-/// way to the speed that certainly can be.
+/// A speed on the border of what can be reached is moved inside until a plan accepts it. These are the tried parts
+/// of the distance to a speed that certainly can be reached.
 const INSIDE: [f64; 5] = [0.0, 1e-12, 1e-9, 1e-6, 1.0];
 
-/// How a target is to be passed.
+/// How to pass a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passage {
-    /// The speed towards the target to pass it with (u/s), 0 or more.
+    /// The speed towards the target at which to pass it (u/s), 0 or more.
     pub wanted: f64,
-    /// The speed from which what comes after the target can still be done (u/s); exceeded only if every way
+    /// The speed from which the motion behind the target is still possible (u/s). It is exceeded only if every path
     /// without turning exceeds it.
     pub most: f64,
-    /// The acceleration (u/s^2) against the way to pass it with; below 0 it speeds up. Without a wanted speed the move turns there, with
-    /// one above 0.
+    /// The acceleration (u/s^2) against the direction of motion with which to pass it; below 0 it speeds up. If no
+    /// speed is wanted and it is above 0, the move turns at the target.
     pub brake: f64,
 }
 
@@ -35,7 +35,7 @@ impl Passage {
         brake: 0.0,
     };
 
-    /// Whether the target is neither passed nor turned at.
+    /// Whether the move neither passes the target nor turns there.
     pub fn rests(&self) -> bool {
         self.wanted <= 0.0 && self.brake <= 0.0
     }
@@ -43,21 +43,21 @@ impl Passage {
 
 impl OnlinePlan {
     /// Passes `target` with the speed of `passage`, or with the nearest one that needs no overshoot and no
-    /// reversal; `None` if there is none but zero, or if the start is on the target.
+    /// reversal. `None` if there is none but zero, or if the start is on the target.
     ///
-    /// A motion away from the target turns first, as soon as it can. The velocity of `limits` is what the
-    /// move keeps on its way; a larger speed at the target is reached with the last ramp, not before.
-    /// Everything else as in [`OnlinePlan::passing`], which is what the plan is.
+    /// A motion away from the target turns first, as soon as it can. The move keeps the velocity of `limits`; a
+    /// larger speed at the target is reached with the last ramp, not before. In all other respects the plan is that
+    /// of [`OnlinePlan::passing`].
     ///
-    /// The nearest speed is found so: the wanted one is tried. Failing that, the one at which the ramp alone
-    /// ends on the target, between the wanted one and the one the start comes to when its acceleration goes
-    /// to zero (O11). If that is faster than wanted, because the braking comes late, a slower one is looked
-    /// for in the same way between zero and the wanted one (O12), and the nearer of the two is taken.
+    /// The search for the nearest speed first tries the wanted one. If that fails, it takes the speed at which the
+    /// ramp alone ends on the target. This speed is between the wanted one and the one that the start reaches when
+    /// its acceleration goes to zero (O11). If it is above the wanted one, because the braking comes late, a slower
+    /// one is searched in the same way between zero and the wanted one (O12), and the nearer of the two is taken.
     ///
     /// Bounded work: one plan, in the worst case eleven and two roots of ramps.
     ///
     /// # Errors
-    /// As [`OnlinePlan::passing`].
+    /// Those of [`OnlinePlan::passing`].
     pub fn blending(
         start: &Setpoint,
         target: f64,
@@ -74,9 +74,9 @@ impl OnlinePlan {
             return Ok(None);
         }
         let side = if distance < 0.0 { -1.0 } else { 1.0 };
-        // One velocity for all speeds tried, so that a start faster than the limit is not brought inside first
-        // for one and not for another: the push goes for the limit anyway. Faster than what held before is no
-        // start that comes from inside.
+        // One velocity bound for all tried speeds. Otherwise a start faster than the limit would be brought inside
+        // first for one speed and not for another; the push goes for the limit anyway. A start faster than the
+        // previous limit does not come from inside.
         let directed = &(*limits).into();
         let ramps = Ramps::new(directed, directed);
         let arrested = side * ramps.arrested(&ramps.state_inward(start)) / ramps.inward(1.0, 1);
@@ -124,7 +124,7 @@ impl OnlinePlan {
     }
 }
 
-/// A target to pass.
+/// The path to a target that is passed.
 struct Way<'a> {
     start: &'a Setpoint,
     target: f64,
@@ -137,7 +137,8 @@ struct Way<'a> {
 }
 
 impl Way<'_> {
-    /// The plan that passes with `speed`, if it goes no way that it need not go: `None` where the ramp alone leads beyond the target.
+    /// The plan that passes with `speed`, if it makes no unnecessary detour. `None` if the ramp alone ends beyond
+    /// the target.
     fn with(&self, speed: f64) -> Result<Option<OnlinePlan>, PlanError> {
         let limits = self.raised;
         let inward = self.ramps.inward(speed, 1);
@@ -154,14 +155,15 @@ impl Way<'_> {
             &(*self.before).into(),
             self.cycle,
         )?;
-        // A push towards the target turns only what has to be turned; any other may not turn at all.
+        // A push towards the target turns only a motion that must turn; any other may not turn at all.
         let small = ON_LIMIT * limits.velocity;
         let straight = || plan.found.tail.is_none() && plan.found.path.keeps_side(self.side, small);
         let pushes = plan.found.rung == Rung::PushThenStop;
         Ok((pushes || straight()).then_some(plan))
     }
 
-    /// As [`Way::with`] for a speed on the `border` of what can be reached, moved towards `inside` if it must.
+    /// The same as [`Way::with`] for a speed on the `border` of what can be reached, which may be moved towards
+    /// `inside`.
     fn near(&self, border: f64, inside: f64) -> Result<Option<OnlinePlan>, PlanError> {
         for part in INSIDE {
             if let Some(plan) = self.with(border + (inside - border) * part)? {
@@ -171,14 +173,14 @@ impl Way<'_> {
         Ok(None)
     }
 
-    /// The largest speed below `wanted` from zero on, if the start can come to rest before the target: the one at which the ramp alone ends
-    /// on it (O12).
+    /// The largest speed from zero up to `wanted`, if the start can come to rest before the target: the speed at
+    /// which the ramp alone ends on the target (O12).
     fn below(&self, wanted: f64) -> Result<Option<OnlinePlan>, PlanError> {
         let far = self.ramps.inward(wanted, 1);
         let border = self.search().speed_on_target(&self.inward(), self.side, 0.0, far);
         match border {
             Some(border) => self.near(self.outward(border), 0.0),
-            // What comes to rest on the target to the last digit brackets nothing.
+            // A stop that ends exactly on the target gives no bracket.
             None => self.with(0.0),
         }
     }
@@ -201,23 +203,23 @@ impl Way<'_> {
         self.ramps.state_inward(&origin)
     }
 
-    /// A speed out of the kernel's units (u/s).
+    /// Converts a speed from the kernel's units (u/s).
     fn outward(&self, speed: f64) -> f64 {
         speed / self.ramps.inward(1.0, 1)
     }
 }
 
-/// The largest speed (u/s), `wanted` at most, at which a move over `distance` (u, 0 or more) can begin, one
-/// scan of that speed late, and still come down to the speed `exit` at its end without overshoot (O13).
+/// The largest speed (u/s), at most `wanted`, at which a move over `distance` (u, 0 or more) can begin, one scan of
+/// that speed late, and still slow down to the speed `exit` at its end without overshoot (O13).
 ///
-/// `limits` are those of the move, and hold alone: what it takes over from may allow more, but helps a slower
-/// start less than a faster one. Every move takes two scans at least: the speed is at most half of
-/// `distance / cycle`.
+/// `limits` are those of the move, and only they count: the previous motion may allow more, but that helps a slower
+/// start less than a faster one. Every move takes at least two scans, so the speed is at most half of `distance /
+/// cycle`.
 ///
-/// With a `brake` above 0 (u/s^2) the move begins slowing down with that acceleration, and the speed is 0 if there is none at which it
-/// can without turning.
+/// With a `brake` above 0 (u/s^2) the move begins while slowing down with that acceleration. The speed is 0 if no
+/// speed permits this without turning.
 ///
-/// Bounded work: one ramp if `wanted` will do, else two roots of ramps.
+/// Bounded work: one ramp if `wanted` is possible, otherwise two roots of ramps.
 pub fn entry_speed(wanted: f64, brake: f64, distance: f64, exit: f64, limits: &Limits, cycle: f64) -> f64 {
     let wanted = wanted.min(0.5 * distance / cycle);
     if wanted <= exit {
@@ -264,7 +266,7 @@ pub fn entry_speed(wanted: f64, brake: f64, distance: f64, exit: f64, limits: &L
         zero(slowest, fastest, |speed| beyond(speed, exit)).0.at
     };
     let entry = down_to(exit);
-    // To brake less takes more way where jerk and snap bind, so coming to rest may be shorter.
+    // Softer braking takes more distance where jerk and snap are bounded, so coming to rest may be shorter.
     if entry >= wanted || exit == 0.0 || beyond(entry, 0.0).value >= 0.0 {
         return entry;
     }

@@ -1,9 +1,10 @@
 //! Moves that end with an acceleration.
 //!
-//! What stands here: the candidates. What verifies them is in [`ladder`](super::ladder). A way back in time is a way: seen
-//! from its end, and mirrored, a move begins in the end state with its acceleration turned round, and acceleration and
-//! deceleration change places. So the ramps that begin in any state serve for both ends. Equations (O16) to (O20) and (O22) to (O26) are in
-//! `docs/planner-online.md`. Everything is in the kernel's units, with positions counted from the start.
+//! This module makes the candidates; [`ladder`](super::ladder) verifies them. A motion reversed in time is a
+//! motion, too. Seen from its end, and mirrored, a move begins in the end state with its acceleration reversed, and
+//! acceleration and deceleration change places. So the ramps that begin in any state serve for both ends. Equations
+//! (O16) to (O20) and (O22) to (O26) are in `docs/planner-online.md`. Everything is in the kernel's units, with
+//! positions counted from the start.
 
 use core::cell::Cell;
 
@@ -16,39 +17,40 @@ use crate::ramp::path::{Path, Way};
 use crate::ramp::solve::{Course, RAMP_SPANS, Ramps, heading};
 use crate::{DirectedLimits, Limits, Order, Setpoint};
 
-/// Most spans of a candidate: a push, a cruise, and a last ramp that is a move of one order less.
+/// Largest number of spans of a candidate: a push, a cruise, and a last ramp that is a move of one order less.
 pub(super) const END_SPANS: usize = RAMP_SPANS + 1 + CANDIDATE_SPANS;
 
-/// Changes of sign that are looked into for one push: the end of the last ramp may jump, where there is none to be found.
+/// Largest number of changes of sign that are examined for one push. The end of the last ramp may jump at a sign
+/// change without a zero.
 const CROSSINGS: u32 = 4;
 
-/// How far inside what is kept the nearest end acceleration stays, relative to it: on the border itself a limit would be kept
-/// to rounding only.
+/// Distance of the nearest end acceleration from the border of what is kept, relative to it. On the border itself a
+/// limit would be kept only to rounding.
 const NEAREST: f64 = 1e-7;
 
-/// How well the fastest way to a turn is known, in scans.
+/// Accuracy of the fastest path to a turn, in scans.
 const ROUGHLY: f64 = 1e-3;
 
-/// Scans by which a turn in one go is looked for to be sooner than one by way of a velocity that is held.
+/// Largest number of scans by which a turn in one go may be sooner than one with a constant velocity in between.
 const SOONER: u32 = 16;
 
-/// How often a velocity is halved on the last rung, and an end acceleration that is refused.
+/// Largest number of halvings of a velocity on the last rung, and of a refused end acceleration.
 const HALVINGS: u32 = 64;
 
-/// Spans of a whole move.
+/// The spans of a whole move.
 pub(super) type Wide = Spans<END_SPANS>;
 
-/// A move to find.
+/// The search for a move.
 pub(super) struct Ends<'a> {
     ramps: &'a Ramps,
-    /// The ramps of the way back.
+    /// The ramps of the time-reversed motion.
     back: Ramps,
     target: f64,
     velocity: f64,
     acceleration: f64,
-    /// The velocity a push goes for in each direction.
+    /// The velocity bound of a push in each direction.
     top: Sides,
-    /// What the positions of start and target may be off by.
+    /// The largest error of the positions of start and target.
     resolution: f64,
     solves: Cell<u32>,
     steps: Cell<u32>,
@@ -57,13 +59,14 @@ pub(super) struct Ends<'a> {
 /// The last ramp of a move, from some state.
 struct Last {
     spans: Candidate,
-    /// By how much it ends beyond the target.
+    /// The distance by which it ends beyond the target.
     beyond: f64,
-    /// What of that may be rounding.
+    /// The part of that which may be rounding.
     noise: f64,
 }
 
-/// Whether a motion inside `limits` can come to the velocity and acceleration of `end`, without jerk, and go on from there.
+/// Whether a motion inside `limits` can reach the velocity and acceleration of `end`, without jerk, and continue
+/// from there.
 pub(super) fn is_kept(end: &Setpoint, limits: &DirectedLimits) -> bool {
     let before = Setpoint {
         acceleration: -end.acceleration,
@@ -101,7 +104,7 @@ fn goes_on(state: &Setpoint, limits: &DirectedLimits) -> bool {
     })
 }
 
-/// The end acceleration nearest to that of `end` with which it is kept: its bound, or found by halving.
+/// The end acceleration nearest to that of `end` with which [`is_kept`] holds: its bound, or the result of halving.
 pub(super) fn nearest_kept(end: &Setpoint, limits: &DirectedLimits) -> f64 {
     let with = |acceleration: f64| Setpoint { acceleration, ..*end };
     let Limits {
@@ -120,7 +123,7 @@ pub(super) fn nearest_kept(end: &Setpoint, limits: &DirectedLimits) -> f64 {
     if is_kept(&with(most), limits) {
         return most;
     }
-    // A little inside, so that no rounding takes it out again.
+    // A little inside, so that no rounding moves it out again.
     let inside = DirectedLimits {
         positive: limits.positive * (1.0 - ON_LIMIT),
         negative: limits.negative * (1.0 - ON_LIMIT),
@@ -160,17 +163,17 @@ impl<'a> Ends<'a> {
         }
     }
 
-    /// Ramps solved so far.
+    /// Number of ramps solved so far.
     pub(super) const fn solves(&self) -> u32 {
         self.solves.get()
     }
 
-    /// Most steps one root took.
+    /// Largest number of steps of one root.
     pub(super) const fn steps(&self) -> u32 {
         self.steps.get()
     }
 
-    /// The end state as the start of the way back (O16).
+    /// The end state as the start of the time-reversed motion (O16).
     fn end(&self) -> Setpoint {
         Setpoint {
             velocity: self.velocity,
@@ -179,7 +182,7 @@ impl<'a> Ends<'a> {
         }
     }
 
-    /// The spans of a way back, forwards.
+    /// The spans of a time-reversed motion, in forward order.
     fn turned<const N: usize>(&self, spans: &Spans<N>) -> Spans<N> {
         let is_odd = self.ramps.order() == Order::Three;
         spans.backwards(if is_odd { 1.0 } else { -1.0 })
@@ -202,7 +205,8 @@ impl<'a> Ends<'a> {
         ramps.ramp(start, velocity, heading, Course::Free).spans
     }
 
-    /// The whole move from a `start` of constant velocity: seen from its end, one that ends with that velocity (O17).
+    /// The whole move from a `start` of constant velocity. Seen from its end, it is a move that ends with that
+    /// velocity (O17).
     pub(super) fn of_steady_start(&self, start: &Setpoint) -> Candidate {
         let search = Search::new(
             &self.back,
@@ -217,7 +221,8 @@ impl<'a> Ends<'a> {
         self.turned(&spans)
     }
 
-    /// The last ramp: a move of one order less, of the velocity to its end, which ends with the end acceleration (O18).
+    /// The last ramp: a move of one order less, from the velocity to its end value, which ends with the end
+    /// acceleration (O18).
     fn last(&self, start: &Setpoint) -> Last {
         let range = self
             .ramps
@@ -245,7 +250,8 @@ impl<'a> Ends<'a> {
         }
     }
 
-    /// Shows `see` the moves that push towards the bound of one `side`, then follow the last ramp to the target (O19).
+    /// Calls `see` with the moves that push towards the bound of one `side`, then follow the last ramp to the
+    /// target (O19).
     pub(super) fn pushes(&self, start: &Setpoint, side: f64, mut see: impl FnMut(&Wide)) {
         let top = side * if side < 0.0 { self.top.minus } else { self.top.plus };
         let mut spans = Wide::new();
@@ -297,9 +303,10 @@ impl<'a> Ends<'a> {
         }
     }
 
-    /// A ramp from `start` to a velocity, a cruise if that is a bound, and from it the way back from the end, turned (O20).
+    /// A ramp from `start` to a velocity, a cruise if that is a bound, and from there the time-reversed motion from
+    /// the end, in forward order (O20).
     ///
-    /// The way of both ramps together changes with the velocity without a jump, so there is always one.
+    /// The distance of both ramps together changes with the velocity without a jump, so there is always a solution.
     pub(super) fn two_phase(&self, start: &Setpoint) -> Wide {
         let end = self.end();
         let both = |velocity: f64| {
@@ -339,12 +346,14 @@ impl<'a> Ends<'a> {
         spans
     }
 
-    /// To the end without going back: a ramp to a velocity towards `side`, a cruise with it and the way back from the end, turned (O22);
-    /// in whole scans of the length `scan` if that is given. `None` where the slowest way that is left to the end is too long. Also the
-    /// part of the end acceleration it ends with.
+    /// To the end without reversal: a ramp to a velocity towards `side`, a cruise, and the time-reversed motion
+    /// from the end, in forward order (O22). If `scan` is given, the move takes whole scans of that length. `None`
+    /// if even the slowest remaining path to the end is too long. Also returns the part of the end acceleration
+    /// with which it ends.
     ///
-    /// The least whole number of scans follows from the fastest such move, the velocity from that number, or, where it can't be lowered, the
-    /// end acceleration (O23). At order 4 from rest the top of the way has jerk, too (O24).
+    /// The least whole number of scans follows from the fastest such move. The velocity follows from that number;
+    /// if it can't be lowered, the end acceleration follows (O23). At order 4 from rest the fastest point has jerk,
+    /// too (O24).
     pub(super) fn braking(&self, start: &Setpoint, side: f64, scan: Option<f64>) -> Option<(Wide, f64)> {
         if let Some(scan) = scan
             && self.ramps.order() == Order::Four
@@ -362,7 +371,7 @@ impl<'a> Ends<'a> {
         let way = |first: &Spans<RAMP_SPANS>, last: &Spans<RAMP_SPANS>| {
             follow(self.ramps, start, first).position + follow(&self.back, &end, last).position
         };
-        // How far beyond the target it ends, with a cruise that makes it `whole` or with none.
+        // The distance by which it ends beyond the target, with a cruise that makes it `whole`, or without one.
         let beyond = |speed: f64, whole: Option<f64>| {
             let (first, last) = both(side * speed);
             let moving = first.duration() + last.duration();
@@ -372,7 +381,7 @@ impl<'a> Ends<'a> {
                 at: speed,
                 value: side * (way(&first, &last) - self.target) + cruise,
                 noise: match scan {
-                    // Of the fastest only the whole scans are asked for.
+                    // For the fastest move only the whole scans are needed.
                     Some(scan) if whole.is_none() => ROUGHLY * scan * speed,
                     _ => exactly,
                 },
@@ -380,7 +389,7 @@ impl<'a> Ends<'a> {
             }
         };
         let slowest = self.ramps.arrested(&end).abs();
-        // What comes faster is down sooner in one go.
+        // A faster start slows down sooner in one go.
         let coming = side * self.ramps.arrested(start);
         let low = beyond(slowest, None);
         let comes_faster = coming > slowest && coming <= self.top.plus;
@@ -426,8 +435,8 @@ impl<'a> Ends<'a> {
         Some(self.in_one_go(start, side, scan, found))
     }
 
-    /// To the end from a constant velocity by one ramp, and the speed it ends with: that with which the ramp is as long as the way (O26). `None`
-    /// where a ramp to the end velocity is too short, or the slowest too long.
+    /// To the end from a constant velocity by one ramp, and the speed with which it ends: the ramp then has the
+    /// length of the path (O26). `None` if a ramp to the end velocity is too short, or the slowest ramp too long.
     pub(super) fn speeding(&self, start: &Setpoint, side: f64) -> Option<(Wide, f64)> {
         let ramp = |speed: f64| {
             let end = Setpoint {
@@ -462,10 +471,11 @@ impl<'a> Ends<'a> {
         Some((spans, speed))
     }
 
-    /// The turn `found` by way of a velocity that is held, or a sooner one at order 3 that brakes all the way from a constant velocity
-    /// (O25): jerk against the way, along it, against it, and then the end acceleration held.
+    /// The turn `found` with a constant velocity in between, or a sooner one at order 3 that brakes all the way
+    /// from a constant velocity (O25): jerk against the motion, with it, against it, and then the end acceleration
+    /// held.
     ///
-    /// Less of the end acceleration is as much later as its jerk takes to make up for it.
+    /// A smaller end acceleration delays the turn by the time in which its jerk makes up for it.
     fn in_one_go(&self, start: &Setpoint, side: f64, scan: f64, found: (Wide, f64)) -> (Wide, f64) {
         let speed = side * start.velocity;
         if self.ramps.order() != Order::Three || start.acceleration != 0.0 || speed <= 0.0 {
@@ -487,13 +497,15 @@ impl<'a> Ends<'a> {
             })
     }
 
-    /// The move of [`Ends::in_one_go`] from `speed` that takes this `time`, and the part of the end acceleration it ends with.
+    /// The move of [`Ends::in_one_go`] from `speed` that takes this `time`, and the part of the end acceleration
+    /// with which it ends.
     fn braking_all_the_way(&self, speed: f64, side: f64, time: f64) -> Option<(Wide, f64)> {
         let jerk = self.ramps.jerk();
         let rise = self.acceleration.abs() / jerk;
         let way = side * self.target;
-        // Of the time the end acceleration is built up and held for: how long it is held, how long the jerk is along the way, and that
-        // times its distance from the end, which follows from the velocity.
+        // `last` is the time in which the end acceleration is built up and held. Returned are the time for which it
+        // is held, the time of the jerk with the motion, and that time multiplied by its distance from the end,
+        // which follows from the velocity.
         let phases = |last: f64| {
             let held = (last - rise).max(0.0);
             let along = 0.5 * (time - last);
@@ -519,7 +531,8 @@ impl<'a> Ends<'a> {
         let (held, along, moment) = phases(last);
         let middle = moment / along;
         let (first, third) = (time - middle - 0.5 * along, middle - 0.5 * along - held);
-        // What comes faster than the move may is to be as slow as by a ramp to its velocity, at any time.
+        // A start faster than the move permits must slow down at least as a ramp to the permitted velocity does, at
+        // any time.
         let too_fast = (speed - self.top.plus).max(0.0);
         let brakes = first >= along && third >= 0.0 && jerk * first * first >= too_fast;
         let mut spans = Wide::new();
@@ -529,7 +542,8 @@ impl<'a> Ends<'a> {
         brakes.then_some((spans, last.min(rise) / rise))
     }
 
-    /// To the end in the `whole` time by way of `velocity`, with the part of the end acceleration with which it takes just that long.
+    /// To the end in the time `whole` at `velocity`, and the part of the end acceleration with which the move takes
+    /// exactly that time.
     fn braking_softly(&self, start: &Setpoint, velocity: f64, whole: f64) -> Option<(Wide, f64)> {
         let first = self.ramp(self.ramps, start, velocity);
         let begin = follow(self.ramps, start, &first).position;
@@ -565,8 +579,9 @@ impl<'a> Ends<'a> {
         (cruise >= 0.0 && lack < 1.0).then_some((spans, 1.0 - lack))
     }
 
-    /// From rest to the end in whole scans of the length `scan`, at order 4: the whole move of [`Ends::of_steady_start`], stretched in
-    /// time, which lowers every derivative (O24). Also the part of the end acceleration it ends with.
+    /// From rest to the end in whole scans of the length `scan`, at order 4: the whole move of
+    /// [`Ends::of_steady_start`], stretched in time, which lowers every derivative (O24). Also returns the part of
+    /// the end acceleration with which it ends.
     fn stretched(&self, start: &Setpoint, scan: f64) -> (Wide, f64) {
         let spans = self.of_steady_start(start);
         let scans = spans.duration() / scan;
@@ -579,7 +594,7 @@ impl<'a> Ends<'a> {
         (stretched, 1.0 / square)
     }
 
-    /// Acceleration and jerk to zero as soon as can be, then as from a constant velocity.
+    /// Acceleration and jerk to zero as soon as possible, then the move from a constant velocity.
     pub(super) fn arrest(&self, start: &Setpoint) -> Wide {
         let (low, high) = (-self.ramps.velocity(-1.0), self.ramps.velocity(1.0));
         let velocity = self.ramps.arrested(start).max(low).min(high);
@@ -591,8 +606,8 @@ impl<'a> Ends<'a> {
         spans
     }
 
-    /// To rest, and to the end by way of a velocity that is held for as long as it takes, found without a root as
-    /// (O15) is.
+    /// To rest, and to the end with a velocity that is held as long as needed. It is found without a root, like
+    /// (O15).
     pub(super) fn rest_then_run_up(&self, start: &Setpoint) -> Wide {
         let end = self.end();
         let brake = self.ramp(self.ramps, start, 0.0);
@@ -617,7 +632,7 @@ impl<'a> Ends<'a> {
             }
             held *= 0.5;
         }
-        // What is left is rounding.
+        // The rest is rounding.
         spans.extend(&self.turned(&direct));
         spans
     }

@@ -12,10 +12,11 @@ use crate::ramp::solve::{RAMP_SPANS, Ramps, heading};
 use crate::ramp::{is_there, scans};
 use crate::{DirectedLimits, Field, Limits, Order, PlanError, Setpoint};
 
-/// By how much a limit may be exceeded by what closes a plan on its target: half of what the contract grants.
+/// Largest excess over a limit by the correction that closes a plan on its target: half of what the contract
+/// permits.
 const UNSEEN: f64 = 0.5e-9;
 
-/// The way a plan was found, best first. A plan of a later rung is longer, not less exact.
+/// The method by which a plan was found, best first. A plan of a later rung is longer, not less exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rung {
     /// Push towards a velocity bound, then the fastest stop.
@@ -24,8 +25,8 @@ pub enum Rung {
     TwoPhase,
     /// Acceleration and jerk to zero, then push and stop.
     Arrest,
-    /// To rest, then on from there: on the grid, or, with an end velocity, two ramps and a cruise. With an end velocity the
-    /// ramp to it and a cruise, if that is a way to the target.
+    /// To rest, then on from there: on the grid, or, with an end velocity, two ramps and a cruise. With an end
+    /// velocity also the ramp to it and a cruise, if that leads to the target.
     Brake,
 }
 
@@ -44,10 +45,10 @@ impl Rung {
     }
 }
 
-/// What a plan has beyond its path.
+/// The parts of a plan beyond its path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Tail {
-    /// A grid plan after the brake, from the scan it begins with.
+    /// A grid plan after the brake, from the scan in which it begins.
     Grid { grid: GridPlan, begin: u32 },
     /// The scan in which it turns, and the position and acceleration there, both exactly.
     Turn {
@@ -58,7 +59,7 @@ pub(super) enum Tail {
 }
 
 impl Tail {
-    /// A grid plan after the brake, and the scan it begins with.
+    /// The grid plan after the brake, and the scan in which it begins.
     pub(super) const fn grid(&self) -> Option<(&GridPlan, u32)> {
         match self {
             Self::Grid { grid, begin } => Some((grid, *begin)),
@@ -67,17 +68,17 @@ impl Tail {
     }
 }
 
-/// A plan as found. It is large, so it is made where it is to stay.
+/// A plan as found. It is large, so it is built in its final place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Found {
     pub(super) rung: Rung,
     /// Ramps solved.
     pub(super) solves: u32,
-    /// Most steps of one root.
+    /// Largest number of steps of one root.
     pub(super) steps: u32,
     /// Positions count from the start.
     pub(super) path: Path<MAX_PIECES>,
-    /// What the rounding of the path leaves to the target; it is spread over the whole plan (O9).
+    /// The distance to the target that the rounding of the path leaves; it is spread over the whole plan (O9).
     pub(super) residual: f64,
     /// The residual moves no set-point by more than a unit in its last place from scan to scan.
     pub(super) is_rounding: bool,
@@ -101,7 +102,7 @@ impl Found {
     }
 }
 
-/// A problem, its search, and what verifies a candidate.
+/// A problem, its search, and the data for verifying a candidate.
 struct Climb<'a> {
     search: Search<'a>,
     ramps: &'a Ramps,
@@ -112,16 +113,16 @@ struct Climb<'a> {
     end_velocity: f64,
     end_acceleration: f64,
     cycle: f64,
-    /// How far apart (u) the positions of a scan may be for rounding alone.
+    /// The largest distance (u) between positions of one scan that is rounding alone.
     resolved: f64,
     limits: &'a DirectedLimits,
-    /// What can't be avoided, once it had to be known.
+    /// The unavoidable excess, once it was needed.
     unavoidable: Option<Excess>,
 }
 
 impl OnlinePlan {
-    /// Finds the first candidate from rung `first` on that keeps the limits and arrives (O8), for a plan of
-    /// which nothing is found yet; before its last ramp it goes for the velocity `top` of its direction.
+    /// Finds the first candidate from rung `first` on that keeps the limits and arrives (O8), for an empty plan.
+    /// Before its last ramp it goes for the velocity `top` of its direction.
     pub(super) fn climb(
         &mut self,
         first: Rung,
@@ -178,8 +179,8 @@ impl OnlinePlan {
         })
     }
 
-    /// As [`OnlinePlan::climb`], for a plan with an end acceleration: of the candidates that keep the limits and arrive the
-    /// shortest.
+    /// The same as [`OnlinePlan::climb`], for a plan with an end acceleration: the shortest of the candidates that
+    /// keep the limits and arrive.
     pub(super) fn climb_to_end(
         &mut self,
         top: Sides,
@@ -250,8 +251,9 @@ impl OnlinePlan {
         Ok(())
     }
 
-    /// Takes `spans` for the way to the target, which it passes with this velocity and an acceleration against it, or, without velocity,
-    /// turns at; has the motion come to rest behind it. Whether the way arrives.
+    /// Takes `spans` as the path to the target. The plan passes the target with this velocity and an acceleration
+    /// against the motion, or, without velocity, turns there. Behind it the motion comes to rest. Returns whether
+    /// the path arrives.
     pub(super) fn climb_to_brake(
         &mut self,
         ramps: &Ramps,
@@ -276,7 +278,7 @@ impl OnlinePlan {
         let Some(scan) = scans(found.path.duration(), cycle).filter(|_| arrives) else {
             return false;
         };
-        // What passes between two scans is taken over up to one later.
+        // After a passage between two scans, the next motion takes over up to one scan later.
         let held = if velocity == 0.0 { 0.0 } else { cycle };
         let mut spans = *spans;
         spans.push(ramps.scale().moments(held), 0.0);
@@ -350,8 +352,8 @@ impl<'a> Climb<'a> {
         }
     }
 
-    /// Lays `candidate` into `found`; whether it arrives and, but on the last rung, exceeds no more than what
-    /// can't be avoided.
+    /// Puts `candidate` into `found`. Returns whether it arrives and, except on the last rung, exceeds no more than
+    /// is unavoidable.
     fn verify<const N: usize>(&mut self, found: &mut Found, candidate: &Spans<N>) -> bool {
         if candidate.len() > MAX_PIECES {
             return false;
@@ -380,7 +382,7 @@ impl<'a> Climb<'a> {
         found.rung == Rung::Brake || found.excess.is_none_or(|excess| self.is_unavoidable(&excess))
     }
 
-    /// As [`Climb::verify`] for a candidate of the last rung that has another behind it.
+    /// The same as [`Climb::verify`] for a candidate of the last rung that is followed by another one.
     fn verify_straight(&mut self, found: &mut Found, candidate: &Candidate) -> bool {
         let is_plan =
             self.verify(found, candidate) && found.excess.is_none_or(|excess| self.is_unavoidable(&excess));
@@ -405,8 +407,8 @@ impl<'a> Climb<'a> {
             && (self.ramps.order() < Order::Four || end.jerk.abs() <= ON_LIMIT * jerk)
     }
 
-    /// Whether what spreads `residual` (u) over `duration` (s) takes no more than a part of each limit that nobody sees: the
-    /// most of the derivatives of the share (O9). Roots are not looked for beyond the noise of their positions.
+    /// Whether spreading `residual` (u) over `duration` (s) takes no more than an invisible part of each limit: the
+    /// largest derivatives of the share (O9). Roots are not searched beyond the noise of their positions.
     fn closes_gently(&self, residual: f64, duration: f64) -> bool {
         let (limits, residual) = (&self.limits.limits, residual.abs());
         let square = duration * duration;
@@ -416,7 +418,7 @@ impl<'a> Climb<'a> {
                 && 360.0 * residual <= UNSEEN * limits.snap * (square * square))
     }
 
-    /// Whether a stop at once, or getting inside the limits as soon as can be, exceeds the limits as much.
+    /// Whether an immediate stop, or getting inside the limits as soon as possible, exceeds the limits as much.
     fn is_unavoidable(&mut self, excess: &Excess) -> bool {
         let known = self.unavoidable.unwrap_or_else(|| self.least_excess());
         self.unavoidable = Some(known);
@@ -453,7 +455,7 @@ impl<'a> Climb<'a> {
         excess::excess(&path, 0.0, None, self.limits).unwrap_or_default()
     }
 
-    /// To rest, and with the next scan a grid plan: what can't fail for want of accuracy.
+    /// To rest, and from the next scan on a grid plan: a method that can't fail for lack of accuracy.
     fn brake_to_grid(
         &mut self,
         found: &mut Found,

@@ -1,8 +1,8 @@
 //! From any moving state to a position.
 //!
-//! What stands here: the plan, and the ladder of ways to find one, each verified before it is taken. The
-//! ramps it is made of are those of [`ramp`](mod@crate::ramp), their maths that of [`kernel`](mod@crate::kernel).
-//! What does not: which move an axis makes next. Equations (O1) and on are in `docs/planner-online.md`.
+//! This module has the plan, and the ladder of methods to find one; each candidate is verified before it is taken.
+//! Its ramps are those of [`ramp`](mod@crate::ramp), their maths that of [`kernel`](mod@crate::kernel). It does not
+//! choose the next move of an axis. Equations (O1) and on are in `docs/planner-online.md`.
 
 mod blend;
 mod ends;
@@ -21,7 +21,7 @@ use crate::ramp::{self, Segment};
 use crate::{DirectedLimits, Field, Limits, Order, PlanError, RampPlan, Setpoint};
 use ladder::{Found, Tail};
 
-/// Most pieces of a plan.
+/// Largest number of pieces of a plan.
 pub(crate) const MAX_PIECES: usize = 30;
 
 /// A plan from any state to a position, at rest there or with an end velocity: at most 30 pieces of
@@ -37,7 +37,7 @@ pub struct OnlinePlan {
     found: Found,
 }
 
-/// Where a move ends.
+/// The end of a move.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Goal {
     /// Position (u).
@@ -52,14 +52,14 @@ impl OnlinePlan {
     /// Plans from `start` to rest at `target` (u) in the least time this planner knows, with sample time
     /// `cycle` (s).
     ///
-    /// The order is that of `limits` ([`Limits::order`]). At order 3 the start's jerk plays no part, at
-    /// order 2 nor does its acceleration: they may jump. Acceleration is bounded by `limits.acceleration`
-    /// while the speed grows and by `limits.deceleration` while it falls; in a ramp whose velocity changes
-    /// sign the lower of the two holds (R11, O5).
+    /// The order is that of `limits` ([`Limits::order`]). At order 3 the start's jerk is not used, at order 2 its
+    /// acceleration is not used either: they may jump. `limits.acceleration` bounds the acceleration while the
+    /// speed grows, `limits.deceleration` while it falls. In a ramp whose velocity changes sign the lower one of
+    /// the two holds (R11, O5).
     ///
-    /// A start outside `limits` is brought inside first, in least time, under the larger ones of `limits`
-    /// and `before`; an infinite bound in `before` counts as that of `limits`. What is exceeded on the way
-    /// is told by [`OnlinePlan::excess`].
+    /// A start outside `limits` is brought inside first, in least time, under the larger ones of `limits` and
+    /// `before`; an infinite bound in `before` counts as that of `limits`. [`OnlinePlan::excess`] reports the
+    /// excess.
     ///
     /// Bounded work: at most [`MAX_SOLVES`] ramps, in practice about 5 ([`OnlinePlan::solves`]), each with at
     /// most seven roots of [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps.
@@ -78,11 +78,11 @@ impl OnlinePlan {
         Self::with(Rung::PushThenStop, start, target, 0.0, limits, before, cycle)
     }
 
-    /// As [`OnlinePlan::new`], but the plan passes `target` with `end_velocity` (u/s) and keeps it: the
-    /// first instant it can be there with that velocity and no acceleration or jerk.
+    /// The same as [`OnlinePlan::new`], but the plan passes `target` with `end_velocity` (u/s) and keeps it. It
+    /// ends at the first instant at which it can be there with that velocity and no acceleration or jerk.
     ///
     /// # Errors
-    /// As [`OnlinePlan::new`], and [`PlanError::InvalidInput`] for an `end_velocity` beyond the limit.
+    /// Those of [`OnlinePlan::new`], and [`PlanError::InvalidInput`] for an `end_velocity` beyond the limit.
     pub fn passing(
         start: &Setpoint,
         target: f64,
@@ -102,11 +102,11 @@ impl OnlinePlan {
         )
     }
 
-    /// As [`OnlinePlan::passing`], with the ladder entered at `first`: to compare its rungs, and to test
-    /// those that are hardly ever needed.
+    /// The same as [`OnlinePlan::passing`], but the search begins on the rung `first`: for comparing rungs, and for
+    /// testing those that are hardly ever needed.
     ///
     /// # Errors
-    /// As [`OnlinePlan::passing`].
+    /// Those of [`OnlinePlan::passing`].
     pub fn with(
         first: Rung,
         start: &Setpoint,
@@ -120,12 +120,13 @@ impl OnlinePlan {
         Self::by_direction_with(first, start, target, end_velocity, limits, before, cycle)
     }
 
-    /// As [`OnlinePlan::passing`], with a velocity bound for each direction: a push goes for that of its own side.
+    /// The same as [`OnlinePlan::passing`], with a velocity bound for each direction: a push goes for the bound of
+    /// its own direction.
     ///
-    /// A start on the far side of its bound is brought inside like any start outside its limits.
+    /// A start beyond its bound is brought inside like any start outside its limits.
     ///
     /// # Errors
-    /// As [`OnlinePlan::passing`].
+    /// Those of [`OnlinePlan::passing`].
     pub fn by_direction(
         start: &Setpoint,
         target: f64,
@@ -138,10 +139,10 @@ impl OnlinePlan {
         Self::by_direction_with(first, start, target, end_velocity, limits, before, cycle)
     }
 
-    /// As [`OnlinePlan::with`], with a velocity bound for each direction.
+    /// The same as [`OnlinePlan::with`], with a velocity bound for each direction.
     ///
     /// # Errors
-    /// As [`OnlinePlan::passing`].
+    /// Those of [`OnlinePlan::passing`].
     pub fn by_direction_with(
         first: Rung,
         start: &Setpoint,
@@ -158,8 +159,8 @@ impl OnlinePlan {
         Self::cruising(first, start, target, end_velocity, top, limits, before, cycle)
     }
 
-    /// As [`OnlinePlan::by_direction_with`], but until its last ramp the plan goes for the velocity `top` (u/s), at most
-    /// that of `limits`; so an `end_velocity` above `top` is reached at the end and not before.
+    /// The same as [`OnlinePlan::by_direction_with`], but until its last ramp the plan goes for the velocity `top`
+    /// (u/s), at most that of `limits`. So an `end_velocity` above `top` is reached at the end and not before.
     #[expect(clippy::too_many_arguments, reason = "a problem, as it was given")]
     fn cruising(
         first: Rung,
@@ -210,19 +211,22 @@ impl OnlinePlan {
         Ok(plan)
     }
 
-    /// Plans from `start` to a `goal` that may have an acceleration, with a velocity bound for each direction: the first
-    /// instant it is known how to be there with that velocity and acceleration, and no jerk.
+    /// Plans from `start` to a `goal` that may have an acceleration, with a velocity bound for each direction. It
+    /// ends at the first known instant at which it can have that velocity and acceleration at the target, and no
+    /// jerk.
     ///
-    /// Without an end acceleration it is [`OnlinePlan::by_direction`]. With one the plan goes on from its end with that
-    /// acceleration, so whoever asked for it has to take over before the velocity comes to its bound. It is the shortest
-    /// of several candidates, each verified: pushes towards both bounds with a last ramp that is a move of one order less,
-    /// and what meets ramps back from the end (docs/planner-online.md, section 8).
+    /// Without an end acceleration it is [`OnlinePlan::by_direction`]. With one, the plan continues behind its end
+    /// with that acceleration, so the caller must take over before the velocity reaches its bound. The plan is the
+    /// shortest of several candidates, each verified: pushes towards both bounds with a last ramp that is a move of
+    /// one order less, and moves that meet ramps computed back from the end (docs/planner-online.md, section 8).
     ///
-    /// Bounded work: at most 2,000 last ramps of at most [`MAX_SOLVES`] ramps each; in practice some thousand ramps.
+    /// Bounded work: at most 2,000 last ramps of at most [`MAX_SOLVES`] ramps each; in practice some thousand
+    /// ramps.
     ///
     /// # Errors
-    /// As [`OnlinePlan::passing`]; [`PlanError::Unreachable`] for an end state that is outside the limits, that no motion
-    /// inside them can have come to, or that none inside them can go on from, with the nearest that is not.
+    /// Those of [`OnlinePlan::passing`]; [`PlanError::Unreachable`] for an end state that is outside the limits,
+    /// that no motion inside them can reach, or from which none inside them can continue, with the nearest possible
+    /// one.
     pub fn reaching(
         start: &Setpoint,
         goal: &Goal,
@@ -300,11 +304,11 @@ impl OnlinePlan {
         Ok(plan)
     }
 
-    /// As [`OnlinePlan::passing`], but where the rates of `limits`, once inside, would lead out of the velocity of both
-    /// limits and those of `before` would not, the rates of `before` hold throughout.
+    /// The same as [`OnlinePlan::passing`], with one exception. If the rates of `limits`, once inside, would lead
+    /// out of the velocity of both limits and those of `before` would not, the rates of `before` hold throughout.
     ///
     /// # Errors
-    /// As [`OnlinePlan::passing`].
+    /// Those of [`OnlinePlan::passing`].
     pub fn keeping_velocity(
         start: &Setpoint,
         target: f64,
@@ -317,10 +321,10 @@ impl OnlinePlan {
         Self::keeping_velocities(start, target, end_velocity, limits, before, cycle)
     }
 
-    /// As [`OnlinePlan::keeping_velocity`], with a velocity bound for each direction.
+    /// The same as [`OnlinePlan::keeping_velocity`], with a velocity bound for each direction.
     ///
     /// # Errors
-    /// As [`OnlinePlan::passing`].
+    /// Those of [`OnlinePlan::passing`].
     pub fn keeping_velocities(
         start: &Setpoint,
         target: f64,
@@ -346,7 +350,7 @@ impl OnlinePlan {
         if kept == *limits || !leaves(&plan) {
             return Ok(plan);
         }
-        // Too late for the lower rates: the ones before hold to the end if that keeps their velocity.
+        // Too late for the lower rates: the previous ones hold to the end if they keep the velocity.
         match lowered(&kept) {
             Ok(mut other) if !leaves(&other) => {
                 other.found.excess = excess::excess(&other.found.path, end_velocity, None, limits);
@@ -356,7 +360,7 @@ impl OnlinePlan {
         }
     }
 
-    /// The share of the residual that is made up for after a `part` of the path (O9).
+    /// The share of the residual that is corrected after a `part` of the path (O9).
     #[inline]
     fn share(&self, part: f64) -> f64 {
         if self.found.is_rounding {
@@ -366,16 +370,16 @@ impl OnlinePlan {
         }
     }
 
-    /// Number of scans until the target; 0 if the start is there.
+    /// Number of scans until the target; 0 if the start is on the target.
     pub const fn scans(&self) -> u32 {
         self.scans
     }
 
-    /// The set-point `scan` cycles after the start, evaluated in closed form from the piece it lies in.
+    /// The set-point `scan` cycles after the start, evaluated in closed form from its piece.
     ///
-    /// `scan` 0 is the start; from [`OnlinePlan::scans`] on it is the goal: at rest exactly on the target,
-    /// or moving on with exactly the end velocity. Between them the highest derivative is the one in force
-    /// just before the instant. At most 30 comparisons.
+    /// `scan` 0 is the start. From [`OnlinePlan::scans`] on it is the goal: at rest exactly on the target, or
+    /// moving on with exactly the end velocity. In between, the highest derivative is the one in force just before
+    /// the instant. At most 30 comparisons.
     #[inline]
     pub fn at(&self, scan: u64) -> Setpoint {
         if scan >= u64::from(self.scans) {
@@ -407,9 +411,9 @@ impl OnlinePlan {
         }
     }
 
-    /// As [`OnlinePlan::at`], for a motion in progress, asked scan after scan: the piece is looked for where it
-    /// changes.
-    // In line with its caller: a set-point that came from a call was written and read again.
+    /// The same as [`OnlinePlan::at`], for a motion in progress that is evaluated scan after scan: the piece is
+    /// searched only where it changes.
+    // Inlined into its caller: a returned set-point would be written to memory and read again.
     #[inline(always)]
     pub fn next(&mut self, scan: u64) -> Setpoint {
         if scan >= u64::from(self.scans) || self.found.tail.is_some() || scan == 0 {
@@ -421,7 +425,7 @@ impl OnlinePlan {
         }
     }
 
-    /// Whether `scan` is in the piece in which [`OnlinePlan::next`] looked last.
+    /// Whether `scan` is in the piece that [`OnlinePlan::next`] used last.
     #[inline(always)]
     pub(crate) fn is_in_piece(&self, scan: u64) -> bool {
         let is_on_path = scan < u64::from(self.scans) && self.found.tail.is_none();
@@ -435,8 +439,8 @@ impl OnlinePlan {
         self.on_target(state, part)
     }
 
-    /// A state of the path, a `part` of its duration after the start, in the coordinates of the axis, with its share of
-    /// the residual.
+    /// A state of the path, a `part` of its duration after the start, in the coordinates of the axis, with its
+    /// share of the residual.
     #[inline]
     fn on_target(&self, state: Setpoint, part: f64) -> Setpoint {
         let residual = self.found.residual * self.share(part);
@@ -452,7 +456,7 @@ impl OnlinePlan {
             return Setpoint::at_rest(self.target);
         }
         let since = scan as f64 * self.cycle - self.duration();
-        // On the target in a scan is on it, whatever rounding says of the duration.
+        // A plan that reaches its target in a scan is on it there, independent of the rounding of the duration.
         let since = if since.abs() <= ON_LIMIT * self.cycle {
             0.0
         } else {
@@ -498,13 +502,13 @@ impl OnlinePlan {
         ))
     }
 
-    /// By how much the start state forced the plan out of its limits, if it did by more than 1e-9 of them.
+    /// The excess that the start state forced on the plan, if it is more than 1e-9 of the limits.
     pub const fn excess(&self) -> Option<Excess> {
         self.found.excess
     }
 
-    /// What of [`OnlinePlan::excess`] is beyond `limits`, too, which are no lower than those of the plan; found as
-    /// by [`RampPlan::excess_over`], in at most 30 pieces.
+    /// The part of [`OnlinePlan::excess`] that is also beyond `limits`, which are no lower than those of the plan.
+    /// It is found as by [`RampPlan::excess_over`], in at most 30 pieces.
     pub fn excess_over(&self, limits: &Limits) -> Option<Excess> {
         self.excess_beyond(&(*limits).into())
     }
@@ -514,7 +518,7 @@ impl OnlinePlan {
         excess::excess(&self.found.path, self.end_velocity, None, limits)
     }
 
-    /// Time until the target (s), not rounded to scans but where a grid plan ends it.
+    /// Time until the target (s). It is not rounded to scans unless a grid plan ends the motion.
     pub fn duration(&self) -> f64 {
         match self.grid() {
             Some((grid, begin)) => f64::from(begin) * self.cycle + grid.duration(),
@@ -522,7 +526,7 @@ impl OnlinePlan {
         }
     }
 
-    /// The grid plan it has after the brake, and the scan that begins with.
+    /// The grid plan after the brake, and the scan in which it begins.
     fn grid(&self) -> Option<(&GridPlan, u32)> {
         self.found.tail.as_ref().and_then(Tail::grid)
     }
@@ -550,17 +554,17 @@ impl OnlinePlan {
         self.end_acceleration
     }
 
-    /// The rung of the ladder the plan is from.
+    /// The rung of the ladder that found the plan.
     pub const fn rung(&self) -> Rung {
         self.found.rung
     }
 
-    /// Ramps solved to find the plan, on all rungs tried; at most [`MAX_SOLVES`].
+    /// Number of ramps solved to find the plan, on all tried rungs; at most [`MAX_SOLVES`].
     pub const fn solves(&self) -> u32 {
         self.found.solves
     }
 
-    /// Most steps one root took, at most [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS).
+    /// Largest number of steps of one root, at most [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS).
     pub const fn steps(&self) -> u32 {
         self.found.steps
     }
@@ -574,7 +578,7 @@ impl OnlinePlan {
             jerk: first.jerk,
             snap: first.snap,
         });
-        // The grid plan begins with a scan.
+        // The grid plan begins in a whole scan.
         let wait = self.grid().map_or(0.0, |(_, begin)| {
             f64::from(begin) * self.cycle - self.found.path.duration()
         });

@@ -1,4 +1,4 @@
-//! The candidates of the ladder: push then stop, by way of a peak velocity, from steady velocity.
+//! The candidates of the ladder: push then stop, with a peak velocity, from a constant velocity.
 //!
 //! Everything is in the kernel's units, with positions counted from the start.
 
@@ -10,38 +10,38 @@ use crate::math::min;
 use crate::ramp::path::Way;
 use crate::ramp::solve::{Course, RAMP_SPANS, Ramp, Ramps, heading};
 
-/// Most spans of a candidate: a ramp before it, a push, a cruise and a stop.
+/// Largest number of spans of a candidate: a ramp before it, a push, a cruise and a stop.
 pub(super) const CANDIDATE_SPANS: usize = 3 * RAMP_SPANS + 1;
 
-/// In how many parts a span of the push is looked at for the first crossing of a move that does not end at
+/// Number of parts of a span of the push that are examined for the first crossing of a move that does not end at
 /// rest (O4).
 pub(super) const PARTS: usize = 8;
 
-/// Most ramps [`Search::push_then_stop`] solves: one per look at the push, one per step of the root, and
-/// those around them.
+/// Largest number of ramps that [`Search::push_then_stop`] solves: one for each check of the push, one for each
+/// step of the root, and those around them.
 const MAX_PUSH_SOLVES: u32 = (PARTS * RAMP_SPANS) as u32 + MAX_STEPS + 6;
 
-/// How often a velocity is halved on the last rung: what is left is rounding beside the bound.
+/// Largest number of halvings of a velocity on the last rung: the rest is rounding beside the bound.
 const HALVINGS: u32 = 64;
 
-/// Most ramps a plan may solve, on all rungs together.
+/// Largest number of ramps that a plan may solve, on all rungs together.
 pub const MAX_SOLVES: u32 = 2 * MAX_PUSH_SOLVES + 2 * (MAX_STEPS + 3) + 2 * (HALVINGS + 1) + 5;
 
-/// Spans of a whole move.
+/// The spans of a whole move.
 pub(super) type Candidate = Spans<CANDIDATE_SPANS>;
 
-/// A move to find.
+/// The search for a move.
 pub(super) struct Search<'a> {
     ramps: &'a Ramps,
     target: f64,
     end_velocity: f64,
-    /// The velocity a push goes for and a cruise keeps in each direction; that of the limits, or less.
+    /// The velocity that a push goes for and a cruise keeps in each direction: that of the limits, or less.
     top: Sides,
-    /// What the positions of start and target may be off by.
+    /// The largest error of the positions of start and target.
     resolution: f64,
-    /// Ramps solved so far.
+    /// Number of ramps solved so far.
     solves: Cell<u32>,
-    /// Most steps one root took.
+    /// Largest number of steps of one root.
     steps: Cell<u32>,
 }
 
@@ -49,14 +49,14 @@ pub(super) struct Search<'a> {
 struct Stop {
     start: Setpoint,
     ramp: Ramp,
-    /// By how much it ends beyond the target.
+    /// The distance by which it ends beyond the target.
     beyond: f64,
-    /// What of that may be rounding.
+    /// The part of that which may be rounding.
     noise: f64,
 }
 
 impl Stop {
-    /// No stop yet. It is large, so it is laid where it is to stay.
+    /// No stop yet. It is large, so it is built in its final place.
     const fn nothing() -> Self {
         Self {
             start: Setpoint::at_rest(0.0),
@@ -66,7 +66,7 @@ impl Stop {
         }
     }
 
-    /// How far it ends beyond the target in the direction `side`, for the argument `at` of a root.
+    /// The distance by which it ends beyond the target in the direction `side`, for the argument `at` of a root.
     fn ahead(&self, at: f64, side: f64) -> Point {
         Point {
             at,
@@ -76,7 +76,7 @@ impl Stop {
         }
     }
 
-    /// Begins at a `state` that it comes to after a `time` of its first span.
+    /// Moves its begin to `state`, which it reaches after `time` of its first span.
     fn follow(&mut self, time: f64, state: &Setpoint) {
         if time > 0.0 {
             self.ramp.spans.advance(time);
@@ -84,7 +84,7 @@ impl Stop {
         }
     }
 
-    /// As [`Stop::ahead`], where its start moves along a push with `input`.
+    /// The same as [`Stop::ahead`], if its start moves along a push with `input`.
     fn ahead_of(&self, at: f64, side: f64, input: f64) -> Point {
         Point {
             slope: side * self.ramp.speed_of_end(input),
@@ -114,7 +114,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The velocity, with its sign, that a push towards `side` goes for.
+    /// The signed velocity that a push towards `side` goes for.
     fn top(&self, side: f64) -> f64 {
         if side < 0.0 {
             side * self.top.minus
@@ -123,17 +123,17 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Ramps solved so far.
+    /// Number of ramps solved so far.
     pub(super) const fn solves(&self) -> u32 {
         self.solves.get()
     }
 
-    /// Most steps one root took.
+    /// Largest number of steps of one root.
     pub(super) const fn steps(&self) -> u32 {
         self.steps.get()
     }
 
-    /// The whole move where the kernel has it (O3).
+    /// The whole move, if the kernel can solve it (O3).
     pub(super) fn profile(&self, start: &Setpoint) -> Option<Spans<THIRD_SPANS>> {
         if self.end_velocity != 0.0 {
             return None;
@@ -144,9 +144,9 @@ impl<'a> Search<'a> {
         Some(profile.spans)
     }
 
-    /// Push towards a velocity bound, then the fastest stop, which begins where it ends on the target (O2).
+    /// Push towards a velocity bound, then the fastest stop, which begins such that it ends on the target (O2).
     ///
-    /// They are laid in `spans`, which has none yet.
+    /// The spans are put into `spans`, which is empty.
     pub(super) fn push_then_stop(&self, spans: &mut Candidate, start: &Setpoint) {
         if let Some(profile) = self.profile(start) {
             spans.extend(&profile);
@@ -187,7 +187,7 @@ impl<'a> Search<'a> {
                     way.go(time);
                     way.state
                 };
-                // As long as the push goes the way of the stop, that ends where it did.
+                // As long as the push is equal to the stop, the stop ends at the same place.
                 let along = min(stop.ramp.goes_along(span.input), span.duration);
                 stop.follow(along, &after(along));
                 if along < span.duration {
@@ -214,8 +214,9 @@ impl<'a> Search<'a> {
         spans.extend(&stop.ramp.spans);
     }
 
-    /// Whether the whole `push` to the velocity `top` and the stop behind it leave a move that ends at rest short of its
-    /// target by more than rounding: then no end of a span needs a look, and all three are appended to `spans`.
+    /// Whether the whole `push` to the velocity `top` and the stop behind it leave a move that ends at rest short
+    /// of its target by more than rounding. Then no end of a span needs a check, and all three are appended to
+    /// `spans`.
     fn cruises(&self, spans: &mut Candidate, start: &Setpoint, push: &Spans<RAMP_SPANS>, top: f64) -> bool {
         let end = follow(self.ramps, start, push);
         let side = top.signum();
@@ -236,18 +237,18 @@ impl<'a> Search<'a> {
         cruises
     }
 
-    /// Whether a `push` towards `side` leads the farther the longer it is followed, so that it comes to the target once: it keeps its
-    /// direction from the start, inside the limits, and goes for no less than the velocity at the end.
+    /// Whether a longer `push` towards `side` always leads farther, so that it reaches the target once. The push
+    /// must keep its direction from the start, inside the limits, and go for at least the velocity at the end.
     fn leads_on(&self, start: &Setpoint, push: &Ramp, side: f64) -> bool {
         let end = side * self.end_velocity;
         push.viable && side * start.velocity >= 0.0 && end >= 0.0 && end <= side * self.top(side)
     }
 
-    /// `way` behind a `span` of a push towards `side`, if a stop from there ends short of the target: then so does one from each of its
-    /// parts. Else the `stop` is that from its begin.
+    /// The state behind a `span` of a push towards `side`, if a stop from there ends short of the target: then a
+    /// stop from each of its parts does, too. Otherwise `stop` becomes the one from the begin of the span.
     fn short_behind(&self, stop: &mut Stop, way: &Way, span: &Span, side: f64) -> Option<Way> {
         let mut end = *way;
-        // Part by part, for the bits it has where each gets a look.
+        // Part by part, so that the bits are the same as with a check of each part.
         for part in span.split(PARTS) {
             end.begin(part.input);
             end.go(part.duration);
@@ -291,7 +292,7 @@ impl<'a> Search<'a> {
         spans
     }
 
-    /// Acceleration and jerk to zero as soon as can be, then push and stop (O7).
+    /// Acceleration and jerk to zero as soon as possible, then push and stop (O7).
     pub(super) fn arrest_then_push(&self, start: &Setpoint) -> Candidate {
         let (low, high) = (-self.ramps.velocity(-1.0), self.ramps.velocity(1.0));
         let velocity = self.ramps.arrested(start).max(low).min(high);
@@ -305,10 +306,10 @@ impl<'a> Search<'a> {
         spans
     }
 
-    /// The ramp to the end velocity, which is not 0, and a cruise with it (O15); `None` if that ramp ends beyond the target, or if
-    /// the end velocity is more than a cruise may have and than the start comes with.
+    /// The ramp to the end velocity, which is not 0, and a cruise with it (O15). `None` if that ramp ends beyond
+    /// the target, or if the end velocity is larger than that of a cruise and of the start.
     ///
-    /// The cruise leaves nothing to be met by a root, however short the move.
+    /// The cruise leaves nothing for a root to find, even for a very short move.
     pub(super) fn ramp_then_cruise(&self, start: &Setpoint) -> Option<Candidate> {
         let stop = self.stop(start);
         let side = self.end_velocity.signum();
@@ -328,11 +329,11 @@ impl<'a> Search<'a> {
         Some(spans)
     }
 
-    /// To rest, and to the end velocity, which is not 0, by way of a velocity that is held for as long as it
-    /// takes (O15).
+    /// To rest, and to the end velocity, which is not 0, with a velocity in between that is held as long as needed
+    /// (O15).
     ///
-    /// It is the highest of ever halved ones with which the move does not go too far: forwards, or, where the
-    /// ramp from rest would end beyond the target, backwards. So nothing has to be met by a root.
+    /// That velocity is the first of repeatedly halved ones with which the move does not go too far: forwards, or,
+    /// if the ramp from rest would end beyond the target, backwards. So there is nothing for a root to find.
     pub(super) fn rest_then_run_up(&self, start: &Setpoint) -> Candidate {
         let brake = self.ramp(start, 0.0);
         let rest = steady(&follow(self.ramps, start, &brake), 0.0);
@@ -370,7 +371,7 @@ impl<'a> Search<'a> {
             }
             held = (0.5 * held).max(least);
         }
-        // What is left is rounding.
+        // The rest is rounding.
         spans.extend(&direct.ramp.spans);
         spans
     }
@@ -380,7 +381,7 @@ impl<'a> Search<'a> {
         self.whole_ramp(start, velocity).spans
     }
 
-    /// As [`Search::ramp`], with what is known of it.
+    /// The same as [`Search::ramp`], with all data of the ramp.
     pub(super) fn whole_ramp(&self, start: &Setpoint, velocity: f64) -> Ramp {
         let mut ramp = Ramp::nothing();
         self.lay(&mut ramp, start, velocity);
@@ -393,9 +394,9 @@ impl<'a> Search<'a> {
         self.ramps.lay(ramp, start, velocity, heading, Course::Free);
     }
 
-    /// The speed between `near`, from which the ramp alone ends short of the target, and `far`, from which
-    /// it ends beyond, where it ends on the target (O11); `None` if they do not bracket it. Speeds are those
-    /// towards the side `side`.
+    /// The speed between `near` and `far` at which the ramp alone ends on the target (O11). From `near` it ends
+    /// short of the target, from `far` beyond it. `None` if they do not bracket the target. Speeds are those
+    /// towards `side`.
     pub(super) fn speed_on_target(&self, start: &Setpoint, side: f64, near: f64, far: f64) -> Option<f64> {
         let at = |speed: f64| self.ramp_to(start, side * speed).ahead(speed, side);
         let (low, high) = (at(near), at(far));
@@ -413,7 +414,7 @@ impl<'a> Search<'a> {
         self.ramp_to(start, self.end_velocity)
     }
 
-    /// The same in place of what `stop` was, unless it begins there already.
+    /// The same, written to `stop`, unless it already begins there.
     fn stop_from(&self, stop: &mut Stop, start: &Setpoint) {
         if stop.start != *start {
             self.lay_to(stop, start, self.end_velocity);
@@ -443,12 +444,12 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Appends what is left at the velocity `top`.
+/// Appends the distance `left` at the velocity `top`.
 fn cruise(spans: &mut Candidate, left: f64, top: f64) {
     spans.push(left.max(0.0) / top.abs(), 0.0);
 }
 
-/// `state` with a velocity that is to stay.
+/// `state` with a velocity that is kept constant.
 pub(super) fn steady(state: &Setpoint, velocity: f64) -> Setpoint {
     Setpoint {
         velocity,

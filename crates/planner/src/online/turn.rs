@@ -1,8 +1,8 @@
-//! Moves with an acceleration at their target: they pass it slowing down or speeding up, or turn there: velocity 0, in a scan, with the
-//! acceleration that leads back.
+//! Moves with an acceleration at their target. They pass it while slowing down or speeding up, or turn there: they
+//! have velocity 0 at a scan, with the acceleration that leads back.
 //!
-//! What stands here: the motion to the target. What does not: what comes behind it, and which speed and acceleration are best.
-//! Equations (O22) to (O26) are in `docs/planner-online.md`.
+//! This module has the motion to the target. It does not have the motion behind it, and does not choose speed and
+//! acceleration. Equations (O22) to (O26) are in `docs/planner-online.md`.
 
 use super::ends::Ends;
 use super::ladder::Found;
@@ -12,22 +12,23 @@ use crate::ramp::{self, solve::Ramps};
 use crate::{Limits, Order, PlanError, Setpoint};
 
 impl OnlinePlan {
-    /// Comes to `target` as `passage` says, with an acceleration against its way, or along it; `None` where that can't be had without
-    /// going back before, and at order 2, where acceleration may jump.
+    /// Moves to `target` as `passage` says, with an acceleration against its motion, or with it. `None` if that is
+    /// not possible without an earlier reversal, and at order 2, where acceleration may jump.
     ///
-    /// With a wanted speed it passes the target at most that fast, somewhere between two scans, and keeps the acceleration for a scan.
-    /// Without one it turns there, in the least number of whole scans known ([`OnlinePlan::turn`]). Then it comes to rest as soon as it
-    /// can, for the case that nobody takes over. Speeding up it passes the target only from a constant velocity, with the speed to which one
-    /// ramp leads in that way; `None` if that is not below the wanted one.
+    /// With a wanted speed it passes the target at most that fast, somewhere between two scans, and keeps the
+    /// acceleration for a scan. Without one it turns there, in the least known number of whole scans
+    /// ([`OnlinePlan::turn`]). Then it comes to rest as soon as it can, in case nothing takes over. While speeding
+    /// up it passes the target only from a constant velocity, with the speed that one ramp reaches over that
+    /// distance; `None` if that is not below the wanted one.
     ///
-    /// An acceleration above what `limits` allow at the target is lowered to that, and one with which the way to a turn has no whole number
-    /// of scans to what has.
+    /// An acceleration above what `limits` allow at the target is lowered to that. If the path to a turn has no
+    /// whole number of scans, the acceleration is lowered until it has one.
     ///
-    /// Bounded work: a root of pairs of ramps, for a turn two and one of ramps, and at order 3 up to 16 without ramps; at order 4 from rest to
-    /// a turn a plan alone; speeding up one root of ramps.
+    /// Bounded work: a root of pairs of ramps, for a turn two of these and one of ramps, and at order 3 up to 16
+    /// without ramps; at order 4 from rest to a turn only a plan; while speeding up one root of ramps.
     ///
     /// # Errors
-    /// As [`OnlinePlan::new`].
+    /// Those of [`OnlinePlan::new`].
     pub fn braking(
         start: &Setpoint,
         target: f64,
@@ -63,7 +64,7 @@ impl OnlinePlan {
             .or_larger(before)
             .acting_for(&steepest, wanted, distance, cycle);
         let ramps = Ramps::new(limits, wider);
-        // As fast as the velocity allows that it slows down from.
+        // The highest velocity from which it slows down that the velocity bound allows.
         let released = ramps.coasting(&Setpoint {
             acceleration: most,
             ..Setpoint::default()

@@ -37,7 +37,7 @@ pub fn scans(duration: f64, cycle: f64) -> Option<u32> {
     crate::ramp::scans(duration, cycle)
 }
 
-/// The signed way (u) from `start` to `target`.
+/// The signed distance (u) from `start` to `target`.
 fn distance(start: f64, target: f64) -> Result<f64, PlanError> {
     if !start.is_finite() {
         return Err(invalid(Field::Position, start));

@@ -4,7 +4,7 @@ use super::{invalid, peaks, scans};
 use crate::ramp::path::moved;
 use crate::{Field, Order, Peaks, PlanError, Segment, Setpoint};
 
-/// Most segments of a profile here: three to speed up, a cruise, three to slow down.
+/// Largest number of segments of a profile here: three to speed up, a cruise, three to slow down.
 pub const MAX_SEGMENTS: usize = 7;
 
 /// Rounding error of an acceleration that is held at zero, relative to the largest one before. A span
@@ -14,7 +14,8 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// The largest rounding error at the end of a profile, relative to the sum along the way.
 const LANDING: f64 = 1e-9;
 
-/// A duration (s) beside which the ramps at both ends of a move have no digits left: such a move has more scans than a plan counts.
+/// A duration (s) beside which the ramps at both ends of a move have no significant digits: such a move has more
+/// scans than a plan can count.
 const LONG: f64 = 1e9;
 
 /// A stretch of constant jerk (order 3) or acceleration (order 2).

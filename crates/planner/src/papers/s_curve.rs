@@ -91,7 +91,7 @@ impl SCurve {
 fn times(s: f64, limits: &Limits) -> (SCurveCase, Times) {
     use SCurveCase::{A, B, C1, C2, D1, D2};
     let (v, a, j) = (limits.velocity, limits.lower_acceleration(), limits.jerk);
-    // The ways at which acceleration just reaches its bound, and at which velocity does.
+    // The distances at which acceleration just reaches its bound, and at which velocity does.
     let v_a = a * a / j;
     let s_a = 2.0 * v_a * (a / j);
     let s_v = if v < v_a {

@@ -39,10 +39,10 @@ impl SampledPlan {
         })
     }
 
-    /// As [`SCurve::new`], from rest at `start` to rest at `target` (u).
+    /// The same as [`SCurve::new`], from rest at `start` to rest at `target` (u).
     ///
     /// # Errors
-    /// As there and [`SampledPlan::new`].
+    /// Those of [`SCurve::new`] and [`SampledPlan::new`].
     pub fn s_curve(start: f64, target: f64, limits: &Limits, cycle: f64) -> Result<Self, PlanError> {
         Self::new(
             SCurve::new(start, target, &limits.acting(cycle))?.profile(),
@@ -50,10 +50,10 @@ impl SampledPlan {
         )
     }
 
-    /// As [`Trapezoid::new`], from rest at `start` to rest at `target` (u).
+    /// The same as [`Trapezoid::new`], from rest at `start` to rest at `target` (u).
     ///
     /// # Errors
-    /// As there and [`SampledPlan::new`].
+    /// Those of [`Trapezoid::new`] and [`SampledPlan::new`].
     pub fn trapezoid(start: f64, target: f64, limits: &Limits, cycle: f64) -> Result<Self, PlanError> {
         Self::new(
             Trapezoid::new(start, target, &limits.acting(cycle))?.profile(),
@@ -61,11 +61,11 @@ impl SampledPlan {
         )
     }
 
-    /// As [`ShortPath::new`] with the policy `Nearest`, from the position and velocity of `start` to rest at
-    /// `target` (u).
+    /// The same as [`ShortPath::new`] with the policy `Nearest`, from the position and velocity of `start` to rest
+    /// at `target` (u).
     ///
     /// # Errors
-    /// As there and [`SampledPlan::new`].
+    /// Those of [`ShortPath::new`] and [`SampledPlan::new`].
     pub fn short_path(start: &Setpoint, target: f64, limits: &Limits, cycle: f64) -> Result<Self, PlanError> {
         let policy = ShortPathPolicy::Nearest;
         let limits = limits.acting(cycle);

@@ -12,13 +12,13 @@ use crate::{Field, Limits, Order, PlanError, Setpoint};
 /// A bound on a root is widened by this factor, so that rounding does not exclude the root.
 const NOT_SHORT: f64 = 1.0 + 1e-9;
 
-/// The behaviour if the way is too short to get from the start velocity to the end velocity (type 8B).
+/// The behaviour if the path is too short to get from the start velocity to the end velocity (type 8B).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShortPathPolicy {
     /// As in the paper: end with the start velocity.
     Paper,
-    /// End with the velocity that a single ramp reaches: upwards the highest, downwards the lowest above
-    /// the one asked for. A move to rest is refused if the way is too short for it.
+    /// End with the velocity that a single ramp reaches: upwards the highest, downwards the lowest above the
+    /// requested one. A move to rest is refused if the path is too short for it.
     #[default]
     Nearest,
 }
@@ -76,10 +76,9 @@ pub struct ShortPath {
 impl ShortPath {
     /// Plans from `start` (u) with `start_velocity` to `target` (u) with `end_velocity` (u/s).
     ///
-    /// `limits.velocity` is the feed rate. Both velocities point towards the target; on a way of length 0
-    /// they define the direction. The limit on acceleration applies to the ramp up, the one on
-    /// deceleration to the ramp down. Bounded work: one root of at most
-    /// [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps.
+    /// `limits.velocity` is the feed rate. Both velocities point towards the target; on a path of length 0 they
+    /// define the direction. The limit on acceleration applies to the ramp up, the one on deceleration to the ramp
+    /// down. Bounded work: one root of at most [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps.
     ///
     /// # Errors
     /// [`PlanError::InvalidInput`] for a position or velocity that is not finite, a bound that is not
@@ -142,7 +141,7 @@ impl ShortPath {
             kind: shape.kind,
             peak: sign * shape.peak,
             steps: shape.steps,
-            // Adding 0.0 takes the sign off zero.
+            // Adding 0.0 removes the sign of zero.
             profile: Profile::lay(Order::Three, &first, spans, target, sign * shape.end + 0.0)?,
         })
     }
@@ -157,7 +156,7 @@ impl ShortPath {
         self.peak
     }
 
-    /// The velocity at the target (u/s): the one asked for, or the modified one.
+    /// The velocity at the target (u/s): the requested one, or the modified one.
     pub const fn end_velocity(&self) -> f64 {
         self.profile.end().velocity
     }
@@ -167,7 +166,7 @@ impl ShortPath {
         &self.profile
     }
 
-    /// Steps of root finding the plan took, at most [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS).
+    /// Steps of root finding for the plan, at most [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS).
     pub const fn steps(&self) -> u32 {
         self.steps
     }
@@ -236,7 +235,7 @@ impl Ramp {
     }
 }
 
-/// A problem with the move upwards: the way, the two speeds and the limits.
+/// A problem with the move upwards: the distance, the two speeds and the limits.
 #[derive(Clone, Copy)]
 struct Path<'a> {
     length: f64,
@@ -294,7 +293,7 @@ impl Path<'_> {
         (self.up(rise), self.down(fall))
     }
 
-    /// The way both ramps together take (P9).
+    /// The distance of both ramps together (P9).
     fn ramps_length(&self, excess: f64) -> f64 {
         let peak = self.from.max(self.to) + excess;
         let (up, down) = self.ramps(excess);
@@ -306,7 +305,7 @@ impl Path<'_> {
         self.length >= self.ramps_length(0.0) * (1.0 - SLACK)
     }
 
-    /// The peak as high as the feed rate and the way allow (P10).
+    /// The highest peak that the feed rate and the distance allow (P10).
     fn least_time(&self) -> Shape {
         use ShortPathType::{T1, T2, T3, T4, T5, T6, T7, T8A};
         let base = self.from.max(self.to);
@@ -348,7 +347,7 @@ impl Path<'_> {
         }
     }
 
-    /// A single ramp towards the end velocity, as far as the way allows (P11).
+    /// A single ramp towards the end velocity, as far as the distance allows (P11).
     fn single_ramp(&self) -> Shape {
         let still = self.up(0.0);
         let rising = self.to > self.from;
@@ -398,7 +397,7 @@ impl Path<'_> {
         far.min(near).min(steady) * NOT_SHORT
     }
 
-    /// The same of a ramp down from the start velocity to [`Path::longest_fall`] or less far (P12).
+    /// The same for a ramp down from the start velocity to [`Path::longest_fall`] or less far (P12).
     fn most_fall(&self, length: f64) -> f64 {
         let time = length / self.from;
         let jerk = self.limits.jerk * time * time;
@@ -406,8 +405,8 @@ impl Path<'_> {
         jerk.min(steady) * NOT_SHORT
     }
 
-    /// The end velocity to which a ramp down from the start takes the longest way: above it, a lower end
-    /// takes more, below it less (P13).
+    /// The end velocity to which a ramp down from the start takes the longest distance. Above it, a lower end
+    /// velocity takes more distance, below it less (P13).
     fn longest_fall(&self) -> f64 {
         let change = self.limits.deceleration * (self.limits.deceleration / self.limits.jerk);
         if 2.0 * self.from < 3.0 * change {

@@ -109,7 +109,7 @@ fn check_duration(value: f64, least: f64) -> Result<(), PlanError> {
     }
 }
 
-/// A move from rest to rest at order 2: velocity is a trapezoid, or a triangle where the way is short.
+/// A move from rest to rest at order 2: velocity is a trapezoid, or a triangle over a short distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trapezoid {
     profile: Profile,

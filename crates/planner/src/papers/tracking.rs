@@ -21,10 +21,10 @@ pub struct Tracking {
 }
 
 impl Tracking {
-    /// From `start` to the first `target` (u) with sample time `cycle` (s). As bounded as one plan.
+    /// From `start` to the first `target` (u) with sample time `cycle` (s). The bounds are those of one plan.
     ///
     /// # Errors
-    /// As [`OnlinePlan::new`].
+    /// Those of [`OnlinePlan::new`].
     pub fn new(start: &Setpoint, target: f64, limits: &Limits, cycle: f64) -> Result<Self, PlanError> {
         Ok(Self {
             limits: *limits,
@@ -34,13 +34,13 @@ impl Tracking {
         })
     }
 
-    /// Takes the target that applies from now on; returns whether that made a new plan.
+    /// Takes the target that applies from now on. Returns whether this made a new plan.
     ///
     /// The same target again changes nothing: a new plan would end an instant later or earlier because of
     /// rounding.
     ///
     /// # Errors
-    /// As [`OnlinePlan::new`]; the old target is kept.
+    /// Those of [`OnlinePlan::new`]; the old target is kept.
     pub fn retarget(&mut self, target: f64) -> Result<bool, PlanError> {
         if target == self.plan.target() {
             return Ok(false);

@@ -5,10 +5,10 @@ use super::ProfileCause;
 use super::curve::Curve;
 use crate::Limits;
 
-/// Halvings of a stretch before it is decided.
+/// Largest number of halvings of a stretch before it is decided.
 const DEPTH: u32 = 12;
 
-/// Most pieces of a stretch that are checked.
+/// Largest number of pieces of a stretch that are checked.
 const PIECES: u32 = 64;
 
 /// Rounding, relative to a limit.
@@ -174,12 +174,12 @@ fn first_broken(
     if let Some((min, max)) = range {
         let (least, most) = hull(&piece.position);
         let places = (least + piece.from, most + piece.from);
-        // A stretch that begins outside may come in, like a move.
+        // A stretch that begins outside may come inside, as a move may.
         let bounds = (min.min(piece.from), max.max(piece.from));
         if let Some(found) = broken(ProfileCause::Position, places, bounds) {
             return Some(found);
         }
-        // .. and not go out again once it is in.
+        // .. and must not leave again once it is inside.
         let still = ROUNDING * limits.velocity;
         let leading_out = (
             if speeds.0 < -still { places.0 } else { min },
@@ -278,7 +278,7 @@ pub(super) fn peak(curve: &Curve, cause: ProfileCause, found: f64) -> f64 {
     peak
 }
 
-/// The ways (u) of a stretch upwards and downwards. Pieces in which it may turn count by their ends.
+/// The distances (u) of a stretch upwards and downwards. Pieces in which it may turn count by their ends.
 pub(super) fn ways(curve: &Curve) -> (f64, f64) {
     let mut pieces = Pieces::of(curve);
     let (mut up, mut down) = (0.0, 0.0);

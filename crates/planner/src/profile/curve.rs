@@ -12,7 +12,7 @@ pub(crate) type Slopes = [f64; 3];
 pub struct Curve {
     /// Duration (s).
     pub time: f64,
-    /// Position where it begins (u).
+    /// Position at its begin (u).
     pub from: f64,
     /// Control points of the position, counted from there (u).
     pub points: [f64; 8],
@@ -29,7 +29,7 @@ impl Curve {
         }
     }
 
-    /// Over `time` (s) by `end` (u), with these derivatives where it begins and where it ends.
+    /// The stretch over `time` (s) by `end` (u), with these derivatives at its begin and at its end.
     pub(crate) fn meeting(time: f64, end: f64, from: Slopes, to: Slopes) -> Self {
         let scaled = |[velocity, acceleration, jerk]: Slopes| {
             let velocity = velocity * time / 7.0;
@@ -64,7 +64,7 @@ impl Curve {
         }
     }
 
-    /// The same, the position counted from where it begins.
+    /// The same, with the position counted from its begin.
     pub(crate) fn way_at(&self, time: f64) -> Setpoint {
         let (_, state) = self.cut(time / self.time);
         Setpoint::of(state)

@@ -14,16 +14,17 @@ use crate::ramp;
 use crate::{Limits, Order, RampPlan, Setpoint};
 use curve::Curve;
 
-/// Most points of a profile.
+/// Largest number of points of a profile.
 pub const PROFILE_POINTS: usize = 40;
 
-/// The start, the points, and one where an acceleration has faded out; fewer points leave room for more of those.
+/// The start, the points, and one at which an acceleration has faded out; fewer points leave room for more of
+/// those.
 const NODES: usize = PROFILE_POINTS + 2;
 
 /// The largest difference, relative to itself, of a first value at time 0 from the start.
 const SAME: f64 = 1e-9;
 
-/// What a profile prescribes.
+/// The quantity that a profile prescribes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProfileKind {
     /// Positions (u); it ends at rest on the last one.
@@ -76,7 +77,7 @@ pub enum ProfileCause {
 /// The reason why a profile was refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfileFault {
-    /// What it is.
+    /// The kind of the fault.
     pub cause: ProfileCause,
     /// The point at or before which the fault is, from 1; one more than the last point if it is in the
     /// fade-out.
@@ -131,15 +132,15 @@ impl ProfilePlan {
     /// The profile through `points` from `start`, within `limits` and, if given, a range of positions
     /// (u).
     ///
-    /// It starts in the given state: the first point comes after some time. A first point at time 0 only
-    /// says what the start should be. If one curve to the first point would exceed a limit, jerk and
-    /// acceleration of the start fade out before it. Acceleration applies while the speed grows,
-    /// deceleration while it falls. Limits are kept to 1e-9 of each, and to the resolution of positions:
-    /// the snap on a stretch of way w in the time T is off by up to 13,440 epsilon w / T^4, the jerk by
-    /// 1,680 epsilon w / T^3. A curve that comes closer to a limit than a millionth may be refused.
+    /// It starts in the given state: the first point comes after some time. A first point at time 0 only states the
+    /// expected start. If one curve to the first point would exceed a limit, jerk and acceleration of the start
+    /// fade out before it. Acceleration applies while the speed grows, deceleration while it falls. Limits are kept
+    /// to 1e-9 of each, and to the resolution of positions: the snap on a stretch of length w in the time T is off
+    /// by up to 13,440 epsilon w / T^4, the jerk by 1,680 epsilon w / T^3. A curve that comes closer to a limit
+    /// than a millionth may be refused.
     ///
-    /// Cost: for each point some 100 operations, and for each of at most 129 pieces of the way to it 150; twice that for a
-    /// start with an acceleration.
+    /// Cost: some 100 operations for each point, and 150 for each of at most 129 pieces of the curve to it; twice
+    /// that for a start with an acceleration.
     ///
     /// # Errors
     /// The first [`ProfileFault`].
@@ -319,8 +320,7 @@ impl ProfilePlan {
             })
     }
 
-    /// The ways (u) of the rest upwards and downwards, up to its goal; bounded by 64 pieces for each
-    /// stretch.
+    /// The distances (u) of the rest upwards and downwards, up to its goal; bounded by 64 pieces for each stretch.
     pub(crate) fn ways(&self, elapsed: u64) -> (f64, f64) {
         self.rest(elapsed).fold((0.0, 0.0), |(up, down), curve| {
             let (further_up, further_down) = check::ways(&curve);

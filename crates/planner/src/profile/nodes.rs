@@ -315,9 +315,9 @@ fn after(before: &Node, knot: &Knot, kind: ProfileKind) -> Node {
     }
 }
 
-/// The node where the acceleration of `end` has faded to 0, no sooner than jerk and snap allow. On the
-/// way, a polynomial of degree 3, they are at most 3 a / 2 T and 6 a / T^2, and it takes more than a
-/// scan. Without bounds on both it is 0 at once.
+/// The node at which the acceleration of `end` has faded to 0, no sooner than jerk and snap allow. Until then the
+/// acceleration is a polynomial of degree 3, jerk and snap are at most 3 a / 2 T and 6 a / T^2, and it takes more
+/// than a scan. Without bounds on both it is 0 at once.
 fn faded(end: &Node, limits: &Limits, cycle: f64) -> Node {
     let size = end.acceleration.abs();
     let by_jerk = 1.5 * size / limits.jerk;

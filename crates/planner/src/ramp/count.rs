@@ -1,4 +1,4 @@
-//! How many ramps have been solved: what plans cost, for tests.
+//! The number of ramps that were solved: the cost of plans, for tests.
 
 use core::cell::Cell;
 
@@ -6,12 +6,13 @@ std::thread_local! {
     static SOLVED: Cell<u64> = const { Cell::new(0) };
 }
 
-/// Ramps, and whole moves of the kernel, that this thread has solved, those of plans not taken among them.
+/// Number of ramps, and of whole moves of the kernel, that this thread has solved, including those of rejected
+/// plans.
 pub fn solved() -> u64 {
     SOLVED.get()
 }
 
-/// One more.
+/// Counts one more.
 pub(super) fn add() {
     SOLVED.set(SOLVED.get() + 1);
 }

@@ -1,17 +1,17 @@
-//! The extremes of a ramp, and by how much they exceed the limits.
+//! The extremes of a ramp, and their excess over the limits.
 
 use super::path::Path;
 use crate::kernel::ON_LIMIT;
 use crate::limits::REACH;
 use crate::{DirectedLimits, Order};
 
-/// What a 64-bit instant of a path resolves, relative to its duration.
+/// The resolution of a 64-bit instant of a path, relative to its duration.
 const TICK: f64 = 2.0 * f64::EPSILON;
 
-/// What an acceleration is off by, relative to the largest one it comes from.
+/// The error of an acceleration, relative to the largest one from which it results.
 const CHANGED: f64 = 1e-10;
 
-/// By how much a start state forced a plan out of its limits, as magnitudes above the limit.
+/// The excess that a start state forced on a plan, as magnitudes above the limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Excess {
     /// Velocity above its limit, or against the sign a stop should keep (u/s).
@@ -56,7 +56,7 @@ pub(crate) fn peaks<const N: usize>(path: &Path<N>, goal: f64) -> Peaks {
     peaks
 }
 
-/// Whether the velocity along `path`, which ends at `goal`, comes out of its bounds.
+/// Whether the velocity along `path`, which ends at `goal`, leaves its bounds.
 pub(crate) fn leaves<const N: usize>(path: &Path<N>, goal: f64, limits: &DirectedLimits) -> bool {
     let out = |velocity: f64| velocity.abs() > limits.velocity(velocity) * (1.0 + ON_LIMIT);
     let mut leaves = out(goal);
@@ -64,11 +64,11 @@ pub(crate) fn leaves<const N: usize>(path: &Path<N>, goal: f64, limits: &Directe
     leaves
 }
 
-/// By how much `path`, which ends with the velocity `goal`, exceeds `limits`; `None` if by no more than
-/// rounding, [`ON_LIMIT`] and what is changed within the resolution of the path's times.
+/// The excess of `path`, which ends with the velocity `goal`, over `limits`. `None` if it is no more than rounding:
+/// [`ON_LIMIT`], and the change within the resolution of the path's times.
 ///
-/// With a `heading` (1 or -1) the path is a ramp that starts in that direction, and a stop that turns back
-/// exceeds too; without one the path may turn as it likes.
+/// With a `heading` (1 or -1) the path is a ramp that starts in that direction, and a stop that turns back counts
+/// as an excess, too. Without one the path may turn freely.
 pub(crate) fn excess<const N: usize>(
     path: &Path<N>,
     goal: f64,
@@ -76,7 +76,7 @@ pub(crate) fn excess<const N: usize>(
     directed: &DirectedLimits,
 ) -> Option<Excess> {
     let (limits, lower) = (&directed.either(), directed.lower_velocity());
-    // Half the tolerance, so that rounding can't make this say otherwise than what follows.
+    // Half the tolerance, so that rounding can't make this result differ from the one below.
     let near = 1.0 + 0.5 * ON_LIMIT;
     if heading.is_none()
         && lower.is_finite()
@@ -98,15 +98,15 @@ pub(crate) fn excess<const N: usize>(
         }
     };
     let small = ON_LIMIT * scale(lower);
-    // A piece that ends late by what the time since the start resolves goes on changing for as long.
+    // A piece whose end is late by the resolution of the time continues to change for that long.
     let tick = TICK * path.duration();
-    // A bound far below the other one is met by an acceleration that has changed by as much as the other.
+    // A bound far below the other one is reached by an acceleration that has changed by as much as the other one.
     let rounding = CHANGED
         * limits
             .acceleration
             .max(limits.deceleration)
             .min(peaks.acceleration);
-    // With one bound for both directions nothing changes where the velocity passes zero.
+    // With one bound for both directions nothing changes when the velocity passes zero.
     let sides_differ = limits.acceleration != limits.deceleration;
     let noticed = if sides_differ { small } else { f64::INFINITY };
     path.extremes(noticed, |state, direction| {
@@ -123,7 +123,7 @@ pub(crate) fn excess<const N: usize>(
             tick * state.acceleration,
         ));
 
-        // With the motion it raises the speed, against it it lowers it.
+        // In the direction of motion it raises the speed, against it it lowers it.
         let bound = match direction {
             None => limits.lower_acceleration(),
             Some(along) if along.abs() <= small => limits.acceleration.max(limits.deceleration),
@@ -141,7 +141,7 @@ pub(crate) fn excess<const N: usize>(
     (excess != Excess::default()).then_some(excess)
 }
 
-/// `over` if it is more than the tolerance for `bound` and what the value changes `within` a tick, else 0.
+/// `over` if it is more than the tolerance for `bound` and the change `within` a tick, otherwise 0.
 fn beyond(over: f64, bound: f64, within: f64) -> f64 {
     if over > ON_LIMIT * bound + within.abs() {
         over

@@ -1,6 +1,6 @@
 //! Getting a start state inside the limits at order 4, before the ramp proper.
 //!
-//! Until it is inside, the larger ones of the old and the new limits hold, and the way takes the least time.
+//! Until the state is inside, the larger ones of the old and the new limits hold. It takes the least time.
 //! Everything is in the kernel's units and mirrored so that the velocity is not negative.
 
 use super::path::{ROUNDING, zeros};
@@ -31,9 +31,11 @@ impl State {
             .fold(self, |state, span| state.after(span.duration, span.input))
     }
 
-    /// As [`State::after_all`], where a long hold may be among the spans: as on a path, a jerk of zero is zero there.
+    /// The same as [`State::after_all`] for spans that may include a long hold: as on a path, a jerk of zero is
+    /// zero there.
     ///
-    /// A rounding error of the jerk would add up to an acceleration beside which the lower bound is small.
+    /// Otherwise a rounding error of the jerk would add up to an acceleration that is not small beside the lower
+    /// bound.
     pub(super) fn led<const N: usize>(self, spans: &Spans<N>) -> Self {
         let (mut state, mut largest_jerk) = (self, 0.0);
         for span in spans.iter() {
@@ -80,7 +82,8 @@ impl Box4 {
         }
     }
 
-    /// Mirrored for a velocity that goes through zero: until it has, what brings it back is an acceleration.
+    /// Mirrored for a velocity that goes through zero: until then, the force that brings it back is an
+    /// acceleration.
     fn turned(&self) -> Self {
         Self {
             brake_before: self.a.plus,
@@ -94,22 +97,22 @@ impl Box4 {
         self.brake_before > self.a.minus || self.jerk_before > self.jerk || self.snap_before > 1.0
     }
 
-    /// The largest jerk with which the acceleration may come in from above: it must still be possible to
-    /// stop it at zero, or getting inside sooner would swing it to the other side (R14).
+    /// The largest jerk with which the acceleration may come inside from above: it must still be possible to stop
+    /// it at zero, or a sooner entry would swing it to the other side (R14).
     fn entry_jerk(&self) -> f64 {
         self.jerk.min(sqrt(2.0 * self.a.plus))
     }
 }
 
-/// What goes before the ramp proper, but for its spans.
+/// The part before the ramp proper, without its spans.
 pub(super) struct Lead {
     /// The state after it.
     pub(super) state: State,
     /// The arrest from there.
     pub(super) arrest: Spans<3>,
-    /// The velocity at which that ends.
+    /// The velocity at the end of the arrest.
     pub(super) rest: f64,
-    /// Most root steps taken.
+    /// Largest number of root steps.
     pub(super) steps: u32,
 }
 
@@ -125,14 +128,14 @@ impl Lead {
         }
     }
 
-    /// Whether the state is inside the limits and viable: it needs nothing before the ramp proper. The velocity has to be in
-    /// `low ..= high`.
+    /// Whether the state is inside the limits and viable, so that it needs nothing before the ramp proper. The
+    /// velocity must be in `low ..= high`.
     pub(super) fn is_viable(&self, low: f64, high: f64, bounds: &Box4) -> bool {
         is_inside(self.state, bounds) && is_viable(self.state, self.rest, low, high, bounds)
     }
 
-    /// Appends to `spans` what brings a state that is not viable inside the limits, or as near to them as can be. The velocity
-    /// has to be in `range`, and on the way of the ramp proper not below `low`.
+    /// Appends to `spans` the motion that brings a state that is not viable inside the limits, or as near to them
+    /// as possible. The velocity must be in `range`, and on the ramp proper not below `low`.
     ///
     /// `own` are the bounds of the ramp proper, `bounds` those of the state.
     #[cold]
@@ -146,9 +149,10 @@ impl Lead {
     ) {
         let high = range.plus;
         let state = self.state;
-        // Where it comes to may be another place once acceleration and jerk are inside.
+        // The resulting velocity may differ once acceleration and jerk are inside.
         let entered = arrested(state.led(&enter(state, bounds)), bounds.jerk);
-        // Bound to come out on the other side of zero: before anything else, since this grows for as long as it is put off.
+        // It will leave the range on the other side of zero. This comes first, because the excess grows with every
+        // delay.
         if bounds.is_lowered() && self.rest.min(entered) < -range.minus * (1.0 + ON_LIMIT) {
             let (first, steps) = hasten(state.mirrored(), range.minus, -goal, -high, &bounds.turned());
             self.add(spans, &first.mirrored(), steps, bounds.jerk);
@@ -196,20 +200,20 @@ fn is_viable(state: State, rest: f64, low: f64, high: f64, bounds: &Box4) -> boo
         && coming >= -bounds.a.minus * (1.0 + ON_LIMIT)
 }
 
-/// Most spans of one rule of [`enter`].
+/// Largest number of spans of one rule of [`enter`].
 const RULE_SPANS: usize = 3;
 
-/// Most spans of [`enter`]. A rule that follows another begins with the input that one ended with, so that
-/// in fact three are enough.
+/// Largest number of spans of [`enter`]. A rule that follows another begins with the input with which that one
+/// ended, so that in fact three are enough.
 const ENTER_SPANS: usize = 2 * RULE_SPANS;
 
-/// Most spans of [`hasten`]: a push of three and a hold, then [`enter`].
+/// Largest number of spans of [`hasten`]: a push of three and a hold, then [`enter`].
 const HASTEN_SPANS: usize = 4 + ENTER_SPANS;
 
-/// Most spans of a [`Lead`]: [`hasten`], or [`enter`] and [`relieve`].
+/// Largest number of spans of a [`Lead`]: [`hasten`], or [`enter`] and [`relieve`].
 pub(super) const LEAD_SPANS: usize = HASTEN_SPANS;
 
-/// Each round settles acceleration, jerk or the acceleration to come; no later one undoes an earlier.
+/// Each round settles acceleration, jerk or the future acceleration; no later one undoes an earlier one.
 const ENTER_ROUNDS: usize = 3;
 
 /// The spans that bring acceleration and jerk inside in least time (R13 to R16); none if they are inside.
@@ -224,7 +228,7 @@ pub(super) fn enter(state: State, bounds: &Box4) -> Spans<ENTER_SPANS> {
                     .or_else(|| rule(state.mirrored(), &bounds.mirrored()).map(Spans::mirrored))
             });
         let Some(step) = step else { break };
-        // Only rounding among absurd numbers gets here with a list so long; the ramp copes with the rest.
+        // Only rounding among absurd numbers gives such a long list; the ramp handles the rest.
         if all.len() > ENTER_SPANS - RULE_SPANS {
             break;
         }
@@ -251,8 +255,8 @@ fn lower_jerk(state: State, bounds: &Box4) -> Option<Spans<RULE_SPANS>> {
     })
 }
 
-/// With an acceleration that will exceed its bound under the new snap, the old one is used while it helps
-/// (R15, R16). Where the old one is no larger, the ramp itself does what can be done.
+/// If an acceleration will exceed its bound under the new snap, the old snap is used while it helps (R15, R16). If
+/// the old one is no larger, the ramp itself does what is possible.
 fn avert_excess(state: State, bounds: &Box4) -> Option<Spans<RULE_SPANS>> {
     let State { a, j, .. } = state;
     let snap = bounds.snap_before;
@@ -269,7 +273,7 @@ fn avert_excess(state: State, bounds: &Box4) -> Option<Spans<RULE_SPANS>> {
     Some(spans)
 }
 
-/// From above (or bound to be above) the upper acceleration bound to it, ending at the entry jerk (R14).
+/// From an acceleration that is above its upper bound, or will be, down to it, ending at the entry jerk (R14).
 fn descend(state: State, bounds: &Box4) -> Spans<RULE_SPANS> {
     let State { a, j, .. } = state;
     let (snap, entry) = (bounds.snap_before, bounds.entry_jerk());
@@ -277,7 +281,7 @@ fn descend(state: State, bounds: &Box4) -> Spans<RULE_SPANS> {
     let fastest = bounds.jerk_before.max(-j);
     let mut spans = Spans::new();
     if j >= -entry && j * j + 2.0 * drop <= entry * entry {
-        // There before the jerk is.
+        // It is there before the jerk is.
         spans.push((j + sqrt((j * j + 2.0 * drop).max(0.0))) / snap, -snap);
     } else if j < -entry && 2.0 * drop <= j * j - entry * entry {
         // Too fast to slow down before: inside first, the jerk after.
@@ -292,11 +296,11 @@ fn descend(state: State, bounds: &Box4) -> Spans<RULE_SPANS> {
     spans
 }
 
-/// The spans under the old limits while the velocity is, or is bound to be, above `limit`: push down, and
-/// come back inside the new acceleration and jerk just when the velocity is inside too (R19).
+/// The spans under the old limits while the velocity is above `limit`, or will be. They push down, and return
+/// inside the new acceleration and jerk exactly when the velocity is inside, too (R19).
 ///
-/// Sooner, if the arrest then ends on `goal`, or if it then ends on `low` without exceeding `limit`. Also
-/// the root steps taken.
+/// They end sooner if the arrest then ends on `goal`, or if it then ends on `low` without exceeding `limit`. Also
+/// returns the root steps.
 fn hasten(state: State, limit: f64, goal: f64, low: f64, bounds: &Box4) -> (Spans<HASTEN_SPANS>, u32) {
     let snap = bounds.snap_before;
     let push = second(
@@ -318,7 +322,7 @@ fn hasten(state: State, limit: f64, goal: f64, low: f64, bounds: &Box4) -> (Span
         let to_come = (top(state, rest) - limit).min(rest - low);
         let inside = present.max(to_come);
         if bounds.turns && state.a < -bounds.a.plus {
-            // Back at the acceleration of the other side before the velocity is there.
+            // It would be back at the acceleration of the other side before the velocity is inside.
             let release = second(state.a, state.j, -bounds.a.plus, Sides::both(bounds.jerk));
             inside.min(state.after_all(&release).v)
         } else {
@@ -340,7 +344,7 @@ fn hasten(state: State, limit: f64, goal: f64, low: f64, bounds: &Box4) -> (Span
     (lead(time), steps)
 }
 
-/// The spans that bring acceleration and jerk to zero as soon as can be.
+/// The spans that bring acceleration and jerk to zero as soon as possible.
 fn arrest(state: State, jerk: f64) -> Spans<3> {
     second(state.a, state.j, 0.0, Sides::both(jerk))
 }
@@ -350,8 +354,8 @@ pub(super) fn arrested(state: State, jerk: f64) -> f64 {
     state.after_all(&arrest(state, jerk)).v
 }
 
-/// The spans by which a velocity that a gentle arrest, ending at `rest`, would take out of `low ..= high` is
-/// kept as near to them as can be (R17, R18), and the root steps taken; none if it stays inside.
+/// The spans that keep a velocity as near as possible to `low ..= high`, if a gentle arrest, ending at `rest`,
+/// would take it out (R17, R18), and the root steps; none if it stays inside.
 fn relieve(state: State, rest: f64, low: f64, high: f64, bounds: &Bounds) -> (Spans<4>, u32) {
     if (top(state, rest) - high).min(rest - low) > slack(state, rest, high) {
         push_down(state, low, high, bounds)
@@ -363,18 +367,18 @@ fn relieve(state: State, rest: f64, low: f64, high: f64, bounds: &Bounds) -> (Sp
     }
 }
 
-/// How far outside a velocity `bound` counts as on it.
+/// Largest distance outside a velocity `bound` that counts as on it.
 fn slack(state: State, rest: f64, bound: f64) -> f64 {
     ON_LIMIT * min(max(rest.abs(), state.v.abs()), bound)
 }
 
-/// The magnitude of a lower velocity bound; of one at 0 that of the other.
+/// The magnitude of a lower velocity bound; for one at 0 that of the other one.
 fn depth(low: f64, high: f64) -> f64 {
     if low < 0.0 { -low } else { high }
 }
 
-/// Pushes down until the arrest peaks at `high`; at most until the acceleration is zero, when there is
-/// nothing more to gain, and not so long that the arrest ends below `low`.
+/// Pushes down until the arrest peaks at `high`. It ends at the latest when the acceleration is zero, because more
+/// gains nothing, and before the arrest would end below `low`.
 fn push_down(state: State, low: f64, high: f64, bounds: &Bounds) -> (Spans<4>, u32) {
     let push = second(state.a, state.j, -bounds.v.minus, bounds.a);
     let Some(longest) = falls_through_zero(state, &push) else {
@@ -393,11 +397,11 @@ fn push_down(state: State, low: f64, high: f64, bounds: &Bounds) -> (Spans<4>, u
     (push.until(time), steps)
 }
 
-/// The highest velocity of the arrest that ends at `rest`, if it has any to come.
+/// The highest velocity of the arrest that ends at `rest`, if it is still to come.
 fn top(state: State, rest: f64) -> f64 {
     let State { a, j, .. } = state;
     if a > 0.0 && j < 0.0 && a < 0.5 * j * j {
-        // The jerk cannot be taken back before the acceleration is negative (R17).
+        // The jerk cannot be removed before the acceleration is negative (R17).
         let [zero, _] = zeros(a, j, 1.0);
         state.after(zero, 1.0).v
     } else if a > 0.0 || a + 0.5 * j * j.abs() > 0.0 {
@@ -407,12 +411,12 @@ fn top(state: State, rest: f64) -> f64 {
     }
 }
 
-/// The lowest velocity of the arrest that ends at `rest`, if it has any to come.
+/// The lowest velocity of the arrest that ends at `rest`, if it is still to come.
 fn bottom(state: State, rest: f64) -> f64 {
     -top(state.mirrored(), -rest)
 }
 
-/// When the acceleration passes zero downwards on the way of `push`.
+/// The time at which the acceleration passes zero downwards during `push`.
 fn falls_through_zero(state: State, push: &Spans<3>) -> Option<f64> {
     let mut state = state;
     let mut begin = 0.0;

@@ -1,8 +1,8 @@
 //! From any moving state to a constant velocity.
 //!
-//! What stands here: the start state with its sign and its limits, the plan, its set-point at any scan. The
-//! maths of one transfer is in [`kernel`](crate::kernel). What does not: positions to reach. Equations (R1)
-//! and on, and the definition of a viable state, are in `docs/planner-ramps.md`.
+//! This module has the start state with its sign and its limits, the plan, and its set-point at any scan. The maths
+//! of one transfer is in [`kernel`](crate::kernel). The module does not have target positions. Equations (R1) and
+//! on, and the definition of a viable state, are in `docs/planner-ramps.md`.
 
 #[cfg(feature = "count")]
 mod count;
@@ -23,16 +23,17 @@ use crate::{DirectedLimits, Field, Limits, Order, PlanError, Setpoint};
 use path::Path;
 use solve::{Course, Ramp, Ramps, heading, unmoved};
 
-/// Most pieces of a plan.
+/// Largest number of pieces of a plan.
 const MAX_PIECES: usize = 20;
 
 /// Largest number of scans of a plan.
 const MAX_SCANS: f64 = 2_147_483_647.0;
 
-/// How far `duration / cycle` may lie above a whole number, relative to itself, and still be that number.
+/// Largest distance of `duration / cycle` above a whole number, relative to itself, at which it still counts as
+/// that number.
 const GRID_SLACK: f64 = 1e-9;
 
-/// The same in scans: what a plan is cut short by at its end is not to be seen in its last set-point.
+/// The same in scans: a plan that is shortened by this at its end has the same last set-point.
 const SCAN_SLACK: f64 = 1.0 / 4096.0;
 
 /// A plan from any state to a constant velocity: at most 20 pieces of constant snap (order 4), jerk (3) or
@@ -40,7 +41,7 @@ const SCAN_SLACK: f64 = 1.0 / 4096.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RampPlan {
     start: Setpoint,
-    /// What of the start's position f64 does not hold (u); not 0 only in a motion that was brought back.
+    /// The part of the start's position that f64 does not hold (u); not 0 only in a motion that was brought back.
     carry: f64,
     goal: f64,
     cycle: f64,
@@ -53,7 +54,7 @@ pub struct RampPlan {
 /// A stretch of a plan with a constant highest derivative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
-    /// How long (s); always above 0.
+    /// Duration (s); always above 0.
     pub duration: f64,
     /// Velocity at its start (u/s).
     pub velocity: f64,
@@ -61,7 +62,7 @@ pub struct Segment {
     pub acceleration: f64,
     /// Jerk at its start, after any jump (u/s^3).
     pub jerk: f64,
-    /// Snap held (u/s^4).
+    /// The constant snap (u/s^4).
     pub snap: f64,
 }
 
@@ -80,23 +81,23 @@ impl From<crate::grid::Segment> for Segment {
 impl RampPlan {
     /// Plans from `start` to `velocity` (u/s) in least time with sample time `cycle` (s).
     ///
-    /// The order is that of `limits` ([`Limits::order`]). At order 3 the start's jerk plays no part, at
-    /// order 2 nor does its acceleration: they may jump. Acceleration is bounded by `limits.acceleration`
-    /// while the speed grows and by `limits.deceleration` while it falls; in a ramp whose velocity changes
-    /// sign the lower of the two holds (R11).
+    /// The order is that of `limits` ([`Limits::order`]). At order 3 the start's jerk is not used, at order 2 its
+    /// acceleration is not used either: they may jump. `limits.acceleration` bounds the acceleration while the
+    /// speed grows, `limits.deceleration` while it falls. In a ramp whose velocity changes sign the lower one of
+    /// the two holds (R11).
     ///
-    /// A start outside `limits` is brought inside first, in least time, under the larger ones of `limits`
-    /// and `before`; an infinite bound in `before` counts as that of `limits`. What is exceeded on the way
-    /// is the least possible and told by [`RampPlan::excess`].
+    /// A start outside `limits` is brought inside first, in least time, under the larger ones of `limits` and
+    /// `before`; an infinite bound in `before` counts as that of `limits`. The excess is the least possible;
+    /// [`RampPlan::excess`] reports it.
     ///
     /// Bounded work: two ramps of closed forms and at most seven roots of
     /// [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps; most have none or one.
     ///
     /// # Errors
-    /// [`PlanError::InvalidInput`] for a `cycle` that is not positive and finite, a start or velocity that
-    /// is not finite, a bound that is not positive, an infinite acceleration or deceleration, and a
-    /// `velocity` beyond `limits.velocity`; [`PlanError::TooLong`] for more than 2^31 - 1 scans and for a time
-    /// beyond numbers.
+    /// [`PlanError::InvalidInput`] for a `cycle` that is not positive and finite, a start or velocity that is not
+    /// finite, a bound that is not positive, an infinite acceleration or deceleration, and a `velocity` beyond
+    /// `limits.velocity`; [`PlanError::TooLong`] for more than 2^31 - 1 scans and for a time beyond the range of
+    /// numbers.
     pub fn new(
         start: &Setpoint,
         velocity: f64,
@@ -107,10 +108,10 @@ impl RampPlan {
         Self::by_direction(start, velocity, &(*limits).into(), &(*before).into(), cycle)
     }
 
-    /// As [`RampPlan::new`], with a velocity bound for each direction.
+    /// The same as [`RampPlan::new`], with a velocity bound for each direction.
     ///
     /// # Errors
-    /// As [`RampPlan::new`].
+    /// Those of [`RampPlan::new`].
     pub fn by_direction(
         start: &Setpoint,
         velocity: f64,
@@ -147,8 +148,8 @@ impl RampPlan {
             let end = path.fill(start, limits.lower_acceleration(), ramps.scale().outward(&spans));
             path.pin(velocity);
             let arrives = is_there(&end, velocity, (start, limits, path.duration()));
-            // A ramp from a viable state exceeds nothing, which the tests see and this need not look for; a stop that
-            // is free to turn does by that.
+            // A ramp from a viable state has no excess, as tests show, so it is not searched. A stop that is free
+            // to turn has one because of the turn.
             let excess = if viable && (course == Course::Kept || velocity != 0.0) {
                 None
             } else {
@@ -156,8 +157,8 @@ impl RampPlan {
             };
             (path, steps, excess, fits, arrives)
         };
-        // A goal on the other side of zero asks for the turn that a stop must not make (O5). Should a turn have
-        // more pieces than a plan holds, or exceed the velocity, the lower bound throughout does (R11).
+        // A goal on the other side of zero needs the turn that a stop must not make (O5). If a turn has more pieces
+        // than a plan holds, or exceeds the velocity, the lower bound is used throughout (R11).
         let turned = (velocity * heading < 0.0).then(|| proposed(Course::Free));
         let (path, steps, excess, _, arrives) = turned
             .filter(|(_, _, excess, fits, arrives)| {
@@ -165,7 +166,7 @@ impl RampPlan {
             })
             .unwrap_or_else(|| {
                 let kept = proposed(Course::Kept);
-                // A stop that has to turn back turns once: to turn back less far it would turn twice (R11a).
+                // A stop that must turn back turns once: a smaller turn would need two of them (R11a).
                 let turns = velocity == 0.0
                     && kept.2.is_some()
                     && !kept.0.keeps_side(heading, unmoved(directed.lower_velocity()));
@@ -192,11 +193,11 @@ impl RampPlan {
         Ok(plan)
     }
 
-    /// As [`RampPlan::new`], but where the rates of `limits`, once inside, would lead out of the velocity of both limits
-    /// and those of `before` would not, the rates of `before` hold throughout.
+    /// The same as [`RampPlan::new`], with one exception. If the rates of `limits`, once inside, would lead out of
+    /// the velocity of both limits and those of `before` would not, the rates of `before` hold throughout.
     ///
     /// # Errors
-    /// As [`RampPlan::new`].
+    /// Those of [`RampPlan::new`].
     pub fn keeping_velocity(
         start: &Setpoint,
         velocity: f64,
@@ -207,10 +208,10 @@ impl RampPlan {
         Self::keeping_velocities(start, velocity, &(*limits).into(), &(*before).into(), cycle)
     }
 
-    /// As [`RampPlan::keeping_velocity`], with a velocity bound for each direction.
+    /// The same as [`RampPlan::keeping_velocity`], with a velocity bound for each direction.
     ///
     /// # Errors
-    /// As [`RampPlan::new`].
+    /// Those of [`RampPlan::new`].
     pub fn keeping_velocities(
         start: &Setpoint,
         velocity: f64,
@@ -231,7 +232,7 @@ impl RampPlan {
         if kept == *limits || !leaves(&plan) {
             return Ok(plan);
         }
-        // Too late for the lower rates: the ones before hold to the end if that keeps their velocity.
+        // Too late for the lower rates: the previous ones hold to the end if they keep the velocity.
         match Self::by_direction(start, velocity, &kept, before, cycle) {
             Ok(other) if !leaves(&other) => {
                 let heading = heading(start, velocity, limits.lower_velocity(), limits.limits.order());
@@ -247,11 +248,11 @@ impl RampPlan {
         self.scans
     }
 
-    /// The set-point `scan` cycles after the start, evaluated in closed form from the piece it lies in.
+    /// The set-point `scan` cycles after the start, evaluated in closed form from its piece.
     ///
-    /// `scan` 0 is the start; from [`RampPlan::scans`] on the velocity is exactly the goal, the derivatives
-    /// above it are 0, and a position at goal velocity 0 keeps its bits. Between them the highest
-    /// derivative is the one in force just before the instant. At most 20 comparisons.
+    /// `scan` 0 is the start. From [`RampPlan::scans`] on the velocity is exactly the goal, the derivatives above
+    /// it are 0, and a position at goal velocity 0 keeps its bits. In between, the highest derivative is the one in
+    /// force just before the instant. At most 20 comparisons.
     pub fn at(&self, scan: u64) -> Setpoint {
         let time = scan as f64 * self.cycle;
         let running = if self.is_at_goal(scan) {
@@ -264,7 +265,8 @@ impl RampPlan {
         running.unwrap_or_else(|| self.at_goal(scan))
     }
 
-    /// As [`RampPlan::at`], for a motion in progress, asked scan after scan: the piece is looked for where it changes.
+    /// The same as [`RampPlan::at`], for a motion in progress that is evaluated scan after scan: the piece is
+    /// searched only where it changes.
     #[inline(always)]
     pub fn next(&mut self, scan: u64) -> Setpoint {
         if self.is_at_goal(scan) || scan == 0 {
@@ -315,11 +317,11 @@ impl RampPlan {
         }
     }
 
-    /// From `scan` on, if the goal velocity is reached there: the same motion with `scan` as its start, and
-    /// whole `length`s (u) taken off its position so that it starts within one. Returns how many.
+    /// If the goal velocity is reached at `scan`: makes `scan` the start of the same motion, and takes whole
+    /// `length`s (u) off its position so that it starts within one. Returns their number.
     ///
-    /// The new start is computed to about 106 bits and what f64 does not hold of it is kept, so that a motion
-    /// brought back a thousand million times is where it would have been without.
+    /// The new start is computed to about 106 bits, and the part that f64 does not hold is kept. So a motion that
+    /// was brought back a thousand million times is at the same place as without.
     pub fn bring_back(&mut self, scan: u64, length: f64) -> Option<i64> {
         if scan < u64::from(self.scans) {
             return None;
@@ -341,15 +343,15 @@ impl RampPlan {
         Some(turns)
     }
 
-    /// By how much the start state forced the plan out of its limits, if it did by more than 1e-9 of them.
+    /// The excess that the start state forced on the plan, if it is more than 1e-9 of the limits.
     pub const fn excess(&self) -> Option<Excess> {
         self.excess
     }
 
-    /// What of [`RampPlan::excess`] is beyond `limits`, too, which are no lower than those of the plan.
+    /// The part of [`RampPlan::excess`] that is also beyond `limits`, which are no lower than those of the plan.
     ///
-    /// The path is looked at again: how much the limits are higher tells nothing where the velocity changes its
-    /// sign and another bound holds on each side. Bounded by 20 pieces with at most two roots each.
+    /// The path is examined again: the difference of the limits is not enough if the velocity changes its sign and
+    /// another bound holds on each side. Bounded by 20 pieces with at most two roots each.
     pub fn excess_over(&self, limits: &Limits) -> Option<Excess> {
         self.excess_beyond(&(*limits).into())
     }
@@ -392,14 +394,14 @@ impl RampPlan {
         excess::peaks(&self.path, self.goal)
     }
 
-    /// Steps of root finding the plan took, at most [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS).
+    /// Steps of root finding for the plan, at most [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS).
     pub const fn steps(&self) -> u32 {
         self.steps
     }
 }
 
-/// The velocity (u/s) that `start` comes to once its acceleration and jerk are zero as soon as `limits` allow, in
-/// magnitude at most that of `limits`.
+/// The velocity (u/s) of `start` once its acceleration and jerk are zero, as soon as `limits` allow; its magnitude
+/// is at most that of `limits`.
 pub(crate) fn coasting(start: &Setpoint, limits: &Limits, cycle: f64) -> f64 {
     let acting = limits.acting_for(start, start.velocity, 0.0, cycle);
     let acting = acting.into();
@@ -439,8 +441,8 @@ pub(crate) fn check(
     Ok(())
 }
 
-/// Whether a ramp that ends in `end` comes to `velocity` but for rounding. Bounds so low that its times are beyond
-/// numbers leave spans out.
+/// Whether a ramp that ends in `end` reaches `velocity` except for rounding. With extremely low bounds, times
+/// beyond the range of numbers leave out spans.
 pub(crate) fn is_there(
     end: &Setpoint,
     velocity: f64,
@@ -454,7 +456,7 @@ pub(crate) fn is_there(
     (end.velocity - velocity).abs() <= ON_LIMIT * changed
 }
 
-/// The least whole number of cycles that covers `duration`, but for [`GRID_SLACK`]; none if it is too large.
+/// The least whole number of cycles that covers `duration`, except for [`GRID_SLACK`]; none if it is too large.
 pub(crate) fn scans(duration: f64, cycle: f64) -> Option<u32> {
     let exact = duration / cycle;
     let needed = exact - (exact * GRID_SLACK).min(SCAN_SLACK);

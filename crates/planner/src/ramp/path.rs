@@ -32,34 +32,34 @@ pub(crate) struct Piece {
     state: Setpoint,
 }
 
-/// Where a piece lies in time.
+/// The times of a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Place {
-    /// Start and end, of which the end belongs to it (s).
+    /// Start and end; the end is part of the piece (s).
     begin: f64,
     end: f64,
-    /// The instant its state belongs to (s).
+    /// The instant of its state (s).
     anchor: f64,
-    /// The times of the piece from there (s).
+    /// The times of the piece relative to that instant (s).
     from: f64,
     to: f64,
 }
 
 impl Place {
-    /// The time from its anchor (s), inside the piece but for [`BEYOND`]: what rounding puts further beyond its ends is
-    /// not part of it.
+    /// The time from its anchor (s). It is inside the piece except for [`BEYOND`]: a time that rounding puts
+    /// further outside is not part of the piece.
     #[inline(always)]
     fn since(&self, time: f64) -> f64 {
         (time - self.anchor).max(self.from).min(self.to)
     }
 }
 
-/// The piece a motion is in.
+/// The piece that a motion is in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Current {
     place: Place,
     course: Course,
-    /// When the last piece ends (s): what stands with the others is seldom at hand.
+    /// The end of the last piece (s). The copy here is at hand more often than the pieces.
     duration: f64,
 }
 
@@ -83,7 +83,7 @@ impl Current {
     };
 }
 
-/// A state with what its course at constant snap takes divisions for.
+/// A state, and the divided coefficients of its course at constant snap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Course {
     state: Setpoint,
@@ -126,7 +126,7 @@ impl Course {
 /// At most `N` pieces that follow each other from a start state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Path<const N: usize> {
-    /// Where [`Path::next`] looked last.
+    /// The piece that [`Path::next`] used last.
     current: Current,
     pieces: [Piece; N],
     len: usize,
@@ -148,8 +148,8 @@ impl<const N: usize> Path<N> {
         }
     }
 
-    /// Lays `spans` of (seconds, highest derivative) from `start` on to wherever they end; what does not fit in is
-    /// left out. `bound` is the lowest one of acceleration (u/s^2).
+    /// Puts `spans` of (seconds, highest derivative) one after the other from `start`, without a fixed end; spans
+    /// that do not fit are left out. `bound` is the lowest bound of acceleration (u/s^2).
     pub(crate) fn follow(
         order: Order,
         start: &Setpoint,
@@ -161,8 +161,8 @@ impl<const N: usize> Path<N> {
         path
     }
 
-    /// As [`Path::follow`], on a path without pieces yet. The last piece is stored by the state at its end, which
-    /// is given back.
+    /// The same as [`Path::follow`], on a path without pieces yet. The last piece is stored by the state at its
+    /// end, which is returned.
     pub(crate) fn fill(
         &mut self,
         start: &Setpoint,
@@ -182,7 +182,7 @@ impl<const N: usize> Path<N> {
         }
         let order = self.order;
         if let Some(last) = self.last_mut() {
-            // The input of its own: that of `way` may be that of a span of no length.
+            // Its own input: that of `way` may be that of a span of no length.
             let input = match order {
                 Order::Four => last.state.snap,
                 Order::Three => last.state.jerk,
@@ -193,19 +193,19 @@ impl<const N: usize> Path<N> {
         way.state
     }
 
-    /// Makes the end exactly `velocity`, so that the last piece runs into it from one side, without a
-    /// rounding error that would pass it.
+    /// Makes the end exactly `velocity`, so that the last piece approaches it from one side, without a rounding
+    /// error that would pass it.
     pub(crate) fn pin(&mut self, velocity: f64) {
         self.pin_both(velocity, 0.0);
     }
 
-    /// As [`Path::pin`], with an `acceleration` at the end; it plays no part at order 2.
+    /// The same as [`Path::pin`], with an `acceleration` at the end; it is not used at order 2.
     pub(crate) fn pin_both(&mut self, velocity: f64, acceleration: f64) {
         let order = self.order;
         if let Some(last) = self.last_mut() {
             let is_even = last.state.snap == 0.0 && last.state.jerk == 0.0 && last.state.acceleration == 0.0;
             if is_even {
-                // What it was off by stepped the position where a long cruise begins: it goes into the end.
+                // The difference would step the position where a long cruise begins, so it is added to the end.
                 last.state.position += (velocity - last.state.velocity) * last.duration;
             }
             last.state.velocity = velocity;
@@ -230,7 +230,7 @@ impl<const N: usize> Path<N> {
         self.current = Current::NONE;
     }
 
-    /// When the last piece ends (s).
+    /// The end of the last piece (s).
     pub(crate) fn duration(&self) -> f64 {
         self.pieces
             .iter()
@@ -247,16 +247,17 @@ impl<const N: usize> Path<N> {
         self.len.checked_sub(1).and_then(|i| self.pieces.get(i))
     }
 
-    /// The state at `time` (s) after the start; at the boundary of two pieces that of the earlier one, also where
-    /// rounding puts the boundary before `time`: of two motions that switch together none switches a scan early.
+    /// The state at `time` (s) after the start; at the boundary of two pieces that of the earlier one, even if
+    /// rounding puts the boundary before `time`: of two motions that switch together none then switches a scan
+    /// early.
     #[inline]
     pub(crate) fn at(&self, time: f64) -> Option<Setpoint> {
         self.place(time)
             .map(|(piece, place)| moved(&piece.state, place.since(time)))
     }
 
-    /// As [`Path::at`] with the part of the whole duration that is over, for one who asks again and again for times not far
-    /// apart, above 0: the piece is looked for where it changes only.
+    /// The same as [`Path::at`], with the elapsed part of the whole duration, for repeated calls with times above 0
+    /// that are close together: the piece is searched only where it changes.
     #[inline(always)]
     pub(crate) fn next(&mut self, time: f64) -> Option<(Setpoint, f64)> {
         if !self.is_current(time) {
@@ -265,13 +266,13 @@ impl<const N: usize> Path<N> {
         Some(self.on_current(time))
     }
 
-    /// Whether `time` (s) is in the piece in which [`Path::next`] looked last.
+    /// Whether `time` (s) is in the piece that [`Path::next`] used last.
     #[inline(always)]
     pub(crate) fn is_current(&self, time: f64) -> bool {
         time > self.current.place.begin && time <= self.current.place.end
     }
 
-    /// The state at a `time` (s) of that piece, and the part of the whole duration that is over.
+    /// The state at a `time` (s) of that piece, and the elapsed part of the whole duration.
     #[inline(always)]
     pub(crate) fn on_current(&self, time: f64) -> (Setpoint, f64) {
         let current = &self.current;
@@ -290,7 +291,7 @@ impl<const N: usize> Path<N> {
         })
     }
 
-    /// The piece in which `time` (s) is, and where it lies; at most as many comparisons as there are pieces.
+    /// The piece of `time` (s), and its times; at most as many comparisons as there are pieces.
     #[inline]
     fn place(&self, time: f64) -> Option<(&Piece, Place)> {
         let mut begin = 0.0;
@@ -331,13 +332,13 @@ impl<const N: usize> Path<N> {
         })
     }
 
-    /// The states that hold every extreme of velocity, acceleration and jerk: the ends of each piece, and
-    /// inside it the zeros of jerk and acceleration (R20).
+    /// The states that have every extreme of velocity, acceleration and jerk: the ends of each piece, and inside it
+    /// the zeros of jerk and acceleration (R20).
     ///
-    /// With each comes the velocity that tells its direction: its own, or if that is no more than `small`,
-    /// that of the other end of the piece. `see` is also shown the states at which the velocity passes zero,
-    /// from beyond `small` to beyond it on the other side; those have none, because the bounds of
-    /// acceleration change there.
+    /// With each comes the velocity that gives its direction: its own, or if that is no more than `small`, that of
+    /// the other end of the piece. `see` also receives the states at which the velocity passes zero, from beyond
+    /// `small` to beyond it on the other side. Those have no direction, because the bounds of acceleration change
+    /// there.
     pub(crate) fn extremes(&self, small: f64, mut see: impl FnMut(&Setpoint, Option<f64>)) {
         for (stretch, first) in self.stretches() {
             let length = stretch.duration;
@@ -370,7 +371,7 @@ impl<const N: usize> Path<N> {
         }
     }
 
-    /// Whether the velocity towards `side` (1 or -1) never comes below `-small`.
+    /// Whether the velocity towards `side` (1 or -1) never falls below `-small`.
     pub(crate) fn keeps_side(&self, side: f64, small: f64) -> bool {
         self.stretches().all(|(stretch, first)| {
             let length = stretch.duration;
@@ -382,15 +383,15 @@ impl<const N: usize> Path<N> {
         })
     }
 
-    /// Whether no extreme of velocity, acceleration and jerk is beyond these bounds, but for rounding. What is beyond
-    /// them, [`Path::extremes`] tells.
+    /// Whether no extreme of velocity, acceleration and jerk is beyond these bounds, except for rounding. If FALSE,
+    /// [`Path::extremes`] gives the values.
     pub(crate) fn is_surely_within(&self, velocity: f64, acceleration: f64, jerk: f64) -> bool {
         let within = |v: f64, a: f64| v.abs() <= velocity && a.abs() <= acceleration;
         let pieces = self.pieces.get(..self.len).unwrap_or_default();
         let Some(last) = pieces.last() else {
             return false;
         };
-        // The last piece is stored by the state at its end. What no time adds to the state of another makes no difference here.
+        // The last piece is stored by the state at its end. Differences by rounding do not matter here.
         let (begin_of_last, end) = (moved(&last.state, -last.duration), &last.state);
         let mut rest = pieces;
         while let [piece, behind @ ..] = rest {
@@ -440,7 +441,7 @@ pub(crate) struct Way {
 }
 
 impl Way {
-    /// From `start`; `bound` is the lowest one of acceleration on the way.
+    /// Starts at `start`; `bound` is the lowest bound of acceleration.
     pub(crate) const fn new(order: Order, start: &Setpoint, bound: f64) -> Self {
         Self {
             state: *start,
@@ -454,7 +455,7 @@ impl Way {
     /// The state at the start of a span in which the highest derivative is `input`.
     pub(crate) fn begin(&mut self, input: f64) -> Setpoint {
         self.state = with_input(&self.state, self.order, input);
-        // What rounding left of a derivative that is held at zero would be integrated over a long hold.
+        // A rounding error of a derivative that is held at zero would be integrated over a long hold.
         let Setpoint {
             acceleration, jerk, ..
         } = &mut self.state;
@@ -485,7 +486,7 @@ impl Way {
 
 /// A piece on its own.
 pub(crate) struct Stretch {
-    /// How long it lasts (s).
+    /// Its duration (s).
     pub(crate) duration: f64,
     is_last: bool,
     state: Setpoint,
@@ -534,7 +535,7 @@ pub(crate) fn zeros(a: f64, j: f64, s: f64) -> [f64; 2] {
         return [-a / j, f64::INFINITY];
     }
     let root = sqrt(j * j - 2.0 * a * s);
-    // Where j is zero, s decides: the mirrored piece has the same zeros to the last bit.
+    // If j is zero, s decides: the mirrored piece has the same zeros to the last bit.
     let rises = j > 0.0 || (j == 0.0 && s > 0.0);
     let sum = if rises { j + root } else { j - root };
     [-2.0 * a / sum, -sum / s]

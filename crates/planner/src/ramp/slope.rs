@@ -34,23 +34,23 @@ impl Slope {
         })
     }
 
-    /// The velocity once the acceleration is zero as soon as can be (R2).
+    /// The velocity once the acceleration is zero, as soon as possible (R2).
     pub(super) fn rest(self) -> f64 {
         self.v + 0.5 * self.a * self.a.abs()
     }
 
-    /// The velocity once an acceleration below `-rate` is back there.
+    /// The velocity once an acceleration below `-rate` has returned to it.
     fn at_rate(self, rate: f64) -> f64 {
         self.v - 0.5 * (self.a * self.a - rate * rate).max(0.0)
     }
 
-    /// Whether the velocity stays in `0 ..= limit` on the way to [`Slope::rest`].
+    /// Whether the velocity stays in `0 ..= limit` until [`Slope::rest`].
     pub(super) fn is_viable(self, limit: f64) -> bool {
         self.v.max(self.rest()) <= limit && self.v.min(self.rest()) >= 0.0
     }
 
-    /// The spans that bring acceleration and velocity inside, and the root steps taken (R19); none if they
-    /// are inside. The velocity has to be in `range`.
+    /// The spans that bring acceleration and velocity inside, and the root steps (R19); none if they are inside.
+    /// The velocity must be in `range`.
     pub(super) fn lead_in(self, goal: f64, range: Sides, bounds: &Box3) -> (Spans<3>, u32) {
         let limit = range.plus;
         let Box3 {
@@ -60,8 +60,8 @@ impl Slope {
             ..
         } = *bounds;
         let is_lowered = jerk > 1.0 || brake > down;
-        // Bound to come through zero and out on the other side; until it is through, what brings it back is an
-        // acceleration.
+        // It will pass zero and leave the range on the other side. Until it is through, the force that brings it
+        // back is an acceleration.
         if jerk > 1.0 && self.rest() < -range.minus * (1.0 + ON_LIMIT) {
             let turned = Box3 {
                 up: down,

@@ -6,13 +6,13 @@ use super::turn::TURN_SPANS;
 use crate::kernel::{Bounds, ON_LIMIT, Profile, Scale, Sides, Spans, append_third, gain, second, third};
 use crate::{DirectedLimits, Order, Setpoint};
 
-/// Most spans of a ramp: getting inside the limits, then a ramp that may turn.
+/// Largest number of spans of a ramp: getting inside the limits, then a ramp that may turn.
 pub(crate) const RAMP_SPANS: usize = LEAD_SPANS + TURN_SPANS;
 
-/// What a ramp may do with the sign of the velocity.
+/// The freedom of a ramp to change the sign of the velocity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Course {
-    /// Keep it wherever possible: a stop is not to turn back.
+    /// Keep the sign if possible: a stop should not turn back.
     Kept,
     /// Anything: the ramp is part of a move to a position.
     Free,
@@ -30,7 +30,7 @@ pub(crate) struct Ramps {
     before: Before,
 }
 
-/// What holds, in the kernel's units, for as long as the start state is outside the limits.
+/// The limits, in the kernel's units, that hold while the start state is outside the new ones.
 #[derive(Clone, Copy, Debug)]
 struct Before {
     deceleration: f64,
@@ -39,23 +39,23 @@ struct Before {
     input: f64,
 }
 
-/// One ramp. It is large, so it is made where it is to stay.
+/// One ramp. It is large, so it is built in its final place.
 pub(crate) struct Ramp {
     /// Durations and inputs in the kernel's units.
     pub(crate) spans: Spans<RAMP_SPANS>,
-    /// How many of the spans bring the start inside the limits.
+    /// Number of spans that bring the start inside the limits.
     pub(crate) lead: usize,
-    /// Root steps it took.
+    /// Number of root steps.
     pub(crate) steps: u32,
-    /// Whether the start was inside and viable and the ramp keeps its direction, so that it exceeds nothing.
+    /// Whether the start was inside and viable and the ramp keeps its direction, so that there is no excess.
     pub(crate) viable: bool,
-    /// Whether it is a stop from a viable state inside the limits that has the same bounds throughout: from any state on
-    /// it, the rest of it is the stop.
+    /// Whether it is a stop from a viable state inside the limits with the same bounds throughout: from any state
+    /// on it, the rest of it is the stop.
     is_plain_stop: bool,
 }
 
 impl Ramp {
-    /// How long a push with this `input` goes the way of a stop, which then ends where it did.
+    /// The time for which a push with this `input` is equal to a stop, which then still ends at the same place.
     pub(crate) fn goes_along(&self, input: f64) -> f64 {
         match self.spans.as_slice() {
             [first, ..] if self.is_plain_stop && first.input == input => first.duration,
@@ -63,7 +63,7 @@ impl Ramp {
         }
     }
 
-    /// How fast the end of a stop moves while a push with this `input` takes its start along (O21); NaN where that is not
+    /// The velocity of the end of a stop while a push with this `input` moves its start (O21); NaN if it is not
     /// known.
     pub(crate) fn speed_of_end(&self, input: f64) -> f64 {
         match self.spans.as_slice() {
@@ -126,7 +126,7 @@ impl Ramps {
         }
     }
 
-    /// The same for a way back in time: what speeds a motion up slows it down there.
+    /// The same for a time-reversed motion: what speeds a motion up slows it down there.
     pub(crate) const fn backwards(&self) -> Self {
         Self {
             acceleration: self.deceleration,
@@ -140,8 +140,8 @@ impl Ramps {
         }
     }
 
-    /// Ramps of one order less, in the same units, in which the velocity takes the place of the position: those of the
-    /// acceleration, within `range`.
+    /// Ramps of one order less, in the same units, in which the velocity takes the place of the position: those of
+    /// the acceleration, within `range`.
     pub(crate) const fn of_velocity(&self, range: Sides) -> Self {
         let (order, rate, jerk) = match self.order {
             Order::Four => (Order::Three, self.jerk, 1.0),
@@ -162,8 +162,9 @@ impl Ramps {
         }
     }
 
-    /// The bounds of an acceleration between the velocities `from` and `to`: where they differ in sign the lower one
-    /// holds both ways, but for the acceleration `end` itself, which a motion from rest to rest comes to from behind.
+    /// The bounds of an acceleration between the velocities `from` and `to`. If their signs differ, the lower one
+    /// holds in both directions, except for the acceleration `end` itself, which a motion from rest to rest reaches
+    /// from behind.
     pub(crate) fn accelerations(&self, from: f64, to: f64, end: f64) -> Sides {
         let (low, high) = (from.min(to), from.max(to));
         let (up, down) = if low < 0.0 && high > 0.0 {
@@ -228,7 +229,7 @@ impl Ramps {
         self.scale.inward(value, levels(self.order, derivative))
     }
 
-    /// A state in the kernel's units; the derivatives that may jump at this order play no part.
+    /// A state in the kernel's units; the derivatives that may jump at this order are not used.
     pub(crate) fn state_inward(&self, state: &Setpoint) -> Setpoint {
         Setpoint {
             position: self.inward(state.position, 0),
@@ -248,7 +249,7 @@ impl Ramps {
         ramp
     }
 
-    /// As [`Ramps::ramp`], in place of what `ramp` was.
+    /// The same as [`Ramps::ramp`], written to `ramp`.
     pub(crate) fn lay(&self, ramp: &mut Ramp, start: &Setpoint, goal: f64, heading: f64, course: Course) {
         #[cfg(feature = "count")]
         super::count::add();
@@ -275,8 +276,8 @@ impl Ramps {
         }
     }
 
-    /// The whole move from `start` to rest at `target` where the kernel has it: at order 3 with the same
-    /// bound on acceleration and deceleration, from a viable state inside the limits (O3).
+    /// The whole move from `start` to rest at `target`, if the kernel can solve it: at order 3 with the same bound
+    /// on acceleration and deceleration, from a viable state inside the limits (O3).
     pub(crate) fn position_profile(&self, start: &Setpoint, target: f64) -> Option<Profile> {
         let &Setpoint {
             position: p,
@@ -301,7 +302,7 @@ impl Ramps {
         fits.then(|| third(p, v, a, target, &bounds))
     }
 
-    /// The velocity `start` comes to once acceleration and jerk are zero as soon as can be.
+    /// The velocity of `start` once acceleration and jerk are zero, as soon as possible.
     pub(crate) fn arrested(&self, start: &Setpoint) -> f64 {
         let &Setpoint {
             velocity: v,
@@ -316,7 +317,7 @@ impl Ramps {
         }
     }
 
-    /// The same for a start in the user's units, and in them.
+    /// The same for a start in the user's units; the result is in those units, too.
     pub(crate) fn coasting(&self, start: &Setpoint) -> f64 {
         if start.acceleration == 0.0 && start.jerk == 0.0 {
             return start.velocity;
@@ -330,11 +331,11 @@ impl Ramps {
         course == Course::Free && self.acceleration != self.deceleration
     }
 
-    /// The acceleration bounds a ramp itself uses (R11), for a start that moves forwards.
+    /// The acceleration bounds that a ramp itself uses (R11), for a start that moves forwards.
     ///
-    /// Forwards, what is above zero raises the speed and what is below lowers it. Where the velocity
-    /// changes its sign on the way both do both, so the lower bound of the two holds on that side; `dips`
-    /// says that it goes below zero on its way to a goal that is not.
+    /// Forwards, an acceleration above zero raises the speed and one below zero lowers it. If the velocity changes
+    /// its sign on the way, each does both, so the lower bound of the two holds on that side. `dips` means that the
+    /// velocity goes below zero on its way to a goal that is not below zero.
     fn sides(&self, goal: f64, dips: bool) -> Sides {
         let lower = self.lower();
         let reverses = goal < 0.0;
@@ -348,7 +349,7 @@ impl Ramps {
         }
     }
 
-    /// Order 2: one straight line, or two if the velocity has to come inside its limit first (R12).
+    /// Order 2: one straight line, or two if the velocity must come inside its limit first (R12).
     fn second_order(&self, ramp: &mut Ramp, velocity: f64, goal: f64, limit: f64, course: Course) {
         let spans = &mut ramp.spans;
         let sides = self.sides(goal, false);
@@ -438,7 +439,7 @@ impl Ramps {
             append_third(spans, &lead.arrest, (v, a, j), goal, &own(dips))
         };
         ramp.steps = lead.steps.max(steps);
-        // Where the acceleration comes to while the jerk goes to zero as fast as it can.
+        // The acceleration that is reached while the jerk goes to zero as fast as it can.
         let settled = start.a + 0.5 * start.j * start.j.abs();
         let widened = 1.0 + ON_LIMIT;
         let held = settled <= self.acceleration * widened && settled >= -self.deceleration * widened;
@@ -455,12 +456,12 @@ fn setpoint(velocity: f64, acceleration: f64, jerk: f64) -> Setpoint {
     }
 }
 
-/// How many integrations the derivative lies above the input.
+/// The number of integrations from the input to the derivative.
 const fn levels(order: Order, derivative: u32) -> u32 {
     (order.degree() as u32).saturating_sub(derivative)
 }
 
-/// A speed that is nothing but rounding beside its bound `velocity`.
+/// A speed that is only rounding beside its bound `velocity`.
 pub(crate) fn unmoved(velocity: f64) -> f64 {
     if velocity.is_finite() {
         ON_LIMIT * velocity
@@ -469,8 +470,8 @@ pub(crate) fn unmoved(velocity: f64) -> f64 {
     }
 }
 
-/// The direction a motion has, 1 or -1: the sign of the velocity, or if that is nothing but rounding beside
-/// its bound `velocity`, of the first derivative that moves it, if any does.
+/// The direction of a motion, 1 or -1: the sign of the velocity. If the velocity is only rounding beside its bound
+/// `velocity`, the sign of the first derivative that moves it, if there is one.
 pub(crate) fn heading(start: &Setpoint, goal: f64, velocity: f64, order: Order) -> f64 {
     let unless_it_jumps = |least| if order >= least { 0.0 } else { f64::INFINITY };
     let decisive = [

@@ -1,8 +1,8 @@
 //! Ramps on which the velocity changes its sign, with a deceleration of its own (O5).
 //!
-//! What slows the motion down on one side of zero speeds it up on the other, so such a ramp is made of legs
-//! that meet where the velocity is zero. Everything is in the kernel's units and mirrored so that the
-//! motion starts forwards.
+//! The rate that slows the motion down on one side of zero speeds it up on the other, so such a ramp is made of
+//! legs that meet at velocity zero. Everything is in the kernel's units and mirrored so that the motion starts
+//! forwards.
 
 use super::inside::{self, State};
 use super::path::Way;
@@ -11,14 +11,15 @@ use crate::kernel::{Bounds, ON_LIMIT, Profile, Sides, Spans, THIRD_SPANS, fallin
 use crate::math::sqrt;
 use crate::{Order, Setpoint};
 
-/// Most spans of a leg: a profile, or a push of three, a hold and a release of three.
+/// Largest number of spans of a leg: a profile, or a push of three, a hold and a release of three.
 const LEG_SPANS: usize = 7;
 
-/// Most spans of a ramp that turns: once back if it dips, once to zero, perhaps after coming inside other
-/// bounds, and on from there.
+/// Largest number of spans of a ramp that turns: once back if it dips, once to zero, possibly after getting inside
+/// other bounds, and on from there.
 pub(super) const TURN_SPANS: usize = 3 * LEG_SPANS + 3;
 
-/// What a false position leaves of its bracket, twice: by so much sooner its function is surely not below zero.
+/// Twice the bracket that a false position leaves, relative to its first width: this much sooner its function is
+/// surely not below zero.
 const SURELY_BEFORE: f64 = 2e-14;
 
 /// A ramp in the making.
@@ -29,14 +30,14 @@ struct Legs {
 }
 
 impl Ramps {
-    /// The spans from `start`, which moves forwards, to `goal`, where the velocity changes its sign on the
-    /// way; also the root steps taken.
+    /// The spans from `start`, which moves forwards, to `goal`, if the velocity changes its sign on the way. Also
+    /// returns the root steps.
     pub(super) fn turning(&self, start: &Setpoint, goal: f64) -> (Spans<TURN_SPANS>, u32) {
         let mut legs = Legs::from(Way::new(self.order(), start, self.lower()));
         if goal < 0.0 {
             self.turn(&mut legs, goal);
         } else if legs.until_zero(&self.plain(start, goal, self.forward())) {
-            // It dips below zero: from there it comes back like a motion that starts the other way.
+            // It dips below zero: from there it comes back like a motion that starts in the other direction.
             let mut back = Legs::from(legs.way);
             back.way.state = mirrored(&legs.way.state);
             if goal > 0.0 {
@@ -50,7 +51,7 @@ impl Ramps {
         (legs.spans, legs.steps)
     }
 
-    /// The legs to `goal` < 0: braking to where the velocity is zero, and speeding up from there.
+    /// The legs to `goal` < 0: braking until the velocity is zero, and speeding up from there.
     fn turn(&self, legs: &mut Legs, goal: f64) {
         let direct = self.plain(&legs.way.state, goal, self.forward());
         let mut braking = Legs::from(legs.way);
@@ -65,8 +66,8 @@ impl Ramps {
         }
     }
 
-    /// Whether `spans` from `begin`, which pass zero velocity after `zero`, are the best way from there on,
-    /// too: inside the acceleration limit, and not kept from using it by a deceleration limit that is lower.
+    /// Whether `spans` from `begin`, which pass zero velocity after `zero`, are also the best motion from there on:
+    /// inside the acceleration limit, and not kept from using it by a lower deceleration limit.
     fn may_pass(&self, begin: &Way, spans: &Spans<THIRD_SPANS>, zero: f64) -> bool {
         let mut way = *begin;
         let (mut elapsed, mut lowest) = (0.0, f64::INFINITY);
@@ -106,12 +107,12 @@ impl Ramps {
         coming >= -self.acceleration() * (1.0 + ON_LIMIT)
     }
 
-    /// The legs that brake with the deceleration, are back at the acceleration limit, which is lower, just
-    /// when the velocity is zero, and go on from there (O14).
+    /// The legs that brake with the deceleration, are back at the lower acceleration limit exactly when the
+    /// velocity is zero, and continue from there (O14).
     ///
-    /// They come back with the jerk of [`Ramps::arrival`]. Where even a release at once is too late for
-    /// that, with the least that is early enough: a stop is on such a release, so a start that could still
-    /// stop is never too late. From any other the acceleration is inside as soon as can be.
+    /// They come back with the jerk of [`Ramps::arrival`]. If even an immediate release is too late for that jerk,
+    /// they use the least one that is early enough. A stop is on such a release, so a start that could still stop
+    /// is never too late. From any other start the acceleration comes inside as soon as possible.
     fn release(&self, legs: &mut Legs, goal: f64) {
         let begin = legs.way;
         let push = self.change(&begin.state, -self.deceleration());
@@ -135,7 +136,7 @@ impl Ramps {
             let (time, steps) = falling_root(0.0, longest, |time| left(time, wanted));
             (self.not_too_late(time, longest), wanted, steps)
         } else if self.may_speed_up(&begin.state) {
-            // Inside the lower limit, it can stay so.
+            // Inside the lower limit it can stay inside.
             legs.follow_profile(&self.plain(&begin.state, goal, Sides::both(self.acceleration())));
             return;
         } else {
@@ -150,11 +151,11 @@ impl Ramps {
         let (leg, arrived) = released(time, arrival);
         legs.append(&leg);
         legs.steps = legs.steps.max(steps);
-        // What the root leaves of the velocity is rounding.
+        // The remainder of the velocity after the root is rounding.
         legs.way.state.velocity = legs.way.state.velocity.min(0.0);
         if in_time && wanted > 0.0 && arrived == wanted {
-            // What the root of the jerk leaves of the goal is rounding, too; to make up for it would take
-            // the cube root of it in time.
+            // The remainder of the goal after the root of the jerk is rounding, too; correcting it would take its
+            // cube root in time.
             let arrest = self.change(&legs.way.state, 0.0);
             legs.follow(&arrest);
         } else {
@@ -162,11 +163,11 @@ impl Ramps {
         }
     }
 
-    /// The `time` at which a release begins, or a little sooner where the velocity would show it if it came to zero before
-    /// the acceleration to its limit; `longest` is the bracket that it was looked for in.
+    /// The `time` at which a release begins, or a little sooner if the velocity would come to zero visibly before
+    /// the acceleration reaches its limit; `longest` is the bracket of the search.
     ///
-    /// At order 3 the acceleration comes there at full jerk: a velocity that is off by little beside the deceleration puts
-    /// it beyond the limit by a part of it that grows with the square of their ratio.
+    /// At order 3 the acceleration gets there at full jerk. A velocity error that is small beside the deceleration
+    /// then puts it beyond the limit by a part of it that grows with the square of their ratio.
     fn not_too_late(&self, time: f64, longest: f64) -> f64 {
         let sooner = SURELY_BEFORE * longest;
         let at_limit = self.acceleration() * self.acceleration();
@@ -178,9 +179,9 @@ impl Ramps {
         }
     }
 
-    /// The jerk with which a release should come back to the acceleration limit at zero velocity: none,
-    /// unless the acceleration could then not be taken back before the velocity is past `goal` < 0; then
-    /// that with which it just can. Also the root steps taken.
+    /// The jerk with which a release should come back to the acceleration limit at zero velocity. It is zero,
+    /// unless the acceleration could then not be removed before the velocity passes `goal` < 0; then it is the jerk
+    /// with which that is just possible. Also returns the root steps.
     fn arrival(&self, goal: f64) -> (f64, u32) {
         let beyond = |jerk: f64| {
             let state = State {
@@ -190,7 +191,7 @@ impl Ramps {
             };
             goal - inside::arrested(state, self.jerk())
         };
-        // At order 3 the way to such a goal keeps the limit by itself.
+        // At order 3 the path to such a goal keeps the limit by itself.
         if self.order() < Order::Four || beyond(0.0) <= 0.0 {
             return (0.0, 0);
         }
@@ -211,15 +212,15 @@ impl Ramps {
         }
     }
 
-    /// The jerk nearest to `wanted` with which the acceleration can come back to its limit from `start`
-    /// without a detour.
+    /// The jerk nearest to `wanted` with which the acceleration can return to its limit from `start` without a
+    /// detour.
     fn reachable(&self, start: &Setpoint, wanted: f64) -> f64 {
         let State { a, j, .. } = state(start);
         let change = -self.acceleration() - a;
         if self.order() < Order::Four || change <= 0.0 && j >= 0.0 {
             return 0.0;
         }
-        // Of a jerk that rises already this much is left.
+        // A jerk that already rises leaves this much.
         let least = if j > 0.0 {
             sqrt((j * j - 2.0 * change).max(0.0))
         } else {
@@ -229,7 +230,7 @@ impl Ramps {
         wanted.max(least).min(most)
     }
 
-    /// The leg from zero velocity on to `goal` < 0: a motion that speeds up the other way.
+    /// The leg from zero velocity to `goal` < 0: a motion that speeds up in the other direction.
     fn speed_up(&self, legs: &mut Legs, goal: f64) {
         let Profile { spans, steps } = self.plain(&mirrored(&legs.way.state), -goal, self.forward());
         legs.spans.extend(&spans.mirrored());
@@ -244,7 +245,7 @@ impl Ramps {
         }
     }
 
-    /// The least-time way under the same bounds throughout.
+    /// The least-time path under the same bounds throughout.
     fn plain(&self, start: &Setpoint, goal: f64, sides: Sides) -> Profile {
         let State { v, a, j } = state(start);
         let mut spans = Spans::new();
@@ -302,7 +303,7 @@ impl Legs {
         self.steps = self.steps.max(profile.steps);
     }
 
-    /// Follows `profile` as far as the velocity is not below zero; whether it comes to that.
+    /// Follows `profile` while the velocity is not below zero; returns whether it reaches zero.
     fn until_zero(&mut self, profile: &Profile) -> bool {
         self.steps = self.steps.max(profile.steps);
         for span in profile.spans.iter() {

@@ -5,7 +5,7 @@ use super::super::problem::{ratios, threshold};
 use crate::math::{self, max, sqrt};
 use crate::{Limits, Order};
 
-/// Most rows (values of n1) that the ramps of one search may visit together before it returns the best
+/// Largest number of rows (values of n1) that the ramps of one search may visit together before it returns the best
 /// found.
 pub const MAX_RAMP_ROWS: u32 = 8192;
 

@@ -40,7 +40,7 @@ pub struct UnequalPlan {
     cycle: f64,
     /// Velocity between the ramps (u/s), signed.
     velocity: f64,
-    /// Half the way of a scan at that velocity (u), signed.
+    /// Half the distance of a scan at that velocity (u), signed.
     half_way: f64,
     up: Half,
     down: Half,
@@ -65,7 +65,7 @@ impl UnequalPlan {
     /// Cost: see [`UnequalPlan::new_counted`].
     ///
     /// # Errors
-    /// As [`GridPlan::new`](super::GridPlan::new).
+    /// Those of [`GridPlan::new`](super::GridPlan::new).
     pub fn new(
         family: Family,
         start: f64,
@@ -76,13 +76,13 @@ impl UnequalPlan {
         Self::new_counted(family, start, target, limits, cycle).map(|(plan, _)| plan)
     }
 
-    /// As [`UnequalPlan::new`], with the work the search took.
+    /// The same as [`UnequalPlan::new`], with the work of the search.
     ///
     /// Bounded: at most twice [`MAX_RAMP_ROWS`] rows (measured counts in docs/planner.md, section 12). A search cut
     /// short by them returns the shorter one of its best and [`GridPlan`](super::GridPlan) with the lower rate.
     ///
     /// # Errors
-    /// As [`GridPlan::new`](super::GridPlan::new).
+    /// Those of [`GridPlan::new`](super::GridPlan::new).
     pub fn new_counted(
         family: Family,
         start: f64,
@@ -134,17 +134,17 @@ impl UnequalPlan {
         Ok((plan, work))
     }
 
-    /// Where the move starts (u).
+    /// Start of the move (u).
     pub const fn start(&self) -> f64 {
         self.start
     }
 
-    /// Where the move ends (u).
+    /// Target of the move (u).
     pub const fn target(&self) -> f64 {
         self.target
     }
 
-    /// How smooth the plan is.
+    /// The order of the plan.
     pub const fn order(&self) -> Order {
         self.order
     }

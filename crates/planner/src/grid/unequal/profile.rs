@@ -5,7 +5,7 @@ use super::{Half, UnequalPlan};
 use crate::math::{max, sqrt};
 use crate::{Order, Setpoint};
 
-/// Most instants at which the highest derivative jumps.
+/// Largest number of instants at which the highest derivative jumps.
 const MAX_INSTANTS: usize = 16;
 
 impl Half {
@@ -26,9 +26,9 @@ impl Half {
 impl UnequalPlan {
     /// The continuous profile at `scan` cycles after the start, in O(1): at most nine terms.
     ///
-    /// From [`UnequalPlan::scans`] on it is rest on the target, to the bit; only at order 4 the snap of the
-    /// last segment shows at the last scan itself. The position never leaves the way from start to target
-    /// and never steps back.
+    /// From [`UnequalPlan::scans`] on the profile is at rest on the target, to the bit. Only at order 4 the snap of
+    /// the last segment shows at the last scan itself. The position is always between start and target and never
+    /// steps back.
     pub fn at(&self, scan: u64) -> Setpoint {
         let scans = u64::from(self.scans);
         if scan < scans {
@@ -78,14 +78,14 @@ impl UnequalPlan {
         }
         let [_, f_up, ..] = self.up.scale.map(f64::abs);
         let [_, f_down, ..] = self.down.scale.map(f64::abs);
-        // Where the pulls of both snap pulses are equal the acceleration is zero.
+        // At the instant when the effects of both snap pulses are equal the acceleration is zero.
         let (root_up, root_down) = (sqrt(f_up), sqrt(f_down));
         let of_down = overlap * (root_up / (root_up + root_down));
         let of_up = overlap - of_down;
         f_up * (of_up * of_up * of_up) + f_down * (of_down * of_down * of_down)
     }
 
-    /// When the ramp down begins (scans).
+    /// The scan in which the ramp down begins.
     fn begin_of_down(&self) -> i64 {
         i64::from(self.scans) - self.down.scans()
     }

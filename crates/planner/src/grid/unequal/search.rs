@@ -9,14 +9,14 @@ use crate::math::{ceil, floor, max, min, sqrt};
 /// Steps of the first estimate: four digits are enough.
 const ESTIMATE_STEPS: u32 = 6;
 
-/// How much work a search took.
+/// The work of a search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct UnequalWork {
     /// Scan counts tried.
     pub counts: u32,
     /// Number of times both ramps were solved.
     pub solves: u32,
-    /// Values of n1 looked at, over all ramps.
+    /// Values of n1 that were examined, over all ramps.
     pub rows: u32,
     /// Whether the cap ended the search, so that the result is valid but not proven shortest.
     pub capped: bool,
