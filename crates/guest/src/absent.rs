@@ -48,7 +48,7 @@ impl Program {
 
 #[allow(clippy::missing_errors_doc)]
 impl Guest {
-    /// Never called, and neither are the functions that follow.
+    /// Never called, and neither are the functions below.
     pub fn scan<P: Planner>(&mut self, _: &mut Context<'_, P>) -> Result<u64, Fault> {
         match self.0 {}
     }

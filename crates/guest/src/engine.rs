@@ -18,11 +18,11 @@ const SCAN: &str = "a function (i32, i64), called in every execution of the task
 const MEMORY: &str = "the memory in which pins and variables lie";
 const NOTHING: &str = "a function without parameters and results";
 
-/// What was compiled.
+/// The compiled module.
 #[derive(Clone, Debug)]
 pub(crate) struct Module(wasmi::Module);
 
-/// A fault on its way out of the interpreter.
+/// A fault that leaves the interpreter.
 #[derive(Debug)]
 struct Stop(Box<Fault>);
 
@@ -187,7 +187,7 @@ pub(crate) struct Machine {
     store: Store<Own>,
     instance: wasmi::Instance,
     memory: Memory,
-    /// `plc_scan`, then the others that the host asked for.
+    /// `plc_scan`, then the others that the host requested.
     entries: Vec<TypedFunc<(i32, i64), ()>>,
 }
 

@@ -22,7 +22,7 @@ pub enum LoadError {
     Large {
         /// Its bytes.
         bytes: usize,
-        /// What is permitted.
+        /// The permitted number.
         most: usize,
     },
     /// Not a module, or one with features or sizes that are not permitted.
@@ -43,7 +43,7 @@ pub enum LoadError {
     Type {
         /// Its name.
         name: String,
-        /// What it must be.
+        /// The required type.
         wanted: &'static str,
     },
     /// An export that every guest has is missing.
@@ -51,7 +51,7 @@ pub enum LoadError {
     Export {
         /// Its name.
         name: &'static str,
-        /// What it must be.
+        /// The required type.
         wanted: &'static str,
     },
     /// Its memory begins larger than its limit.
@@ -60,17 +60,17 @@ pub enum LoadError {
          it with less"
     )]
     Memory {
-        /// What it begins with.
+        /// Its initial size.
         bytes: u64,
-        /// What is permitted.
+        /// The permitted number.
         most: u64,
     },
     /// Its `_initialize` or `plc_init` failed.
     #[error("its `{name}` failed: {fault}")]
     Init {
-        /// Which of them.
+        /// The function.
         name: &'static str,
-        /// How.
+        /// The fault.
         fault: Fault,
     },
 }
@@ -85,15 +85,15 @@ pub enum Fault {
     },
     /// An instruction that cannot be executed; the name is that of the standard.
     Trap(&'static str),
-    /// A block or `log` was given an address that is not in the memory of the guest.
+    /// A block or `log` received an address that is not in the memory of the guest.
     Pointer {
         /// The function.
         function: &'static str,
-        /// Which of its arguments.
+        /// The argument.
         what: &'static str,
         /// The address.
         address: u32,
-        /// Bytes that must be there.
+        /// Number of bytes that must be there.
         bytes: u64,
         /// Bytes of the memory.
         memory: u64,

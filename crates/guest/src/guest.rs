@@ -14,7 +14,7 @@ pub struct Program {
     pub(crate) settings: Settings,
 }
 
-/// A function of one guest that does a scan, see [`Guest::entry`].
+/// A function of one guest that executes a scan, see [`Guest::entry`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry(usize);
 
@@ -125,10 +125,10 @@ impl Guest {
         self.machine.entry(name).map(Entry)
     }
 
-    /// As [`Guest::scan`], by another function.
+    /// The same as [`Guest::scan`], by another function.
     ///
     /// # Errors
-    /// As [`Guest::scan`].
+    /// Those of [`Guest::scan`].
     pub fn scan_entry<P: Planner>(
         &mut self,
         entry: Entry,

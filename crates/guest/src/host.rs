@@ -8,10 +8,10 @@ use standstill_fb::ring::{FlatRecord, RECORD_SIZE};
 use standstill_fb::{AnyInstance, Block, BlockInfo, Context, Instance, PinType, TableRef, Value};
 use std::sync::LazyLock;
 
-/// Most lines that a guest may write in one scan; further ones are counted.
+/// Largest number of lines that a guest may write in one scan; further ones are counted.
 const LINES_MOST: usize = 16;
 
-/// Most bytes of a line; the rest is cut off.
+/// Largest number of bytes of a line; the rest is cut off.
 const LINE_MOST: u32 = 1024;
 
 /// The results of the blocks' functions; numbers and meanings are those of the C library.
@@ -28,25 +28,25 @@ pub enum Code {
     NotInTick = -7,
     /// No instance has this key.
     UnknownKey = -10,
-    /// The key is of an instance of another block.
+    /// The key belongs to an instance of another block.
     WrongBlock = -11,
-    /// [`INSTANCES_MOST`] instances are there.
+    /// The guest already has [`INSTANCES_MOST`] instances.
     NoRoom = -12,
-    /// An array has more records than its block takes, or records at address 0.
+    /// An array has more records than its block accepts, or records at address 0.
     Table = -17,
 }
 
-/// What can be imported.
+/// The permitted imports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Import {
     Log,
     /// Records of the diagnostic ring.
     LogRead,
-    /// A function of one number, by its place in [`FUNCTIONS`].
+    /// A function of one number, by its index in [`FUNCTIONS`].
     Function(usize),
-    /// A function of two, by its place in [`FUNCTIONS_OF_TWO`].
+    /// A function of two numbers, by its index in [`FUNCTIONS_OF_TWO`].
     FunctionOfTwo(usize),
-    /// A block, by its place in the registry.
+    /// A block, by its index in the registry.
     Block(usize),
 }
 
@@ -330,8 +330,8 @@ impl Host {
         Ok(Ok(()))
     }
 
-    /// The instance with this key and its number in records, if it is of one kind of block. None if there
-    /// is no such instance, or the key is 0.
+    /// The instance with this key and its number in records, if it is of the given kind of block. None if there is
+    /// no such instance, or the key is 0.
     #[inline]
     pub(crate) fn find<B>(
         &mut self,
@@ -348,7 +348,7 @@ impl Host {
         Some((id, as_block(instance)?))
     }
 
-    /// A new instance; gives its key.
+    /// Makes a new instance and returns its key.
     fn make(&mut self, block: usize, shape: &Shape, key: u32) -> Result<u64, Code> {
         if self.slots.len() >= INSTANCES_MOST {
             return Err(Code::NoRoom);

@@ -126,9 +126,9 @@ impl SymbolType {
 /// A variable in the memory of a guest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Symbol {
-    /// What stands there.
+    /// Its type.
     pub ty: SymbolType,
-    /// Where.
+    /// Its address.
     pub address: u32,
 }
 
@@ -141,7 +141,7 @@ pub enum SymbolError {
          or give its `address`"
     )]
     Unknown(String),
-    /// It lies outside.
+    /// It is outside the memory.
     #[error("{bytes} bytes at address {address} do not lie in the guest's memory of {memory} bytes")]
     Outside {
         /// The address.
@@ -169,7 +169,7 @@ impl Symbol {
         rest.get(..bytes).ok_or(outside)
     }
 
-    /// What stands there.
+    /// The value at the address.
     pub(crate) fn read(&self, memory: &[u8]) -> Result<Value, SymbolError> {
         let flat = self.place(memory)?;
         Ok(match self.ty {

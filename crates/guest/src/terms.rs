@@ -3,7 +3,7 @@
 use crate::MODULE;
 use standstill_axis::InstanceId;
 
-/// Most block instances of a guest.
+/// Largest number of block instances of a guest.
 pub const INSTANCES_MOST: usize = 1024;
 
 /// The limits of a guest.
@@ -11,7 +11,7 @@ pub const INSTANCES_MOST: usize = 1024;
 pub struct Settings {
     /// Instructions of one call, counted by the interpreter; a call that needs more is a fault.
     pub fuel: u64,
-    /// Most bytes of memory.
+    /// Largest number of bytes of memory.
     pub memory: u64,
     /// Name of the module that its imports come from.
     pub module: String,
@@ -30,18 +30,18 @@ impl Default for Settings {
     }
 }
 
-/// What a guest told.
+/// A message of a guest.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Told {
     /// A line of `log`.
     Line(String),
-    /// This many lines more than a scan may have.
+    /// The number of lines beyond the limit of a scan.
     LinesLost(u64),
     /// It has a new instance.
     Made {
         /// Its number in records.
         id: InstanceId,
-        /// Its place among the guest's instances, from 1.
+        /// Its index among the guest's instances, from 1.
         number: usize,
         /// Its block.
         block: &'static str,

@@ -28,7 +28,7 @@ pub(crate) fn before<R>(work: impl FnOnce() -> R) -> R {
     TICK.set(&NoTick, work)
 }
 
-/// One execution of a guest, to whose functions `context` is lent meanwhile.
+/// One execution of a guest; its functions can use `context` meanwhile.
 #[inline]
 pub(crate) fn scan<P: Planner>(
     machine: &mut Machine,
@@ -36,7 +36,7 @@ pub(crate) fn scan<P: Planner>(
     context: &mut Context<'_, P>,
     fuel: u64,
 ) -> Result<u64, Box<Fault>> {
-    // A tick is the number of the scan, as far as 32 bits go.
+    // A tick is the number of the scan, in 32 bits.
     let (tick, now_ns) = (context.scope.scan as i32, context.now_ns);
     during(
         &Lent(Cell::new(Some(context))),
@@ -61,7 +61,7 @@ fn during(
 /// A code, of 64 bits so that it comes back in a register; or a fault that ends the guest.
 pub(crate) type Answer = Result<i64, Box<Fault>>;
 
-/// What `log_read` does.
+/// The implementation of `log_read`.
 pub(crate) fn log_read(host: &mut Host, memory: &mut [u8], given: [u32; 5]) -> Answer {
     let outcome = TICK.with(|tick| tick.log_read(host, memory, given));
     outcome.map(|code| code as i64).map_err(Box::new)

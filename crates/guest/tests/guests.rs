@@ -32,7 +32,7 @@ struct Bench {
     scan: i64,
 }
 
-/// What a scan leaves: state, position and velocity to the bit, fuel.
+/// The result of a scan: state, position and velocity to the bit, fuel.
 type Row = (AxisState, u64, u64, u64);
 
 impl Bench {
@@ -215,7 +215,7 @@ fn what_is_no_guest_is_refused_with_a_reason() {
     assert!(matches!(told, LoadError::Large { .. }), "{told}");
 }
 
-/// The move, and in the scan in which `scans` is 60 the instructions given.
+/// The move, and the given instructions in the scan in which `scans` is 60.
 fn hostile(instructions: &str) -> String {
     let when = format!(
         "(if (i32.eq (i32.load (i32.const 24)) (i32.const 60)) (then {instructions}))\n    \
@@ -294,9 +294,9 @@ fn wrong_calls_get_a_code_and_nan_the_error_of_the_block() {
         ("(i32.const 0) (i32.const 72) (i32.const 88)", -1),
         ("(i32.const 64) (i32.const 0) (i32.const 88)", -1),
         ("(i32.const 64) (i32.const 72) (i32.const 0)", -1),
-        // At 32 stands 0, which is taken for a size.
+        // There is 0 at 32, which is taken as a size.
         ("(i32.const 64) (i32.const 32) (i32.const 88)", -2),
-        // At 512 stands text, which is taken for a key; at 104 the key of another block.
+        // There is text at 512, which is taken as a key; at 104 there is the key of another block.
         ("(i32.const 512) (i32.const 72) (i32.const 88)", -10),
         ("(i32.const 104) (i32.const 72) (i32.const 88)", -11),
         ("(i32.const 64) (i32.const 72) (i32.const 88)", 0),
@@ -428,7 +428,7 @@ fn rows_of(program: &Program) -> Vec<(AxisState, u64, u64)> {
     rows
 }
 
-/// Runs a compiler; `None`, told aloud, where it is not there, which in CI is a failure.
+/// Runs a compiler; `None`, with a message, if it does not exist. In CI that is a failure.
 fn compiled(name: &str, compiler: &str, arguments: &[&str]) -> Option<Program> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/programs");
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);

@@ -1,11 +1,11 @@
-//! The diagnostic ring as a guest reads it.
+//! The diagnostic ring as read by a guest.
 
 use standstill_axis::{AxisId, Event, IdealDrive, InstanceId, Record, Standard};
 use standstill_fb::Value;
 use standstill_guest::{Guest, Program, Settings, Symbol, SymbolType};
 use standstill_scan::{Machine, RUNTIME, ScanTime};
 
-/// Calls `log_read` with the five numbers at 16 and leaves its code at 8; before, in `plc_init`, at 12.
+/// Calls `log_read` with the five numbers at 16 and writes its code to 8; before, in `plc_init`, to 12.
 const READER: &str = r#"(module
   (import "standstill" "log_read" (func $read (param i32 i32 i32 i32 i32) (result i32)))
   (memory (export "memory") 1)
@@ -33,7 +33,7 @@ impl Bench {
         self.guest.read(&Symbol { ty, address }).unwrap()
     }
 
-    /// Makes so many records.
+    /// Makes this number of records.
     fn record(&mut self, records: u64) {
         let context = self.machine.context(ScanTime { scan: 0, now_ns: 0 }, RUNTIME);
         for scan in 0..records {
@@ -46,7 +46,7 @@ impl Bench {
         }
     }
 
-    /// A scan with these arguments: the code.
+    /// A scan with these arguments; returns the code.
     fn read(&mut self, arguments: [u32; 5]) -> Result<Value, String> {
         for (address, argument) in (16..).step_by(4).zip(arguments) {
             let symbol = Symbol {
@@ -64,7 +64,7 @@ impl Bench {
 #[test]
 fn records_are_copied_oldest_first_and_those_overwritten_are_left_out() {
     let mut bench = Bench::new();
-    // Not in a scan.
+    // Outside a scan.
     assert_eq!(bench.at(12, SymbolType::Dint), Value::Lreal(-7.0));
     let given = [64, 1024, 104, 40, 72];
     assert_eq!(bench.read(given), Ok(Value::Lreal(0.0)));
@@ -76,7 +76,7 @@ fn records_are_copied_oldest_first_and_those_overwritten_are_left_out() {
         assert_eq!(bench.at(64, SymbolType::Time), Value::Time(next));
         assert_eq!(bench.at(1024, SymbolType::Time), Value::Time(first));
     }
-    // The second record, the stride away: number, scan, axis, no instance of the guest, event, value.
+    // The second record, one stride further: number, scan, axis, no instance of the guest, event, value.
     let second = 1024 + 104;
     assert_eq!(bench.at(second, SymbolType::Time), Value::Time(47));
     assert_eq!(bench.at(second + 8, SymbolType::Time), Value::Time(47));
@@ -93,7 +93,7 @@ fn wrong_arguments_get_a_code_or_end_the_guest() {
         ([64, 0, 96, 8, 72], Ok(-1.0)),
         ([64, 1024, 96, 8, 0], Ok(-1.0)),
         ([64, 1024, 95, 8, 72], Ok(-2.0)),
-        // No room and no records: `next` and `copied` alone.
+        // No room and no records: only `next` and `copied` are written.
         ([64, 0, 96, 0, 72], Ok(0.0)),
         (
             [65_529, 1024, 96, 8, 72],

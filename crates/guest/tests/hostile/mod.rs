@@ -13,16 +13,16 @@ use standstill_scan::{Executor, Machine, Mode, ProgramConfig, ProgramFault, Prog
 use std::fmt::Write as _;
 use std::sync::LazyLock;
 
-/// Calls of a scan, most.
+/// Largest number of calls of a scan.
 const CALLS: u32 = 6;
 
-/// Scans of a case, most.
+/// Largest number of scans of a case.
 const SCANS: u32 = 150;
 
-/// Where a place of 1024 bytes for each block begins: key, inputs, outputs.
+/// Begin of the areas of 1024 bytes for each block: key, inputs, outputs.
 const PLACES: u32 = 4096;
 
-/// Where records of arrays lie.
+/// Address of the records of arrays.
 const RECORDS: u32 = PLACES + 1024 * REGISTRY.len() as u32;
 
 /// Acceleration and deceleration of the axes (u/s^2).
@@ -30,8 +30,8 @@ const RATE: f64 = 200.0;
 
 const CYCLE: f64 = 0.001;
 
-/// At 0 the number of calls, from 16 on calls of 24 bytes: function and five arguments. The globals count results that
-/// are 0 and keep one that stands for nothing, where no call can write over them.
+/// At 0 the number of calls, from 16 on calls of 24 bytes: function and five arguments. The globals count results
+/// that are 0 and keep one that has no meaning. No call can overwrite them.
 static PROGRAM: LazyLock<Program> = LazyLock::new(|| {
     let mut text = "(module\n".to_owned();
     for (index, name) in NAMES.iter().enumerate() {
@@ -113,10 +113,10 @@ impl Programs<Standard, IdealDrive> for Host {
     }
 }
 
-/// What is left of the input; zeros when it has run out.
+/// The rest of the input; zeros when it has run out.
 struct Bytes<'a> {
     left: &'a [u8],
-    /// So many of 256 addresses, sizes and counts are not what they should be.
+    /// This many of 256 addresses, sizes and counts are invalid.
     hostility: u8,
 }
 
@@ -137,7 +137,7 @@ impl Bytes<'_> {
         u32::from(self.byte()) % end
     }
 
-    /// Mostly `good`, else what a hostile guest would say.
+    /// Usually `good`, otherwise a value of a hostile guest.
     fn or(&mut self, good: u32) -> u32 {
         if self.hostility == 0 || self.byte() >= self.hostility {
             return good;
@@ -145,7 +145,7 @@ impl Bytes<'_> {
         match self.below(8) {
             0 => 0,
             1 => u32::MAX - self.below(128),
-            // About the end of the memory.
+            // Near the end of the memory.
             2 | 3 => 65_536 - self.below(300),
             // Over the place of another call.
             4 | 5 => PLACES + 64 * self.below(256),
@@ -154,7 +154,7 @@ impl Bytes<'_> {
         }
     }
 
-    /// A double of a size machines have, mostly.
+    /// A double, usually of a realistic size.
     fn double(&mut self) -> f64 {
         match self.byte() {
             0..=229 => f64::from(self.byte()) * 0.5 - 8.0,
@@ -185,7 +185,7 @@ impl Case<'_> {
     /// Puts one call into the list of the guest.
     fn queue(&mut self, place: u32) {
         let any = self.bytes.below(REGISTRY.len() as u32 + 4);
-        // Often what makes an axis move.
+        // Often a block that moves an axis.
         let function = match self.bytes.byte() {
             0..=79 => place_of("mc_power"),
             80..=139 => place_of("mc_move_velocity"),
@@ -208,7 +208,7 @@ impl Case<'_> {
         } else if function == REGISTRY.len() as u32 {
             arguments = [base, self.bytes.below(64), 0, 0, 0];
         } else {
-            // What `log_read` takes: next, records, size, room, copied.
+            // The arguments of `log_read`: next, records, size, room, copied.
             arguments = [base, base + 16, 96, self.bytes.below(6), base + 8];
         }
         let entry = 16 + 24 * place;
@@ -246,7 +246,7 @@ impl Case<'_> {
         self.write(ty, address, value);
     }
 
-    /// Calls that were done; a guest that was restored goes on counting.
+    /// Number of calls done; a restored guest continues to count.
     fn done(&self) -> u32 {
         self.host.guest.address_of("good").expect("it is exported")
     }
@@ -277,7 +277,7 @@ impl Case<'_> {
         axes.map(|axis| axis.setpoint().velocity).collect()
     }
 
-    /// After a fault: no axis brakes harder than it may, and all are off in the end.
+    /// After a fault: no axis brakes harder than permitted, and all are off in the end.
     fn stops(&mut self) {
         let most = RATE * CYCLE * 1.000_001;
         let mut before = self.velocities();
@@ -297,15 +297,15 @@ impl Case<'_> {
     }
 }
 
-/// What came of a case.
+/// The result of a case.
 #[derive(Debug, Default)]
 #[allow(dead_code)]
 pub struct Played {
     /// The guest had a fault.
     pub fault: bool,
-    /// An axis moved at that time.
+    /// An axis was moving at that time.
     pub moving: bool,
-    /// Calls that were done.
+    /// Number of calls done.
     pub done: u32,
 }
 
@@ -347,7 +347,7 @@ pub fn play(bytes: &[u8]) -> Played {
         }
         case.variable();
         case.scan();
-        // A fault elsewhere does not stop the resource: axes have their own.
+        // A fault elsewhere does not stop the resource: axes have their own faults.
         assert_eq!(case.host.fault.is_some(), case.executor.mode() != Mode::Running);
         if case.host.fault.is_some() {
             let moving = case.velocities().iter().any(|velocity| *velocity != 0.0);
