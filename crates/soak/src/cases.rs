@@ -7,7 +7,7 @@ use standstill_planner::{
     UnequalPlan,
 };
 
-/// Most scans of a plan.
+/// Largest number of scans of a plan.
 const MOST_SCANS: f64 = 2_147_483_647.0;
 
 /// The goal of a replan.
@@ -84,8 +84,8 @@ impl Case {
         }
     }
 
-    /// Whether it probably takes more scans than a plan can count: some time that is close to a lower
-    /// bound takes that many.
+    /// Whether it probably takes more scans than a plan can count: a time that is close to a lower bound takes that
+    /// many.
     pub fn is_long(&self) -> bool {
         let (way, end) = match self.goal {
             Goal::Grid(target) | Goal::Position(target) => (target - self.start.position, 0.0),
@@ -312,7 +312,7 @@ impl Chain {
         chain
     }
 
-    /// Begins anew at rest, anywhere.
+    /// Starts again at rest, at any position.
     pub fn rest(&mut self) {
         self.start = Setpoint::at_rest(self.position(3.0));
         self.viable = true;
@@ -335,7 +335,7 @@ impl Chain {
         case
     }
 
-    /// Draws the scan at which `plan` is left; it may be its end or later.
+    /// Draws the scan at which the next replan leaves `plan`; it may be its end or later.
     pub fn leave(&mut self, plan: &Plan) -> u64 {
         self.random.below(u64::from(plan.scans()) + 2)
     }
@@ -358,7 +358,7 @@ impl Chain {
             }
             _ => {
                 let target = self.target();
-                // From rest both kinds of planning take turns.
+                // From rest, the two kinds of planning alternate.
                 if self.start.is_at_rest() && self.random.one_in(2) {
                     Goal::Grid(target)
                 } else {
@@ -379,7 +379,7 @@ impl Chain {
         self.random.signed(speed)
     }
 
-    /// A target (u): here, next to here, or anywhere.
+    /// A target (u): at the present position, next to it, or anywhere.
     fn target(&mut self) -> f64 {
         match self.random.below(8) {
             0 => self.start.position,

@@ -1,11 +1,11 @@
 //! Follows published segments as polynomials and finds their extremes.
 //!
-//! It shares no code with the planner, because it checks the planner's claims. Only `+ - * /` and square
+//! It shares no code with the planner, because it checks the planner's claims. It uses only `+ - * /` and square
 //! root, so that the figures are the same everywhere.
 
 use standstill_planner::{Order, Segment, Setpoint};
 
-/// Halvings of an interval to neighbouring numbers, or so near that nothing depends on the rest.
+/// Number of halvings of an interval to neighbouring numbers, or so near that the rest has no effect.
 const HALVINGS: u32 = 60;
 
 /// The course of a list of segments.
@@ -275,7 +275,7 @@ mod tests {
 
     #[test]
     fn extremes_inside_a_segment_are_found() {
-        // v = 3 t^2 - 2 t^3 - 0.5: from below zero up to 0.5 and, past t = 1, down again.
+        // v = 3 t^2 - 2 t^3 - 0.5: it rises from below zero to 0.5, and falls again past t = 1.
         let start = Setpoint {
             velocity: -0.5,
             jerk: 6.0,

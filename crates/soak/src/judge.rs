@@ -6,12 +6,12 @@ use standstill_planner::kernel::MAX_STEPS;
 use standstill_planner::online::MAX_SOLVES;
 use standstill_planner::{Excess, Order, Setpoint};
 
-/// The tolerance for a limit, a target and a jump: relative to the limit, to the way at the velocity
-/// limit, to the limit.
+/// The tolerance for a limit, a target and a jump: relative to the limit, to the distance at the velocity limit, to
+/// the limit.
 const RELATIVE: f64 = 1e-9;
 
-/// Speeds up to this part of the limit count as none: the derivatives give the direction
-/// (docs/planner-ramps.md, section 4), and either bound of the acceleration may apply.
+/// Speeds up to this part of the limit count as zero: the derivatives give the direction (docs/planner-ramps.md,
+/// section 4), and either bound of the acceleration may apply.
 const STILL: f64 = 1e-9;
 
 /// A velocity limit this many times higher than a plan's speeds is no measure of them.
@@ -100,7 +100,7 @@ pub fn judge(case: &Case, plan: &Plan, scan: u64) -> Result<Measured, String> {
     }
 }
 
-/// A search that ran into its cap.
+/// A search that reached its cap.
 fn cut_short(plan: &Plan) -> Option<String> {
     let (solves, steps) = match plan {
         Plan::Grid(_) | Plan::Unequal(_) => (0, 0),
@@ -113,7 +113,7 @@ fn cut_short(plan: &Plan) -> Option<String> {
 
 /// The scale of differences.
 struct Scale {
-    /// The longest way in the examined time (u).
+    /// The longest distance in the examined time (u).
     way: f64,
     /// The resolution of the positions (u).
     resolved: f64,
@@ -159,7 +159,7 @@ impl Scale {
         beyond
     }
 
-    /// A difference of positions relative to the way, beyond the resolution of positions.
+    /// A difference of positions relative to the distance, beyond the resolution of positions.
     fn position(&self, difference: f64) -> f64 {
         let beyond = difference.abs() - self.resolved;
         if beyond > 0.0 { beyond / self.way } else { 0.0 }
@@ -306,9 +306,9 @@ fn limits(
 /// Scans at the start, in the middle and at the end of a plan whose set-points are checked.
 const WINDOW: u64 = 8;
 
-/// Checks backward differences of published positions against the limits. It does so if nothing forces
-/// the plan out of them and some limit is far from the others, because then a piece of the plan could be
-/// lost in its clock.
+/// Checks backward differences of published positions against the limits. It does so if nothing forces the plan out
+/// of the limits and some limit is far from the others, because a piece of the plan could then be lost in its
+/// clock.
 fn published(case: &Case, plan: &Plan) -> Result<(), String> {
     let limits = &case.limits;
     let higher = limits.acceleration.max(limits.deceleration);
@@ -384,7 +384,7 @@ fn ends(case: &Case, plan: &Plan, order: Order, followed: &Followed, scale: &Sca
     }
     for scan in [last, last + 1] {
         let found = plan.at(scan);
-        // The place during the motion is checked by `Measured::sample`.
+        // `Measured::sample` checks the position during the motion.
         let expected = match case.goal {
             Goal::Grid(target) | Goal::Position(target) => Setpoint::at_rest(target),
             Goal::Passing(_, velocity) | Goal::Velocity(velocity) => Setpoint {

@@ -1,6 +1,7 @@
-//! Bytes as a file: scripts, machine files, sweeps, maps, tables and JSON Lines (traces, dumps of recorders, recordings of
-//! machines), exact traces, goldens, lines of plans. The first byte says which. `crates/cli/tests/formats` does the same
-//! with random damage to files of the repository. Run with bounds: `-timeout=10 -rss_limit_mb=512 -malloc_limit_mb=256`.
+//! Bytes as a file: scripts, machine files, sweeps, maps, tables and JSON Lines (traces, dumps of recorders,
+//! recordings of machines), exact traces, goldens, lines of plans. The first byte selects the format.
+//! `crates/cli/tests/formats` does the same with random damage to files of the repository. Run with bounds:
+//! `-timeout=10 -rss_limit_mb=512 -malloc_limit_mb=256`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

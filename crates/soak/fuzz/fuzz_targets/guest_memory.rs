@@ -1,5 +1,5 @@
-//! Bytes as a hostile WebAssembly guest: any block with any addresses, sizes, counts and pins, texts and records at any
-//! place, variables at any address. `crates/guest/tests/memory.rs` does the same with random bytes.
+//! Bytes as a hostile WebAssembly guest: any block with any addresses, sizes, counts and pins, texts and records
+//! anywhere, variables at any address. `crates/guest/tests/memory.rs` does the same with random bytes.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

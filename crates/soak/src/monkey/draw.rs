@@ -17,7 +17,7 @@ use standstill_fb::{BlockInfo, PinType, Value};
 
 use crate::rules::Kind;
 
-/// Most axes of a machine.
+/// Largest number of axes of a machine.
 const AXES: u64 = 3;
 
 /// Sequences that occur more often than by chance: a curve, a command that waits for an edge and one that
@@ -171,7 +171,7 @@ fn axis(random: &mut Random, cycle: f64) -> AxisSetup {
             on_master_lost: one_of(random, &[OnMasterLost::Error, OnMasterLost::Hold]),
             actual_filter: one_of(random, &[0, 1, 4, 16, 64]),
             actual_lead: random.one_in(4),
-            // Not a draw of its own, so that seeds that found something keep their meaning.
+            // Not a draw of its own, so that old seeds still give the same cases.
             cam_continuity: (limits.velocity.to_bits() & 1 == 0).then_some(0),
         };
     }
@@ -195,7 +195,7 @@ fn axis(random: &mut Random, cycle: f64) -> AxisSetup {
 
 /// One or two modes on every sixteenth axis with one rate.
 fn vibration(config: &mut AxisConfig, cycle: f64) {
-    // Not a draw of its own: seeds that found something keep what they stand for.
+    // Not a draw of its own, so that old seeds still give the same cases.
     let bits = config.limits.velocity.to_bits() >> 1;
     if bits & 15 != 0 {
         return;
@@ -563,7 +563,7 @@ fn tables(random: &mut Random, info: &BlockInfo, limits: &Limits, cycle: f64) ->
 /// Points of a profile that most axes can follow from rest: time since the one before (ns), value, and whether the
 /// curve is level there.
 fn points(random: &mut Random, of: &str, limits: &Limits, cycle: f64) -> Vec<Vec<f64>> {
-    // Time in which the axis reaches its velocity and comes back, by all its limits.
+    // The time in which the axis reaches its velocity and returns to rest, by all its limits.
     let jerk = limits.jerk.min(limits.acceleration / cycle);
     let snap = limits.snap.min(jerk / cycle);
     let slow = limits.velocity / limits.acceleration.min(limits.deceleration)
@@ -592,7 +592,7 @@ fn points(random: &mut Random, of: &str, limits: &Limits, cycle: f64) -> Vec<Vec
     (0..count).map(point).collect()
 }
 
-/// Rows of a cam of a few hundred scans' way: master, slave, three derivatives, law.
+/// Rows of a cam over the distance of a few hundred scans: master, slave, three derivatives, law.
 fn curve(random: &mut Random, way: f64) -> Vec<Vec<f64>> {
     let law = one_of(random, &[0.0, 4.0, 4.0, 5.0]);
     let mut master = 0.0;
@@ -612,7 +612,7 @@ fn curve(random: &mut Random, way: f64) -> Vec<Vec<f64>> {
     rows
 }
 
-/// A cam of some scans' way: track, ends, direction, mode, duration (ns).
+/// A cam over the distance of some scans: track, ends, direction, mode, duration (ns).
 fn cam(random: &mut Random, way: f64) -> Vec<f64> {
     let first = random.between(-50.0, 50.0) * way;
     vec![
@@ -651,7 +651,7 @@ mod tests {
         }
     }
 
-    /// The keys that `of` has otherwise than `plain`.
+    /// The keys whose values in `of` differ from those in `plain`.
     fn differing<T>(object: &Object<T>, name: &str, of: &T, plain: &T, all: &mut BTreeSet<String>) {
         object.each(&mut |key: &'static Key<T>| {
             if !key.is_same(of, plain) {
@@ -701,7 +701,7 @@ mod tests {
         ]
         .concat();
         let missing: Vec<_> = all.iter().filter(|path| !played.contains(*path)).collect();
-        // Drawn places are around the place where an axis begins, so that place may be 0.
+        // Drawn positions are around the start position of an axis, so that position may be 0.
         assert_eq!(missing, ["axis.position"]);
     }
 }

@@ -34,7 +34,7 @@ pub struct Monkey<'a> {
     /// Length of a scan (s).
     cycle: f64,
     next: u64,
-    /// What is still to be done in this scan, last first.
+    /// The remaining actions of this scan, last first.
     todo: Vec<Action>,
     /// Axes with a cause that persists.
     broken: Vec<bool>,
@@ -88,7 +88,7 @@ impl<'a> Monkey<'a> {
             });
             return;
         }
-        // Out of operation, the inputs that bring it back are pressed more often.
+        // In an axis out of operation, the inputs that bring it back are pressed more often.
         let wanted = match state {
             AxisState::ErrorStop if self.random.one_in(2) => Some("MC_Reset"),
             AxisState::Disabled if self.random.one_in(2) => Some("MC_Power"),
@@ -188,7 +188,7 @@ impl<'a> Monkey<'a> {
                     _ => near,
                 })
             }
-            // For a profile: the place of the axis, or 0, or anywhere.
+            // For a profile: the position of the axis, or 0, or any.
             "Offset" if block == "MC_PositionProfile" => match self.random.below(8) {
                 0 => Some(0.0),
                 1 => Some(self.length(way)),
@@ -199,14 +199,14 @@ impl<'a> Monkey<'a> {
             } else {
                 0.0
             }),
-            // Sometimes one with which the times become 0.
+            // Sometimes a value that makes the times 0.
             "TimeScale" if self.random.one_in(8) => Some(self.random.log_between(1e-300, 1e300)),
             "TimeScale" => Some(self.random.between(0.8, 2.0)),
-            // Of a parameter: a software limit near, or a limit of motions.
+            // For a parameter: a software limit nearby, or a limit of motions.
             "Value" if self.random.one_in(4) => self.part(limits.velocity),
             "Value" => Some(axis.setpoint().position + self.length(way)),
             "PositionScale" | "VelocityScale" | "AccelerationScale" => Some(self.random.between(-1.0, 1.0)),
-            // Of the window of a probe.
+            // For the window of a probe.
             "FirstPosition" | "LastPosition" => Some(axis.setpoint().position + self.length(way)),
             // It is not supported, so it need not be tried often.
             "MasterStartDistance" => Some(if self.random.one_in(10) { way } else { 0.0 }),
@@ -231,7 +231,7 @@ impl<'a> Monkey<'a> {
             }
             "Acceleration" => self.magnitude(limits.acceleration),
             "Deceleration" => self.magnitude(limits.deceleration),
-            // If unlimited, every power of ten is equally good.
+            // If there is no limit, every power of ten is equally likely.
             "Jerk" if limits.jerk.is_infinite() => {
                 Some(limits.acceleration / self.cycle * self.random.log_between(1e-3, 1e18))
             }
@@ -246,7 +246,7 @@ impl<'a> Monkey<'a> {
         }
     }
 
-    /// A way of some scans, in either direction, sometimes 0.
+    /// The distance of some scans, in either direction, sometimes 0.
     fn length(&mut self, way: f64) -> f64 {
         if self.random.one_in(12) {
             return 0.0;

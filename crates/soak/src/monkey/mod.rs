@@ -22,7 +22,7 @@ use hands::{Monkey, Replay};
 /// The result of an episode.
 #[derive(Clone, Debug)]
 pub struct Episode {
-    /// What was seen.
+    /// The observations.
     pub seen: Seen,
     /// The first broken rule, and the scenario that breaks it.
     pub failure: Option<(Failure, Scenario)>,
@@ -37,7 +37,7 @@ pub fn play(seed: u64, number: u64, scans: u64) -> Episode {
     }
 }
 
-/// As [`play`], with the record in every case.
+/// The same as [`play`], with the record in every case.
 pub fn record(seed: u64, number: u64, scans: u64) -> (Seen, Option<Failure>, Scenario) {
     let mut random = Random::new(seed, number);
     let mut scenario = draw::scenario(&mut random, scans);

@@ -22,7 +22,7 @@ pub trait Hands {
     fn next(&mut self, scan: u64, machine: &Bench, instances: &[Instance]) -> Option<Action>;
 }
 
-/// An instance at work.
+/// An instance in the run.
 #[derive(Clone, Debug)]
 pub struct Instance {
     /// The block.
@@ -48,13 +48,13 @@ pub struct Instance {
 /// A rule that was broken in a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Failure {
-    /// In this scan.
+    /// The scan.
     pub scan: u64,
-    /// By whom.
+    /// The instance or axis.
     pub who: Who,
     /// The rule.
     pub broken: Broken,
-    /// What the instance shows.
+    /// The outputs of the instance.
     pub shown: Option<Shown>,
     /// The state of the axis.
     pub state: Option<AxisState>,
@@ -74,7 +74,7 @@ impl Failure {
     };
 }
 
-/// Who breaks a rule.
+/// The instance or axis that breaks a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Who {
     /// A block instance, by index.
@@ -99,7 +99,7 @@ pub struct Seen {
     pub faults: u64,
     /// Stops in the middle of a reversal, which turned back.
     pub turned_back: u64,
-    /// Hash of all that was published and shown, to the bit.
+    /// Hash of everything that was published and shown, to the bit.
     pub digest: u64,
 }
 
@@ -127,7 +127,7 @@ struct Run<'a, H> {
     /// Whether the set-point of each axis is measured: it is under a torque, or the motion that took over
     /// from one is not at rest yet.
     measured: Vec<bool>,
-    /// How fast (u/s) each axis was at most since then, or is.
+    /// The largest speed (u/s) of each axis since then, or the present one.
     fastest: Vec<f64>,
     /// The motion of each axis that no instance follows, as recorded.
     orphans: Vec<Option<CommandId>>,
@@ -161,7 +161,7 @@ impl Instance {
         }
     }
 
-    /// Whether it waits in the buffer of its axis, as far as its outputs show.
+    /// Whether it waits in the buffer of its axis, according to its outputs.
     fn waits(&self) -> bool {
         let elsewhere =
             matches!(self.block.info().name, "MC_Reset" | "MC_TouchProbe") || self.kind.is_superimposed();
@@ -289,9 +289,9 @@ impl<H: Hands> Run<'_, H> {
         }
     }
 
-    /// Under a torque the set-point is the actual state (docs/torque.md), which no limit of the axis
-    /// bounds. It is from the latch on behind the motion step in which the torque became active, also if another
-    /// motion takes over before a torque is ordered.
+    /// Under a torque the set-point is the actual state (docs/torque.md), which no limit of the axis bounds. This
+    /// holds from the latch behind the motion step in which the torque became active, even if another motion takes
+    /// over before a torque is ordered.
     fn follow_torques(&mut self, axes: &[Axis<Standard>]) {
         for (index, axis) in axes.iter().enumerate() {
             let is_held = axis.order().torque.is_some();
@@ -356,8 +356,8 @@ impl<H: Hands> Run<'_, H> {
                 .find(|id| axis.active_command() == Some(*id));
             instance.given = [Some(axis.newest_command()), moving];
         } else if now.error && instance.command.is_some() {
-            // A command that has completed and continues, as a profile with a velocity at its end, needs
-            // no follower.
+            // A command that has completed and continues, such as a profile with a velocity at its end, needs no
+            // instance.
             let is_over = |id: &CommandId| axis.fate(*id) == Fate::Done;
             instance.given = instance.given.map(|id| id.filter(is_over));
         }
@@ -416,7 +416,7 @@ impl<H: Hands> Run<'_, H> {
         self.seen.fold(setpoint.position.to_bits() ^ (state as u64) << 52);
         let following = axis.is_following();
         if following || self.following[index] || self.measured[index] {
-            // On its way back into operation it takes over at the actual place.
+            // While it returns into operation it takes over at the actual position.
             self.tracks[index].forget();
         }
         if self.measured[index] {
@@ -470,7 +470,7 @@ impl<H: Hands> Run<'_, H> {
         }
         let (state, owned) = (axis.state(), axis.active_command().is_some());
         self.check_followed(index, axis)?;
-        // The superimposed motion is read only if there may be one, because the answer is long.
+        // The superimposed motion is read only if there may be one, because the result is large.
         let added = if beside_held || (state == AxisState::DiscreteMotion && !owned) {
             axis.outlook().superimposed.and_then(|beside| beside.command)
         } else {
@@ -543,7 +543,7 @@ impl<H: Hands> Run<'_, H> {
         self.taken = log.total();
     }
 
-    /// Across a move of coordinates, differences have no meaning.
+    /// Across a shift of coordinates, differences have no meaning.
     fn follow_coordinates(&mut self, axes: &[Axis<Standard>]) {
         for (index, axis) in axes.iter().enumerate() {
             let moves = axis.coordinates();
@@ -627,7 +627,8 @@ fn resolution(plan: &StandardPlan) -> [f64; 2] {
     off
 }
 
-/// Whether MC_TorqueControl owns the axis. Its motion has no plan, which is asked first because the other answer is long.
+/// Whether MC_TorqueControl owns the axis. Its motion has no plan, which is checked first because the other result
+/// is large.
 fn is_torque(axis: &Axis<Standard>) -> bool {
     let is_owner = |(_, kind, _)| kind == WorkKind::Torque;
     axis.state() == AxisState::ContinuousMotion

@@ -15,7 +15,7 @@ pub type Bench = Machine<Standard, SimulatedDrive>;
 pub struct Scenario {
     /// Length of a scan (ns).
     pub cycle_ns: i64,
-    /// How many.
+    /// Number of scans.
     pub scans: u64,
     /// The axes.
     pub axes: Vec<AxisSetup>,
@@ -56,16 +56,16 @@ pub struct TableSetup {
     pub records: Vec<Vec<f64>>,
 }
 
-/// Something done at the latch of a scan.
+/// An action at the latch of a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
     /// The scan.
     pub scan: u64,
-    /// What.
+    /// The action.
     pub action: Action,
 }
 
-/// What can be done.
+/// The kinds of actions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
     /// An input of an instance takes a value.
@@ -81,17 +81,17 @@ pub enum Action {
     Fault {
         /// The axis.
         axis: usize,
-        /// What fails.
+        /// The kind of fault.
         kind: FaultKind,
     },
-    /// The cause of what failed is gone.
+    /// The cause of the fault is gone.
     Clear {
         /// The axis.
         axis: usize,
     },
 }
 
-/// What can fail.
+/// The kinds of faults.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaultKind {
     /// The axis itself.
@@ -116,14 +116,13 @@ impl FaultKind {
     }
 }
 
-/// The code faults show.
+/// The code of injected faults.
 pub const FAULT_CODE: u16 = 7;
 
 /// The kind of a block for the rules if its tables are not empty.
 pub fn kind_of(info: &BlockInfo) -> Kind {
     match info.name {
-        // Without a drive that holds a torque it is always refused, and the refusal must not change the
-        // axis.
+        // Without a drive that holds a torque it is always refused, and the refusal must not change the axis.
         "MC_PositionProfile" | "MC_VelocityProfile" | "MC_AccelerationProfile" | "MC_TorqueControl" => {
             Kind::Motion
         }
@@ -134,7 +133,7 @@ pub fn kind_of(info: &BlockInfo) -> Kind {
         "MC_ReadDigitalInput" | "MC_ReadDigitalOutput" => Kind::Reading,
         "MC_WriteDigitalOutput" => Kind::Administrative,
         "MC_GearIn" | "MC_GearInPos" | "MC_CombineAxes" | "MC_CamIn" => Kind::Motion,
-        // It works beside the coupling, which owns the axis; without one it is refused.
+        // It works in addition to the coupling, which owns the axis; without a coupling it is refused.
         "MC_PhasingAbsolute" | "MC_PhasingRelative" => Kind::Administrative,
         // Its command owns the axis, but the block's outputs do not show that.
         "MC_GearOut" | "MC_CamOut" => Kind::Administrative,

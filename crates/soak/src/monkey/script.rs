@@ -1,4 +1,4 @@
-//! A scenario as a scan script that `standstill run` takes.
+//! A scenario as a scan script for `standstill run`.
 
 use super::run::{Failure, Who};
 use super::scenario::{Action, AxisSetup, BlockSetup, FAULT_CODE, Scenario, axis_pins, wired};
@@ -260,7 +260,7 @@ fn number(value: f64) -> String {
     } else if value.is_infinite() {
         format!("\"{}Infinity\"", if value < 0.0 { "-" } else { "" })
     } else {
-        // Adding 0.0 takes the sign off zero.
+        // Adding 0.0 removes the sign of zero.
         format!("{:?}", value + 0.0)
     }
 }

@@ -8,7 +8,7 @@ use standstill_axis::{AxisConfig, Limits, StartState};
 use standstill_drives::simulated::DriveSetup;
 use standstill_fb::Value;
 
-/// Most scans that are run to find a smaller one.
+/// Largest number of scans that are run to find a smaller scenario.
 const BUDGET: u64 = 4_000_000;
 
 struct Shrinker<J> {
@@ -27,7 +27,7 @@ pub fn shrink(failure: Failure, scenario: Scenario) -> (Failure, Scenario) {
     })
 }
 
-/// As [`shrink`], with another judge, which returns the number of scans that a scenario ran and its
+/// The same as [`shrink`], with another judge, which returns the number of scans that a scenario ran and its
 /// failure.
 pub fn shrink_by<J>(failure: Failure, scenario: Scenario, judge: J) -> (Failure, Scenario)
 where

@@ -48,8 +48,8 @@ impl Part {
                 ],
                 1,
             ),
-            // A profile that cannot start gives way to the next command. If there is none, an axis in
-            // motion fails: the arrow of an error starts at every state (note 1 of the diagram).
+            // A profile that cannot start is replaced by the next command. If there is none, an axis in motion
+            // fails: the arrow of an error starts at every state (note 1 of the diagram).
             Self::DueCall => (
                 &[
                     E::MotionDone,

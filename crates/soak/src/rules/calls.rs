@@ -52,7 +52,7 @@ impl Kind {
         }
     }
 
-    /// Whether its command is beside the owner.
+    /// Whether its command runs in addition to the owner.
     pub fn is_superimposed(self) -> bool {
         matches!(self, Self::Superimposed | Self::HaltSuperimposed)
     }
@@ -156,7 +156,7 @@ impl Outputs {
 /// One call.
 #[derive(Clone, Copy, Debug)]
 pub struct Call {
-    /// What kind of instance it is.
+    /// The kind of the instance.
     pub kind: Kind,
     /// Execute or Enable at the call before.
     pub executed: bool,
@@ -164,7 +164,7 @@ pub struct Call {
     pub execute: bool,
     /// The outputs of the last call.
     pub was: Shown,
-    /// What it shows now.
+    /// The outputs now.
     pub now: Shown,
     /// The axis is in Disabled or ErrorStop when the block is called.
     pub refusing: bool,
@@ -213,7 +213,7 @@ pub fn check_call(call: &Call) -> Result<(), Broken> {
     }
 }
 
-/// The outputs of a command together: how many of Busy, Done, CommandAborted and Error are TRUE.
+/// The outputs of a command together. Returns how many of Busy, Done, CommandAborted and Error are TRUE.
 fn check_outputs(now: &Shown) -> Result<u32, Broken> {
     let count = u32::from(now.busy) + u32::from(now.done) + u32::from(now.aborted) + u32::from(now.error);
     rule(

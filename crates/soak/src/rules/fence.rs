@@ -1,9 +1,9 @@
 //! Set-points stay inside the software limits.
 //!
-//! A motion that was inside does not leave the limits, for any command: a motion that would leave is
-//! refused or stops before. Exceptions are ramps to rest that cannot be refused, those after an error or
-//! without power, moves of the coordinates, an axis that a drive moves until it has power again, and what is
-//! in a shaper when limits are written, or of a motion that began outside.
+//! A motion that was inside does not leave the limits, for any command: a motion that would leave is refused or
+//! stops before. There are exceptions: ramps to rest that cannot be refused, ramps after an error or without power,
+//! shifts of coordinates, and an axis that a drive moves until it has power again. A shaper may also still hold
+//! positions from before the limits were written, or of a motion that began outside.
 
 use super::{Broken, rule};
 use standstill_axis::{Axis, AxisState, Planner};
@@ -33,7 +33,7 @@ pub struct Fence {
     limits: (f64, f64),
     /// It was inside with the last set-point, and must not leave.
     inside: bool,
-    /// A shaper may hold a place outside: of before the limits were written, or of where the motion began.
+    /// A shaper may hold a position outside: from before the limits were written, or from the start of the motion.
     comes_out: bool,
 }
 
@@ -47,7 +47,7 @@ impl Fence {
         }
     }
 
-    /// Coordinates moved.
+    /// The coordinates were shifted.
     pub fn forget(&mut self) {
         self.inside = false;
     }

@@ -1,4 +1,4 @@
-//! A slave in gear is at the place that the law of its gear gives, row after row (G1, G11, G31).
+//! A slave in gear is at the position that the law of its gear gives, row after row (G1, G11, G31).
 
 use super::{Broken, rule};
 use standstill_axis::{Axis, AxisId, CommandId, Standard};
@@ -20,12 +20,12 @@ impl Leg {
         f64::from(numerator) / f64::from(denominator)
     }
 
-    /// The way that the slave must have moved since it was at `from`.
+    /// The distance that the slave must have moved since the master was at `from`.
     fn way_since(&self, from: &Self) -> f64 {
         self.ratio() * (way(self.at, from.at, self.turn) + (self.phase - from.phase))
     }
 
-    /// The largest numbers that enter.
+    /// The largest number in the computation.
     fn size(&self) -> f64 {
         let own = self.at.abs() + self.phase.abs() + self.turn.unwrap_or(0.0);
         self.ratio().abs() * own
@@ -55,24 +55,24 @@ pub struct Law {
     anchor: Option<Row>,
 }
 
-/// A difference, on a modulo axis the shorter way.
+/// A difference; on a modulo axis the shorter one.
 fn way(to: f64, from: f64, turn: Option<f64>) -> f64 {
     let way = to - from;
     turn.map_or(way, |turn| way - turn * (way / turn).round())
 }
 
 impl Law {
-    /// Positions have other names from now on.
+    /// Positions are renamed from now on.
     pub fn forget(&mut self) {
         self.anchor = None;
     }
 
-    /// A row of the axis, whose masters are among `axes`.
+    /// Checks a row of the axis, whose masters are among `axes`.
     ///
     /// # Errors
     /// It is off the law by more than two roundings of every number in it.
     pub fn check(&mut self, axis: &Axis<Standard>, axes: &[Axis<Standard>]) -> Result<(), Broken> {
-        // Its view of actual values is not published; a cam is judged by tests of its own.
+        // Its view of actual values is not published; a cam has its own tests.
         if !axis.is_in_gear() || axis.follows_actual() || axis.is_on_a_cam() {
             self.forget();
             return Ok(());

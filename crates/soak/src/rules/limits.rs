@@ -1,11 +1,10 @@
 //! Set-points and their differences keep the limits of the axis.
 //!
-//! A set-point gives velocity, acceleration, jerk and snap of the motion at an instant; the backward
-//! differences of the published positions give them independently. Both are checked against the limits of
-//! the axis, superimposed motions included, because the sum is published. No excess is permitted: the
-//! limits of the axis can bring back every state that a motion within them led to. There is one exception
-//! that cannot always be avoided: a stop in the middle of a reversal turns back. Only this may be
-//! recorded ([`check_excess`]).
+//! A set-point gives velocity, acceleration, jerk and snap of the motion at an instant. The backward differences of
+//! the published positions give them independently. Both are checked against the limits of the axis, including
+//! superimposed motions, because the sum is published. No excess is permitted: the limits of the axis can bring
+//! back every state that a motion within them has reached. There is one exception that cannot always be avoided: a
+//! stop in the middle of a reversal turns back. Only this may be recorded ([`check_excess`]).
 
 use super::{Broken, rule};
 use standstill_axis::{Axis, AxisConfig, Excess, Limits, Planner, Setpoint, TorqueOrder};
@@ -13,16 +12,16 @@ use standstill_axis::{Axis, AxisConfig, Excess, Limits, Planner, Setpoint, Torqu
 /// The tolerance of a limit, relative to it.
 const RELATIVE: f64 = 1e-9;
 
-/// Up to this part of the velocity limit the velocity does not give the direction of motion.
+/// If the velocity is at most this part of its limit, it does not give the direction of motion.
 const STILL: f64 = 1e-9;
 
 /// The resolution of a plan's 64-bit instant, relative to the time since its start.
 const TICK: f64 = 2.0 * f64::EPSILON;
 
-/// Differences of positions, newest first; the next scan computes its own from them.
+/// Differences of positions, newest first. The next scan computes its own from them.
 const KEPT: usize = 4;
 
-/// Positions that makes.
+/// Number of positions needed for these.
 const KNOWN: usize = KEPT + 1;
 
 /// The recent set-points of one axis.
@@ -33,7 +32,7 @@ pub struct Track {
     turn: Option<f64>,
     /// Powers of the cycle from 1 to 4, by which differences of that order are divided.
     over: [f64; KEPT],
-    /// The last position, the ways to it and to those before, and the number of these positions.
+    /// The last position, the distance to it and the distances before, and the number of these positions.
     position: f64,
     ways: [f64; KEPT],
     known: usize,
@@ -62,7 +61,7 @@ pub fn check_excess(excess: &Excess, limits: &Limits) -> Result<(), Broken> {
     )
 }
 
-/// A torque lets an axis go no faster than its limit, `most` (u/s), or than it was while under a torque.
+/// Under a torque an axis may go no faster than its limit, `most` (u/s), or than it was at the begin of the torque.
 ///
 /// # Errors
 /// The rule that does not hold.
@@ -81,7 +80,8 @@ fn most(config: &AxisConfig) -> Limits {
     let stop = config.stop.unwrap_or_default();
     let larger = |limit: f64, stop: Option<f64>| stop.map_or(limit, |stop| limit.max(stop));
     let deceleration = larger(limits.deceleration, stop.deceleration);
-    // In a mean of two directions the deceleration of a stop may show while the speed still grows (docs/vibration.md).
+    // In a mean of two directions the deceleration of a stop may show while the speed still grows
+    // (docs/vibration.md).
     let is_shaped = config.vibration.iter().any(Option::is_some);
     Limits {
         acceleration: if is_shaped {
@@ -97,7 +97,7 @@ fn most(config: &AxisConfig) -> Limits {
 }
 
 impl Track {
-    /// An axis that stands.
+    /// An axis at rest.
     pub fn new<P: Planner>(axis: &Axis<P>, cycle: f64) -> Self {
         let position = axis.setpoint().position;
         let turn = axis.config().modulo;
@@ -123,22 +123,23 @@ impl Track {
         }
     }
 
-    /// Differences across this scan have no meaning: coordinates moved, or the set-point follows the
+    /// Differences across this scan have no meaning: coordinates were shifted, or the set-point follows the
     /// feedback.
     pub fn forget(&mut self) {
         self.known = 0;
         self.resting = false;
     }
 
-    /// A motion is planned that leads from one position to another in `scans` scans, perhaps some turns
-    /// away: its positions are rounded there, and its instants are counted back from its end.
+    /// A motion is planned from one position to another in `scans` scans, possibly some turns away. Its positions
+    /// are rounded there, and its instants are counted back from its end.
     pub fn leads(&mut self, from: f64, to: f64, scans: u32) {
         self.largest = self.largest.max(from.abs()).max(to.abs());
         self.longest = self.longest.max(scans);
         self.resting = false;
     }
 
-    /// It moves by a plan beside a law or a cam at this distance: its positions are rounded there, too.
+    /// It moves by a plan in addition to a law or a cam, at this distance from it: its positions are rounded there,
+    /// too.
     pub fn is_beside(&mut self, deviation: f64) {
         self.largest = self.largest.max(deviation.abs());
     }
@@ -228,7 +229,7 @@ impl Track {
         Ok(())
     }
 
-    /// The way to a position, the shorter one on a modulo axis.
+    /// The distance to a position; on a modulo axis the shorter one.
     fn push(&mut self, position: f64) {
         let mut way = position - self.position;
         self.position = position;
@@ -261,7 +262,7 @@ impl Track {
             "the third difference of positions exceeds the jerk limit",
             "the fourth difference of positions exceeds the snap limit",
         ];
-        // The first known position has no way to it.
+        // The first known position has no distance before it.
         let known = self.known - 1;
         let limits = &self.limits;
         let [now, before, ..] = self.ways;

@@ -3,10 +3,10 @@
 use super::{Broken, rule};
 use standstill_axis::AxisState;
 
-/// A command that an instance holds, as its next call would show it.
+/// A command that an instance holds, with the outputs that its next call would show.
 #[derive(Clone, Copy, Debug)]
 pub struct Held {
-    /// It is beside the owner.
+    /// It runs in addition to the owner.
     pub superimposed: bool,
     /// Not ended.
     pub busy: bool,
@@ -25,7 +25,7 @@ pub struct Truth {
     pub stopping: bool,
     /// Commands in the buffer.
     pub waiting: usize,
-    /// A command that waits for a place of its master, beside the owner.
+    /// A command that waits for a position of its master, in addition to the owner.
     pub awaited: bool,
     /// The first of them moves the coordinates: it waits for the next latch in every state.
     pub shift_due: bool,

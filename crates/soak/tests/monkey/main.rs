@@ -58,7 +58,7 @@ fn programs_that_rest_may_be_left_out() {
         let (by_scan, far) = (by_scan.finish(), far.finish());
         assert_eq!(far.trace.scans(), by_scan.trace.scans());
         for scan in 0..far.trace.scans() {
-            // By their text: a NaN is no other than itself.
+            // Compared as text: a NaN is then equal to itself.
             let row =
                 |of: &standstill_script::Outcome| format!("{:?}", of.trace.row(scan).collect::<Vec<_>>());
             assert_eq!(row(&far), row(&by_scan), "episode {number}, scan {scan}");
@@ -67,7 +67,7 @@ fn programs_that_rest_may_be_left_out() {
     }
 }
 
-/// A program that cannot begin has shown nothing.
+/// A program that cannot begin tests nothing.
 #[test]
 fn a_refused_program_is_a_failure() {
     let mut scenario = record(3, 0, 10).2;
@@ -79,8 +79,8 @@ fn a_refused_program_is_a_failure() {
     );
 }
 
-/// A block of the standard or of ours that moves something is played, and the rules know what it is: a new one that nobody told
-/// them of fails here.
+/// Every block of the standard or of ours that moves something is played, and the rules know its kind. A new block
+/// that they do not know fails here.
 #[test]
 fn every_block_is_played_and_known_to_the_rules() {
     let drawn: BTreeSet<&str> = (0..400)
@@ -93,7 +93,7 @@ fn every_block_is_played_and_known_to_the_rules() {
     }
 }
 
-/// The ring of records holds 64, and in one scan the coordinates of 70 axes move.
+/// The ring of records holds 64, and the coordinates of 70 axes are shifted in one scan.
 #[test]
 fn seventy_axes_are_judged_as_one() {
     let limits = Limits {
@@ -143,13 +143,13 @@ fn seventy_axes_are_judged_as_one() {
     assert_eq!((seen.scans, failure), (10, None));
 }
 
-/// The place of a pin.
+/// The index of a pin.
 fn pin(block: &str, name: &str) -> usize {
     let info = find(block).expect("a block of the registry");
     info.pin(name).expect("one of its pins").0
 }
 
-/// An instance of axis 0 with these inputs.
+/// An instance on axis 0 with these inputs.
 fn instance(block: &'static str, inputs: &[(&str, Value)]) -> BlockSetup {
     BlockSetup {
         block,
@@ -162,8 +162,9 @@ fn instance(block: &'static str, inputs: &[(&str, Value)]) -> BlockSetup {
     }
 }
 
-/// A motor behind its set-point by a scan is faster than the axis may be when a torque takes over, and so the set-point is. A
-/// stop from there would end outside the software limits if it grew as fast once more, so the axis stops.
+/// A motor that follows its set-point a scan late is faster than the axis may be when a torque takes over, and so
+/// is the set-point. A stop from there would end outside the software limits if the speed grew as much once more,
+/// so the axis stops.
 #[test]
 fn a_torque_takes_over_from_a_motor_that_is_too_fast() {
     let config = AxisConfig {
@@ -202,12 +203,12 @@ fn a_torque_takes_over_from_a_motor_that_is_too_fast() {
     };
     let (seen, failure) = replay(&scenario);
     assert_eq!((seen.scans, failure), (40, None));
-    // What it was too fast by is recorded.
+    // The excess of its speed is recorded.
     assert_eq!(seen.turned_back, 1);
 }
 
-/// A profile that has completed stays completed while something superimposed is in the shaper: its instance may be triggered
-/// anew and refused, and no block has to follow its motion.
+/// A completed profile stays completed while a superimposed motion is in the shaper. Its instance may be triggered
+/// again and refused, and no block has to follow its motion.
 #[test]
 fn a_completed_profile_stays_so_on_a_shaped_axis() {
     let config = AxisConfig {
@@ -273,7 +274,7 @@ fn a_completed_profile_stays_so_on_a_shaped_axis() {
 fn the_script_of_a_failure_fails_where_it_happens() {
     let (_, _, scenario) = record(3, 0, 100);
     let states = standstill_axis::AxisState::ALL;
-    // Whatever state the axis is in in the last scan, forbidding it must fail, and no other.
+    // Forbidding the state of the axis in the last scan must fail, for any state, and no other.
     let forbidding = |state| Failure {
         scan: 99,
         who: Who::Axis(0),
@@ -290,7 +291,7 @@ fn the_script_of_a_failure_fails_where_it_happens() {
     assert_eq!(failing.count(), 1);
 }
 
-/// A rule that is broken whenever an MC_MoveVelocity is told to move: what is left is that, told as a script.
+/// A rule that is broken whenever an MC_MoveVelocity is triggered: the rest is exactly that, as a script.
 #[test]
 fn what_does_not_matter_is_left_out() {
     let told_to_move = |scenario: &Scenario| {

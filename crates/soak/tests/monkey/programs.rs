@@ -1,4 +1,5 @@
-//! Random programs in Structured Text: the instances and the steps of an episode, written as a program, move the axes as the script does.
+//! Random programs in Structured Text: the instances and the steps of an episode, written as a program, move the
+//! axes as the script does.
 
 use super::wired::{info, rows};
 use serde_json::{Map, Value, json};
@@ -20,8 +21,8 @@ fn text(value: &Value) -> &str {
     value.as_str().expect("text")
 }
 
-/// A value at a pin or in a record, in Structured Text; `None` for the number of an element that does not exist, which the compiler
-/// refuses.
+/// A value at a pin or in a record, in Structured Text. `None` for the number of an element that does not exist,
+/// which the compiler refuses.
 fn literal(ty: PinType, value: &Value) -> Option<String> {
     let whole = || value.as_i64().expect("a whole number");
     match ty {
@@ -55,14 +56,14 @@ fn literal(ty: PinType, value: &Value) -> Option<String> {
     }
 }
 
-/// A program as it is written.
+/// A program as written.
 #[derive(Default)]
 struct Program {
     declared: String,
     calls: String,
-    /// By scan, what is assigned before the blocks are called.
+    /// By scan, the assignments before the blocks are called.
     assigned: BTreeMap<u64, String>,
-    /// What a signal of the script is here, and its type.
+    /// The variable for a signal of the script, and its type.
     variables: BTreeMap<String, (String, PinType)>,
 }
 
@@ -79,7 +80,7 @@ impl Program {
         );
     }
 
-    /// An instance and its call. What the compiler refuses is taken out of the script, too.
+    /// An instance and its call. Parts that the compiler refuses are removed from the script, too.
     fn block(&mut self, block: &mut Value) {
         let (name, info) = (text(&block["name"]).to_owned(), info(block));
         self.declare(&name, info.name);
@@ -134,7 +135,7 @@ impl Program {
         }
     }
 
-    /// The inputs that a step sets; whether the compiler takes their values.
+    /// The inputs that a step sets; returns whether the compiler accepts their values.
     fn step(&mut self, step: &Value) -> bool {
         let scan = step["at"].as_u64().expect("a scan");
         step["set"]
@@ -152,8 +153,8 @@ impl Program {
     }
 }
 
-/// The blocks of `script` and its steps that set inputs, as a program; and the script of that program. What the compiler refuses is
-/// taken out of `script`.
+/// The blocks of `script` and its steps that set inputs, as a program; and the script of that program. Parts that
+/// the compiler refuses are removed from `script`.
 fn written(script: &mut Value) -> (String, Value) {
     let mut program = Program::default();
     let blocks = script["blocks"].as_array_mut().expect("blocks");
@@ -205,7 +206,7 @@ fn run(script: &Value, program: &str) -> Outcome {
     standstill_script::run(&read).expect("a run")
 }
 
-/// Its columns by name, a NaN the same as itself, without the name of the program; and its events.
+/// Its columns by name, with a NaN equal to itself and without the name of the program; and its events.
 fn seen(outcome: &Outcome) -> (BTreeMap<String, Vec<String>>, Vec<String>) {
     let rows = rows(outcome);
     let name = |name: &str| name.strip_prefix("main.").unwrap_or(name).to_owned();
@@ -220,7 +221,7 @@ fn seen(outcome: &Outcome) -> (BTreeMap<String, Vec<String>>, Vec<String>) {
     (columns.collect(), notes.collect())
 }
 
-/// A block does the same wherever it is called from.
+/// A block does the same for any caller.
 #[test]
 fn a_program_in_structured_text_moves_the_axes_as_a_script_does() {
     let mut compared = 0;

@@ -1,7 +1,8 @@
-//! Random programs with wires and tasks: the script of an episode, rewired at random, keeps to the order of a scan.
+//! Random programs with wires and tasks: the script of an episode, rewired at random, keeps the order of a scan.
 //!
-//! What a pin has to be is found from the rows alone: tasks that are due, by priority, each with its blocks in the order of the
-//! script; a wire has the value that its source has when its block is called. What is not called keeps its pins.
+//! The expected value of a pin is found from the rows alone. Tasks that are due run by priority, each with its
+//! blocks in the order of the script. A wire has the value that its source has when its block is called. A block
+//! that is not called keeps its pins.
 
 use serde_json::{Map, Value, json};
 use standstill_blocks::{REGISTRY, registry::find};
@@ -11,7 +12,7 @@ use standstill_soak::monkey::record;
 use standstill_testkit::{Random, cases};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// In the order in which they are written, that of the alphabet.
+/// In the order in which they are written: alphabetical.
 const TASKS: [&str; 3] = ["fast", "main", "slow"];
 
 pub fn info(block: &Value) -> &'static BlockInfo {
@@ -57,7 +58,7 @@ fn standard_block(random: &mut Random, number: usize) -> Value {
     json!({"name": format!("S{number}"), "type": info.name, "pins": pins})
 }
 
-/// A wire of a BOOL in which the input variable `own` takes part.
+/// A wire of a BOOL that uses the input variable `own`.
 fn bool_wire(random: &mut Random, own: &str, outputs: &[String]) -> Value {
     let other = one_of(random, outputs);
     match random.below(5) {
@@ -69,8 +70,8 @@ fn bool_wire(random: &mut Random, own: &str, outputs: &[String]) -> Value {
     }
 }
 
-/// The script `text` with timers and counters besides, and all blocks in three tasks. Half of the pins are wired to input variables,
-/// which the steps set instead, and to outputs.
+/// The script `text` with additional timers and counters, and all blocks in three tasks. Half of the pins are wired
+/// to input variables, which the steps set instead, and to outputs.
 fn rewired(random: &mut Random, text: &str) -> Value {
     let mut script: Value = serde_json::from_str(text).expect("JSON");
     let mut blocks = script["blocks"].as_array().expect("blocks").clone();
@@ -146,7 +147,7 @@ struct Wire {
 }
 
 impl Wire {
-    /// Its value where signals stand as in `row`.
+    /// Its value if the signals are those of `row`.
     fn value(&self, row: &[String]) -> String {
         let mut signals = self.of.iter().map(|column| row[*column].clone());
         let mut is_true = |signal: String| signal == "Bool(true)";
@@ -167,7 +168,7 @@ struct Task {
 }
 
 impl Task {
-    /// Whether it runs in a scan in which signals stand as in `row`.
+    /// Whether it runs in a scan in which the signals are those of `row`.
     fn is_due(&mut self, scan: usize, row: &[String]) -> bool {
         let single = self
             .single
@@ -184,7 +185,7 @@ impl Task {
 
 struct Instance {
     task: usize,
-    /// Columns of its pins that nothing but its call changes.
+    /// Columns of its pins that only its call changes.
     own: Vec<usize>,
     /// All columns of its pins.
     all: Vec<usize>,
@@ -192,7 +193,7 @@ struct Instance {
     wires: Vec<(usize, Wire)>,
 }
 
-/// A script as its rows are judged by it.
+/// A script in the form in which its rows are judged.
 struct Judge {
     names: Vec<String>,
     inputs: Vec<usize>,
@@ -263,7 +264,7 @@ impl Judge {
         }
     }
 
-    /// Judges every pin of every scan; how many wires had another value than in the scan before.
+    /// Judges every pin of every scan. Returns how many wires had another value than in the scan before.
     fn judge(&mut self, rows: &[Vec<String>], what: &str) -> usize {
         let mut changed = 0;
         // Before the first scan every BOOL is FALSE, and no wire reads an output of another type.
@@ -316,7 +317,7 @@ impl Judge {
     }
 }
 
-/// The cells of each row, as text: a NaN is the same as itself.
+/// The cells of each row, as text: a NaN is then equal to itself.
 pub fn rows(outcome: &Outcome) -> Vec<Vec<String>> {
     let row = |scan| outcome.trace.row(scan).map(|cell| format!("{cell:?}")).collect();
     (0..outcome.trace.scans()).map(row).collect()
@@ -345,12 +346,12 @@ fn wires_and_tasks_keep_the_order_of_a_scan() {
         let names = outcome.trace.columns().iter().map(|column| column.name.clone());
         let rows_by_scan = rows(&outcome);
         changed += Judge::new(&script, names.collect()).judge(&rows_by_scan, &format!("episode {number}"));
-        // Leaving out what would do nothing new changes no row.
+        // Leaving out calls that would do nothing new changes no row.
         let mut far = Session::new(&read).expect("a run");
         while !matches!(far.advance_far(100).expect("a scan"), Ahead::Scans(0)) {}
         assert_eq!(rows(&far.finish()), rows_by_scan, "episode {number}");
     }
-    // Of the others another test sees that they are drawn.
+    // Another test checks that the other blocks are drawn.
     let standard = REGISTRY.iter().filter(|info| info.group == Group::Standard);
     let missing: Vec<_> = standard
         .map(|info| info.name)
