@@ -44,7 +44,7 @@ fn main() -> Result<(), SweepError> {
     Ok(())
 }
 
-/// What an axis-scan of a sweep and a sample of the loop take (s).
+/// The time of an axis-scan of a sweep and of a sample of the loop (s).
 fn rates(job: &Job) -> Result<(f64, f64), SweepError> {
     let cases: Vec<u64> = (0..job.count()).collect();
     let (mut sweeps, mut loops) = (Vec::new(), Vec::new());

@@ -1,4 +1,4 @@
-//! The figures of measures, taken while rows come.
+//! The figures of measures, taken as rows arrive.
 
 use standstill_script::sweep::{Measure, Take};
 use standstill_trace::{Cell, Trace, cell_text, greatest};
@@ -8,7 +8,7 @@ pub(crate) struct Figure {
     take: Take,
     /// The signal's column; none if the run has no such signal.
     column: Option<usize>,
-    /// Scans looked at.
+    /// Number of scans that were read.
     scans: usize,
     /// The last cell as text.
     last: String,
@@ -32,7 +32,7 @@ impl Figure {
         }
     }
 
-    /// Reads the rows that the trace has got since the last call.
+    /// Reads the rows that the trace has received since the last call.
     pub(crate) fn look(&mut self, trace: &Trace) {
         let Some(column) = self.column else { return };
         let next = self.scans..trace.scans();
@@ -72,7 +72,7 @@ impl Figure {
         }
     }
 
-    /// A NaN ranks before all, so that it is not overlooked.
+    /// A NaN ranks before all, so that it is not missed.
     fn rank(&mut self, cell: Cell<'_>) {
         let (value, cell) = match if self.take == Take::AbsMax {
             magnitude(cell)

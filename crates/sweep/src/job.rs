@@ -20,7 +20,7 @@ const FIRST: [&str; 1] = ["case"];
 /// Columns behind them, before those of axes and measures.
 const JUDGEMENT: [&str; 4] = ["verdict", "scans", "claims", "held"];
 
-/// The column of digests, where there are some.
+/// The column of digests, if there are any.
 const DIGEST: &str = "digest";
 
 /// The column behind all others.
@@ -51,12 +51,12 @@ impl From<ScriptError> for SweepError {
 /// Cells of a case that are held before they are read and dropped: few enough for a processor's cache.
 const CELLS_HELD: usize = 8192;
 
-/// What the cases of a thread have in common.
+/// The common data of the cases of a thread.
 #[derive(Clone)]
 pub(crate) struct Bench {
-    /// With the parameters of the last case.
+    /// The script with the parameters of the last case.
     script: Script,
-    /// The room that the rows of the last case took.
+    /// The memory for the rows of the last case.
     kept: Option<Kept>,
 }
 
@@ -82,11 +82,11 @@ pub struct Job {
     sweep: Sweep,
     texts: Texts,
     path: PathBuf,
-    /// With its own parameters.
+    /// The script with its own parameters.
     script: Script,
     axes: Vec<String>,
     columns: Vec<String>,
-    /// What a case keeps of its rows: where no digest is in the table, only the columns that are read.
+    /// The columns that a case keeps: all if the table has a digest, otherwise only those that are read.
     kept: Kept,
     key: u64,
 }
@@ -94,7 +94,7 @@ pub struct Job {
 /// How a case ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Judged {
-    /// Every claim held.
+    /// Every claim is fulfilled.
     Passed,
     /// A claim failed.
     Failed,
@@ -130,8 +130,8 @@ pub struct Row {
 }
 
 impl Job {
-    /// Reads the sweep at `path` and its script, and runs the script with its own parameters to find its
-    /// signals. The script must be below the folder of the sweep or where `allowed` says, and so must its
+    /// Reads the sweep at `path` and its script, and runs the script with its own parameters to find its signals.
+    /// The script must be below the folder of the sweep or in a folder that `allowed` permits, and so must its
     /// includes.
     ///
     /// # Errors
@@ -174,7 +174,7 @@ impl Job {
         })
     }
 
-    /// How many cases there are.
+    /// The number of cases.
     pub fn count(&self) -> u64 {
         self.sweep.count()
     }
@@ -189,7 +189,7 @@ impl Job {
         self.key
     }
 
-    /// What a thread needs before its first case.
+    /// The data that a thread needs before its first case.
     pub(crate) fn bench(&self) -> Bench {
         Bench {
             script: self.script.clone(),
@@ -246,8 +246,8 @@ impl Job {
         ran.ok_or_else(|| RunError::Internal("a run scan by scan did not go on".to_owned()))
     }
 
-    /// Takes the values for a table; rows are dropped on the way. None if `advance`, which is asked for at most so many scans,
-    /// cannot run this script.
+    /// Takes the values for a table; rows are dropped on the way. None if `advance`, which receives the largest
+    /// number of scans, cannot run this script.
     fn take(
         &self,
         bench: &mut Bench,

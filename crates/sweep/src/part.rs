@@ -1,4 +1,4 @@
-//! The remainder of an interrupted run: its rows, in the order they came.
+//! The remainder of an interrupted run: its rows, in the order in which they were computed.
 
 use crate::job::{Job, Row, SweepError};
 use crate::shard::Shard;

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::thread;
 
-/// Runs these cases on `threads` threads (0 counts as 1) and passes every row to `take` as it comes, in
-/// any order. A failure of `take` or a defect of this program ends it; running cases are finished first.
+/// Runs these cases on `threads` threads (0 counts as 1) and passes every row to `take` when it is ready, in any
+/// order. A failure of `take` or a defect of this program ends it; running cases are finished first.
 ///
 /// # Errors
 /// The error of `take`, or a defect of this program.
@@ -17,7 +17,7 @@ pub fn run<E: From<SweepError> + Send>(
     threads: usize,
     mut take: impl FnMut(Row) -> Result<(), E>,
 ) -> Result<(), E> {
-    // Not every system has threads.
+    // Some systems have no threads.
     if threads <= 1 {
         let mut bench = job.bench();
         return cases
@@ -29,7 +29,7 @@ pub fn run<E: From<SweepError> + Send>(
     thread::scope(|scope| {
         let worker = || {
             let each = |(send, bench): &mut (mpsc::SyncSender<_>, Bench), case: &u64| {
-                // After an error nobody receives any more.
+                // After an error there is no receiver any more.
                 let goes_on = !stop.load(Ordering::Relaxed) && send.send(job.case(bench, *case)).is_ok();
                 goes_on.then_some(())
             };

@@ -13,7 +13,7 @@ pub type Rows = BTreeMap<u64, Vec<String>>;
 /// Writes a table.
 ///
 /// # Errors
-/// What the system says.
+/// An error of the system.
 pub fn write(columns: &[String], rows: &Rows, out: &mut dyn Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     table.write_record(columns)?;
