@@ -1,10 +1,10 @@
-//! Curves below each other over an axis other than scans: times, or places of a master.
+//! Curves below each other over an axis other than scans: times, or positions of a master.
 
 use super::picture::{CURVE, GAP, GUTTER, MARGIN, Picture, WIDTH};
 use super::range::{Range, path, ticks};
 use crate::panels::compact;
 
-/// Most numbers on the axis.
+/// Largest number of numbers on the axis.
 const TICKS_MOST: usize = 24;
 
 /// A curve.
@@ -19,7 +19,7 @@ pub struct Line {
 pub struct Panel<'a> {
     /// Name and unit.
     pub title: &'a str,
-    /// What is drawn.
+    /// Its lines.
     pub lines: &'a [Line],
     /// Values that are dashed if a line comes near.
     pub limits: &'a [f64],
@@ -144,7 +144,7 @@ fn told(value: f64, largest: f64) -> String {
 /// Round numbers from one to the other.
 fn round_between(begin: f64, end: f64) -> Vec<f64> {
     let whole = end - begin;
-    // A power of ten of which the way has a hundred thousand at least.
+    // A power of ten with at least a hundred thousand steps over the range.
     let mut scale = 1.0;
     while whole / scale > 1e6 && scale < 1e300 {
         scale *= 10.0;

@@ -1,4 +1,4 @@
-//! The picture of a cam: the slave's place, and its derivatives by the master.
+//! The picture of a cam: the slave's position, and its derivatives by the master.
 
 use super::across::{Line, Panel, Panels};
 use super::picture::{GUTTER, Picture, ROW};
@@ -14,11 +14,11 @@ const MARKS_MOST: usize = 100;
 /// The curves, below each other.
 const TITLES: [&str; 5] = ["Slave", "Slope", "Curvature", "Third", "Fourth"];
 
-/// The picture of a cam. `course` are moments of it (places of the master and the slave, four derivatives
-/// of the slave by the master) whose places do not fall; at equal ones a value jumps. `rows` are marked.
-/// Curves that are always 0 are left out.
+/// The picture of a cam. `course` are points of it (positions of the master and the slave, four derivatives of the
+/// slave by the master) whose master positions do not fall; at equal ones a value jumps. `rows` are marked. Curves
+/// that are always 0 are left out.
 ///
-/// Work is proportional to the moments.
+/// Work is proportional to the points.
 #[must_use]
 pub fn cam(title: &str, course: &[[f64; 6]], rows: &[[f64; 2]]) -> String {
     let place = |moment: Option<&[f64; 6]>| moment.map_or(0.0, |moment| moment[0]);

@@ -1,7 +1,7 @@
 //! Scan traces as pictures: curves with limits, axis states, and the Booleans that change as a timing diagram.
 //!
-//! [`report`] draws a whole run, [`failing`] where one fails, [`svg`] the signals asked for; [`plans()`] and [`cam()`] draw what
-//! `plan` and `cam` of the command line plan. [`plot`] draws in a terminal.
+//! [`report`] draws a whole run, [`failing`] a failing one, [`svg`] the requested signals; [`plans()`] and
+//! [`cam()`] draw the plans and cams of the command line. [`plot`] draws in a terminal.
 //!
 //! Pictures are drawn in numbers with one decimal, so the same trace gives the same bytes everywhere.
 //! Their colours follow the reader's light or dark theme. They load nothing.
@@ -61,8 +61,8 @@ pub fn svg(trace: &Trace, signals: &[&str]) -> String {
     picture.finish(&trace.header().title)
 }
 
-/// Curves with one value a scan each, below each other: a title and its values, over scans of `cycle_ns`.
-/// All have one range, so that they can be compared.
+/// Curves with one value for each scan, below each other: a title and its values, over scans of `cycle_ns`. All
+/// have one range, so that they can be compared.
 #[must_use]
 pub fn chart(title: &str, cycle_ns: u64, curves: &[(String, Vec<f64>)]) -> String {
     let scans = curves.iter().map(|(_, values)| values.len()).max().unwrap_or(0);

@@ -8,13 +8,13 @@ use standstill_trace::{Cell, Kind, Role};
 
 /// One signal of one axis over all scans.
 pub struct Curve<'a> {
-    /// The axis it belongs to.
+    /// Its axis.
     pub axis: &'a Axis,
     /// The signal, of [`standstill_trace::AXIS_SIGNALS`].
     pub signal: &'a str,
     /// Name and unit.
     pub title: String,
-    /// A value a scan.
+    /// One value for each scan.
     pub values: Vec<f64>,
     /// Least finite value.
     pub least: f64,
@@ -64,9 +64,9 @@ fn title(axis: &Axis, signal: &str) -> String {
 pub struct Wave {
     /// Name of its column.
     pub name: String,
-    /// What it tells of.
+    /// The role of its column.
     pub role: Role,
-    /// A level a scan.
+    /// One level for each scan.
     pub levels: Vec<bool>,
 }
 

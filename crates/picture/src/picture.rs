@@ -29,7 +29,7 @@ pub const ROW: f64 = 18.0;
 /// Height of a Boolean that is TRUE.
 const LEVEL: f64 = 11.0;
 
-/// Between one panel and the next.
+/// Distance from one panel to the next.
 pub const GAP: f64 = 14.0;
 
 /// Width of a character of a label, to decide whether it fits into a band.
@@ -45,7 +45,7 @@ const STYLE: &str = "<style>\n\
     .out { stroke: #63d297 } rect { fill: #232a36; stroke: #666 } }\n\
     </style>\n";
 
-/// Letters of a note that fit on a line.
+/// Largest number of letters of a note on a line.
 const NOTE: usize = 120;
 
 /// A text as lines of a limited number of letters; a word that is longer is cut.
@@ -79,7 +79,7 @@ pub enum Theme {
 /// The begin and the end of the dark colours.
 const DARK: [&str; 2] = ["@media (prefers-color-scheme: dark) {", " }\n</style>"];
 
-/// A picture of this module for one light only: for pages that choose between two files.
+/// A picture of this module for one theme only: for pages that choose between two files.
 #[must_use]
 pub fn themed(picture: &str, theme: Theme) -> String {
     let [begin, end] = DARK;
@@ -107,7 +107,7 @@ fn box_text(cell: Cell<'_>) -> String {
 /// A picture that grows downwards.
 pub struct Picture {
     pub body: String,
-    /// Where the next panel begins.
+    /// Position of the next panel.
     pub y: f64,
     pub scans: usize,
 }

@@ -3,7 +3,7 @@
 use super::across::{Line, Panel, Panels};
 use super::picture::{GUTTER, Picture, ROW, wrapped};
 
-/// The most plans that are drawn: the number of colours.
+/// The largest number of plans that are drawn: the number of colours.
 pub const PLANS_MAX: usize = 6;
 
 const STYLE: &str = "<style>\n\
@@ -13,7 +13,7 @@ const STYLE: &str = "<style>\n\
     .p3 { stroke: #d59bf0 } .p4 { stroke: #ff8fae } .p5 { stroke: #d8d46a } }\n\
     </style>\n";
 
-/// Letters of a plan's label on its line.
+/// Largest number of letters of a plan's label on its line.
 const LABEL: usize = 110;
 
 /// The curves, below each other, and their units.
@@ -28,10 +28,10 @@ const TITLES: [(&str, &str); 5] = [
 /// A plan to draw.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
-    /// What it is called.
+    /// Its label.
     pub label: String,
-    /// Moments of its course: time (s), position, velocity, acceleration, jerk, snap (in u and s). Times
-    /// do not fall; at equal ones a value jumps.
+    /// Points of its course: time (s), position, velocity, acceleration, jerk, snap (in u and s). Times do not
+    /// fall; at equal ones a value jumps.
     pub course: Vec<[f64; 6]>,
     /// Limits of velocity, acceleration, jerk and snap, if there are some.
     pub limits: [Option<f64>; 4],
@@ -41,7 +41,7 @@ pub struct Plan {
 /// plans. Limits are dashed where a curve comes near. Quantities that are constant in every plan are left
 /// out.
 ///
-/// Work is proportional to the moments.
+/// Work is proportional to the points.
 #[must_use]
 pub fn plans(title: &str, plans: &[Plan]) -> String {
     let plans = &plans[..plans.len().min(PLANS_MAX)];

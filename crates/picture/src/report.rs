@@ -21,14 +21,14 @@ const ACTUAL: [(&str, &str); 2] = [("Position", "ActualPosition"), ("Velocity", 
 /// A number that changes in more than one of this many scans is a curve, not a row of boxes.
 const BUSY: usize = 8;
 
-/// Letters of a title that fit on a line.
+/// Largest number of letters of a title on a line.
 const TITLE: usize = 88;
 
-/// Letters of a claim's words on a line, and lines of them: longer ones are cut.
+/// Largest number of letters of a claim's words on a line, and of lines: longer texts are cut.
 const SAID: usize = 124;
 const SAID_LINES: usize = 3;
 
-/// Letters of a label that fit left of the curves.
+/// Largest number of letters of a label left of the curves.
 const GUTTER_LETTERS: usize = 27;
 
 /// Half of the width of a claim's mark.
@@ -110,7 +110,7 @@ fn draw(picture: &mut Picture, trace: &Trace, curve: &Curve<'_>, ticks: &[usize]
     picture.trail("actual", &actual, |value| bottom - CURVE * range.part(value));
 }
 
-/// A claim: its text, its scans, where it came true, where it failed.
+/// A claim: its text, its scans, and the scans in which it was fulfilled or failed.
 pub fn draw_claim(picture: &mut Picture, claim: &Claim) {
     let (mark, class) = match claim.verdict {
         ClaimVerdict::Passed => ("✓", "held"),
