@@ -8,7 +8,7 @@ use std::fmt::Write;
 /// The letters of a page's traces.
 const LETTERS: [&str; crate::TRACES_MAX] = ["A", "B", "C", "D", "E", "F"];
 
-/// Failing claims that are shown in full.
+/// Largest number of failing claims that are shown in full.
 const FAILURES_TOLD: usize = 12;
 
 /// The title of the page.
@@ -63,7 +63,7 @@ pub fn facts(sources: &[Source<'_>]) -> String {
     text
 }
 
-/// How long a run lasted, exact.
+/// The exact length of a run.
 fn length(trace: &Trace) -> String {
     let ns = trace.time_ns(trace.scans());
     let rest = format!("{:09}", ns % 1_000_000_000);
@@ -74,7 +74,7 @@ fn length(trace: &Trace) -> String {
     }
 }
 
-/// The list of traces where there are several, and what their files lack.
+/// The list of traces if there are several, and the missing parts of their files.
 pub fn sources(sources: &[Source<'_>]) -> String {
     let mut text = String::new();
     if sources.len() > 1 {

@@ -1,12 +1,12 @@
 //! Traces as a page: curves with their limits, states, a timing diagram of every pin, claims, events, and
 //! a cursor that reads the exact values. A page shows one trace, or several over each other.
 //!
-//! The page is one file that loads nothing: its content policy allows its own script and style, by their hashes, and
-//! nothing else. Texts of a trace become texts of the page, never markup. Rows travel as the exact companion of the trace
-//! ([`standstill_trace::exact`]), so every bit is there; `page/decode.js` unpacks them.
+//! The page is one file that loads nothing: its content policy allows only its own script and style, by their
+//! hashes. Texts of a trace become texts of the page, never markup. Rows are stored as the exact companion of the
+//! trace ([`standstill_trace::exact`]), so every bit is there; `page/decode.js` unpacks them.
 //!
-//! Curves are drawn by uPlot (`vendor/`, MIT licence). All other parts of the page are readable in
-//! `page/`; no step builds them. The crate reads no clock and no files: same traces, same bytes.
+//! Curves are drawn by uPlot (`vendor/`, MIT licence). All other parts of the page are readable in `page/`, without
+//! a build step. The crate reads no clock and no files: the same traces give the same bytes.
 
 #![forbid(unsafe_code)]
 
@@ -18,7 +18,7 @@ pub use page::about;
 use standstill_trace::Trace;
 use standstill_trace::time_literal;
 
-/// Most traces over each other: the number of colours.
+/// Largest number of traces over each other: the number of colours.
 pub const TRACES_MAX: usize = 6;
 
 /// A trace with its name, and the parts that its file lacks.
@@ -32,7 +32,7 @@ pub struct Source<'a> {
     pub lacks: &'a [String],
 }
 
-/// A place to look at first. Its line is drawn over all plots, and the cursor begins there.
+/// A place of interest. Its line is drawn over all plots, and the cursor begins there.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mark {
     /// The scan, if it is about one; past the end of a trace is fine.
@@ -81,10 +81,10 @@ pub fn html(sources: &[Source<'_>]) -> Result<String, ReportError> {
     html_marked(sources, &[])
 }
 
-/// As [`html`], with places of interest.
+/// The same as [`html`], with places of interest.
 ///
 /// # Errors
-/// As [`html`].
+/// Those of [`html`].
 pub fn html_marked(sources: &[Source<'_>], marks: &[Mark]) -> Result<String, ReportError> {
     check(sources)?;
     Ok(page::page(sources, marks))
@@ -93,7 +93,7 @@ pub fn html_marked(sources: &[Source<'_>], marks: &[Mark]) -> Result<String, Rep
 /// The error that [`html`] would return, without its work.
 ///
 /// # Errors
-/// As [`html`].
+/// Those of [`html`].
 pub fn check(sources: &[Source<'_>]) -> Result<(), ReportError> {
     let first = match sources {
         [first, ..] if sources.len() <= TRACES_MAX => first,

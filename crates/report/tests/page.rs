@@ -9,7 +9,7 @@ use standstill_trace::{
     Axis, CAMS_MAX, Cam, Cell, Claim, ClaimFailure, ClaimVerdict, Header, Input, Note, Trace, digest, exact,
 };
 
-/// What would be markup, a script's end or a reference if it were taken for one.
+/// Text that would be markup, the end of a script or a reference if it were not escaped.
 const NASTY: &str = "<img src=x onerror=\"alert(1)\"></title></script><!-- &amp; '{script}' \u{2028}";
 
 fn trace(text: &str, cycle_ns: u64, scans: usize) -> Trace {
@@ -94,7 +94,7 @@ fn texts_stay_texts() {
     let about: Value = serde_json::from_str(scripts(&page, "id=\"about\">")[0]).unwrap();
     let told = &about["traces"][0];
     assert_eq!(told["name"], NASTY);
-    // What a trace says is one line, so a separator of lines is shown as what it is.
+    // A text of a trace is one line, so a line separator is shown in escaped form.
     let shown = NASTY.replace('\u{2028}', "\\u{2028}");
     assert_eq!(told["header"]["claims"][0]["failures"][0]["text"], shown);
     assert!(
