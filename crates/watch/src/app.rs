@@ -10,7 +10,7 @@ use standstill_trace::{Event, EventLog};
 /// Number of visible program lines that is assumed to centre the line of a fault.
 const LINES_AROUND: usize = 16;
 
-/// Most events in the list.
+/// Largest number of events in the list.
 const EVENTS_KEPT: usize = 1000;
 
 /// Speeds of a run, in cycles of the script per cycle of the clock; the last is as fast as possible.
@@ -66,7 +66,7 @@ pub struct App<'a> {
     log: EventLog,
     pub(crate) events: Vec<Event>,
     pub(crate) standings: Vec<Standing>,
-    /// What every claim says.
+    /// The text of every claim.
     pub(crate) says: Vec<String>,
     pub(crate) mode: Mode,
     speed: usize,
@@ -414,7 +414,7 @@ impl<'a> App<'a> {
         };
     }
 
-    /// The value at a point as text, as it was in the last row or will be in the first.
+    /// The value at a point as text: that of the last row, or the one that it will have in the first.
     pub(crate) fn value(&self, point: Point) -> Option<String> {
         self.session.text(point)
     }

@@ -4,7 +4,7 @@ use standstill_script::model::Script;
 use standstill_script::{Counted, Session, Shown};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What the arrows move.
+/// The part that the arrows move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Side {
     Source,
@@ -19,7 +19,7 @@ pub(crate) struct View {
     pub side: Side,
     /// The first visible line of the source and the first visible variable.
     pub top: [usize; 2],
-    /// How often statements were executed.
+    /// Execution counts of statements.
     counts: BTreeMap<(String, u32, u32), u64>,
     /// Lines that were executed in the last scan: file and line.
     pub ran: BTreeSet<(String, u32)>,

@@ -24,7 +24,7 @@ const WORK: Duration = Duration::from_millis(30);
 /// Number of [`IDLE`] checks after which a view must have ended after a request to end.
 const PATIENCE: u32 = 3;
 
-/// How the watching ended.
+/// The end of the view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
     /// By a key.
@@ -42,7 +42,7 @@ impl Ended {
     /// Ends the program as the signal would have, if there was one. Returns only if there was none.
     ///
     /// # Errors
-    /// What the system says.
+    /// An error of the system.
     pub fn pass_on(self) -> io::Result<()> {
         match self {
             Self::Quit => Ok(()),

@@ -29,12 +29,12 @@ impl Look {
         }
     }
 
-    /// What is on.
+    /// Active parts.
     pub(crate) fn on(self) -> Style {
         self.tinted(Color::Green).add_modifier(Modifier::BOLD)
     }
 
-    /// What is wrong.
+    /// Faulty parts.
     pub(crate) fn bad(self) -> Style {
         self.tinted(Color::Red).add_modifier(Modifier::BOLD)
     }

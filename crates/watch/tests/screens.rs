@@ -47,7 +47,7 @@ fn keys(app: &mut App<'_>, keys: &str) {
             'V' => Key::Down(1),
             other => Key::Char(other),
         });
-        // As fast as it can.
+        // As fast as possible.
         app.elapsed(0.0);
         while app.mode() != Mode::Running && app.work() {}
     }
@@ -213,7 +213,7 @@ fn a_small_terminal_says_what_it_needs_and_a_large_one_shows_more() {
     );
 }
 
-/// Colours only where they are wanted; what they say is there without them, too.
+/// Colours are used only if requested; their information is also there without them.
 #[test]
 fn without_colour_nothing_is_coloured() {
     let script = script();
@@ -240,7 +240,7 @@ fn titles_are_cut_and_cannot_steer_the_terminal() {
     assert!(text.contains("before scan 0 of 400"), "{text}");
 }
 
-/// The run of a script that ends early says why and stays to be looked at.
+/// The run of a script that ends early gives the reason and remains visible.
 #[test]
 fn a_run_that_breaks_off_says_why() {
     let text = SCRIPT.replace(
@@ -261,7 +261,7 @@ fn a_run_that_breaks_off_says_why() {
     assert_eq!(app.broken(), None);
 }
 
-/// The guide shows a screen as it is.
+/// The guide shows a real screen.
 #[test]
 fn the_guide_shows_this_screen() {
     let script = script();
@@ -287,7 +287,7 @@ fn the_guide_shows_this_screen() {
     }
 }
 
-/// Two axes of a program, in files of their own, as they are read to be watched.
+/// Two axes of a program, in files of their own, read to be watched.
 fn watched_program() -> Script {
     let folder = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("watched_program");
     std::fs::create_dir_all(&folder).unwrap();
@@ -315,7 +315,7 @@ END_PROGRAM
     read.unwrap_or_else(|error| panic!("{error}")).0
 }
 
-/// The lines of the screen, with one space for several.
+/// The lines of the screen; several spaces become one.
 fn program_screen(app: &App<'_>) -> Vec<String> {
     let screen = screen(app);
     let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -338,7 +338,7 @@ fn a_program_is_looked_at_line_by_line() {
     ] {
         assert!(has(&before, text), "{text} {before:#?}");
     }
-    // In scan 2 it is told to go.
+    // In scan 2 it receives the command.
     keys(&mut app, "sss");
     let going = program_screen(&app);
     for text in ["6> IF Go THEN State := Busy;", "8 parts[n] := 7;", "*State Busy"] {
@@ -360,7 +360,7 @@ fn a_program_is_looked_at_line_by_line() {
     let over = program_screen(&app);
     let fault = "scan 7: cell.st:8:9: an index outside the bounds of its array: the index is 4";
     assert!(has(&over, fault), "{over:#?}");
-    // The sides scroll by themselves.
+    // The two sides scroll independently.
     keys(&mut app, "VVV");
     let scrolled = program_screen(&app);
     assert!(
