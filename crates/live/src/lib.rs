@@ -1,6 +1,6 @@
 //! A scan script as a cyclic task of Linux: one scan in each period of the wall clock.
 //!
-//! The crate paces scans (`pace`), measures the pacing (`Timing`) and asks Linux for what a task may have
+//! The crate paces scans (`pace`), measures the pacing (`Timing`) and requests real-time services from Linux
 //! (`System`). The run itself is a `Session` of `standstill-script`, which also reads scripts.
 #![forbid(unsafe_code)]
 

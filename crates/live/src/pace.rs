@@ -21,14 +21,14 @@ pub enum OnOverrun {
     Stop,
 }
 
-/// How a run ended.
+/// The end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
-    /// As the script says.
+    /// The script ended.
     Script,
     /// It was stopped before.
     Stopped {
-        /// Why.
+        /// The reason.
         why: Stopped,
         /// The scan after which the programs stopped.
         after: u64,
@@ -38,7 +38,7 @@ pub enum Ended {
 /// The reason why a run was stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stopped {
-    /// Somebody asked for it.
+    /// A stop was requested.
     Asked(&'static str),
     /// A scan was not over when the next one was due.
     Overrun,

@@ -19,17 +19,17 @@ use thread_priority::{ThreadPriority, ThreadPriorityValue};
 /// The requested priority: above the interrupt threads of a PREEMPT_RT kernel (50), below watchdogs (99).
 const PRIORITY: u8 = 80;
 
-/// The signals that ask for a stop.
+/// The signals that request a stop.
 const SIGNALS: [(i32, &str); 3] = [(SIGINT, "SIGINT"), (SIGTERM, "SIGTERM"), (SIGHUP, "SIGHUP")];
 
-/// How the calling thread is scheduled.
+/// The scheduling of the calling thread.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Scheduling {
     /// Real-time, with this priority; `kept` if it was so before.
     RealTime {
         /// 1 to 99.
         priority: u8,
-        /// It was given from outside (chrt, systemd).
+        /// It was set from outside (chrt, systemd).
         kept: bool,
     },
     /// Like any other program, for this reason.
@@ -51,9 +51,9 @@ pub enum Memory {
 /// The calling thread as a cyclic task; memory is unlocked when this is dropped.
 #[derive(Debug)]
 pub struct System {
-    /// How the thread is scheduled.
+    /// The scheduling of the thread.
     pub scheduling: Scheduling,
-    /// What memory is locked.
+    /// The locked memory.
     pub memory: Memory,
     signal: Arc<AtomicUsize>,
 }
@@ -77,7 +77,7 @@ impl System {
         })
     }
 
-    /// The last signal that asked for a stop.
+    /// The last signal that requested a stop.
     #[must_use]
     pub fn asked(&self) -> Option<&'static str> {
         let number = self.signal.load(Ordering::Relaxed).checked_sub(1)?;

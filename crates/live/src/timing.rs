@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-/// Most overruns that are kept individually; all are counted.
+/// Largest number of overruns that are kept individually; all are counted.
 pub const OVERRUNS_KEPT: usize = 64;
 
 /// The largest time that a histogram resolves (ns).
@@ -74,9 +74,9 @@ impl Histogram {
 pub struct Overrun {
     /// The scan.
     pub scan: u64,
-    /// By how much it began late (ns).
+    /// The delay of its begin (ns).
     pub wake_latency_ns: u64,
-    /// What it took (ns).
+    /// Its duration (ns).
     pub scan_time_ns: u64,
     /// Periods without a scan that follow from it.
     pub skipped: u64,

@@ -6,14 +6,14 @@ use standstill_trace::{Cell, Trace, digest};
 
 const MS: u64 = 1_000_000;
 
-/// A clock on which waking and scanning take what a test says.
+/// A clock on which a test sets the times of waking and scanning.
 struct Scripted {
     now_ns: u64,
-    /// How late the sleep of this number wakes (ns).
+    /// The delay with which the sleep of this number wakes (ns).
     late: fn(u64) -> u64,
-    /// What the scan after it takes (ns).
+    /// The duration of the scan after it (ns).
     takes: fn(u64) -> u64,
-    /// The instants slept to.
+    /// The instants to which it slept.
     slept: Vec<u64>,
     looks: u32,
 }
@@ -51,7 +51,7 @@ impl Clock for Scripted {
     }
 }
 
-/// A move from scan 1 on: 10 mm/s are reached in 0.1 s and are 0.1 mm a scan.
+/// A move from scan 1 on: it reaches 10 mm/s in 0.1 s, which is 0.1 mm a scan.
 fn script(scans: u64, deceleration: f64) -> Script {
     let text = format!(
         r#"{{"standstill": 1, "cycle": "T#10ms", "scans": {scans},
@@ -92,7 +92,7 @@ fn last_state(trace: &Trace) -> &str {
     }
 }
 
-/// No step is longer than the one of full speed, none goes back.
+/// No step is longer than that of full speed, and none goes back.
 fn assert_steps_of_single_scans(trace: &Trace) {
     for pair in positions(trace).windows(2) {
         let step = pair[1] - pair[0];
@@ -174,7 +174,7 @@ fn an_overrun_ramps_down_past_the_end_of_the_script_when_it_is_to_stop() {
     assert_eq!(timing.overruns(), 1);
     let trace = &outcome.trace;
     assert_eq!(last_state(trace), "Disabled");
-    // 10 mm/s at 100 mm/s^2 take 10 scans to stand.
+    // From 10 mm/s at 100 mm/s^2 it takes 10 scans to rest.
     assert!((24..30).contains(&trace.scans()), "{}", trace.scans());
     assert_steps_of_single_scans(trace);
     let notes: Vec<_> = trace
