@@ -10,10 +10,10 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Most bytes of a file that are read: the compiler's limit, and one more.
+/// Largest number of bytes of a file that are read: the compiler's limit, and one more.
 const BYTES_MOST: u64 = standstill_st::SOURCES_MOST as u64 + 1;
 
-/// Most scripts of a folder that are searched for the names of programs.
+/// Largest number of scripts of a folder that are searched for the names of programs.
 const SCRIPTS_MOST: usize = 1000;
 
 /// A text that an editor has open.
@@ -24,7 +24,7 @@ pub(crate) struct Document {
     pub text: Rc<Text>,
 }
 
-/// What kind of text a document is, by its name.
+/// The kind of a document's text, by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     StructuredText,
@@ -37,7 +37,7 @@ pub(crate) struct Documents {
     open: BTreeMap<PathBuf, Document>,
 }
 
-/// The path by which a document is known.
+/// The path that identifies a document.
 pub(crate) fn key(uri: &Uri) -> PathBuf {
     uri::path(uri).unwrap_or_else(|| PathBuf::from(uri.as_str()))
 }

@@ -1,17 +1,17 @@
-//! Frames of the protocol: a header with the number of bytes, then that many bytes of JSON. We read them
-//! ourselves, because `lsp-server` accepts any length that a header asks for.
+//! Frames of the protocol: a header with the number of bytes, then that many bytes of JSON. We read them ourselves,
+//! because `lsp-server` accepts any length in a header.
 
 use lsp_server::Message;
 use std::fmt;
 use std::io::{self, BufRead, Read, Write};
 
-/// Most bytes of a frame.
+/// Largest number of bytes of a frame.
 pub const FRAME_MOST: u64 = 64 << 20;
 
-/// Most bytes of a line of a header.
+/// Largest number of bytes of a line of a header.
 const LINE_MOST: u64 = 4096;
 
-/// Most lines of a header.
+/// Largest number of lines of a header.
 const LINES_MOST: usize = 16;
 
 /// The reason why no further frame can be found.
@@ -19,7 +19,7 @@ const LINES_MOST: usize = 16;
 pub enum FrameError {
     /// The text in place of a header.
     Header(String),
-    /// A header asks for this many bytes.
+    /// A header requests this number of bytes.
     TooLarge(u64),
     /// The input ended within a frame, or failed.
     Io(io::Error),
@@ -84,7 +84,7 @@ fn frame(input: &mut impl BufRead) -> Result<Option<Vec<u8>>, FrameError> {
     Err(FrameError::Header("a header without an end".to_owned()))
 }
 
-/// Where messages go.
+/// The receiver of messages.
 pub(crate) trait Sink {
     /// Whether the messages are still received.
     fn put(&self, message: Message) -> bool;

@@ -2,7 +2,7 @@
 
 use lsp_types::{Position, Range};
 
-/// A text and where its lines begin.
+/// A text and the begins of its lines.
 #[derive(Clone, Debug)]
 pub(crate) struct Text {
     text: String,

@@ -17,7 +17,7 @@ use standstill_st::{Dialect, SOURCES_MOST};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// How a session ended.
+/// The end of a session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
     /// By `shutdown` and `exit`.
@@ -79,7 +79,7 @@ impl Server<'_> {
                     return if self.shut { Ended::Exit } else { Ended::ExitAtOnce };
                 }
                 Message::Notification(it) => self.notification(it),
-                // This server asks nothing.
+                // This server sends no requests.
                 Message::Response(_) => {}
             }
         }

@@ -54,7 +54,7 @@ impl Project {
         &self.options
     }
 
-    /// Mistakes and doubts, by file.
+    /// Errors and warnings, by file.
     pub(crate) fn diagnostics(&self) -> BTreeMap<PathBuf, Vec<lsp_types::Diagnostic>> {
         let report = standstill_st::check(&self.sources(), &self.options);
         let mut found: BTreeMap<_, Vec<_>> = self

@@ -346,7 +346,7 @@ mod tests {
         }
     }
 
-    /// Cut anywhere, and with any characters in it.
+    /// Cut off anywhere, and with any characters in it.
     #[test]
     fn nothing_stops_the_reader() {
         let text = r#"{"a": [1, -2.5e3, "ä\"x", {"b": null, "c": [true]}], "d": {"e": "\u00e4"}} ]}{ : , é"#;

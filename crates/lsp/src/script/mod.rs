@@ -1,5 +1,5 @@
-//! Scan scripts for an editor: their mistakes, and the answers about a place. The schema says which keys
-//! and values are permitted there; the script itself says what the names mean.
+//! Scan scripts for an editor: their mistakes, and the answers about a place. The schema gives the permitted keys
+//! and values; the script itself gives the meaning of names.
 
 mod scene;
 mod schema;

@@ -14,13 +14,13 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Most files of a script.
+/// Largest number of files of a script.
 const FILES_MOST: usize = 64;
 
-/// Most variables of a program that are offered.
+/// Largest number of variables of a program that are offered.
 const VARIABLES_MOST: usize = 1000;
 
-/// The signals of an axis beside its state.
+/// The signals of an axis, except its state.
 const AXIS_SIGNALS: &[(&str, &str, &str)] = &[
     ("State", "state", "State after all blocks were called in the scan"),
     ("Position", "LREAL", "Set-point of the end of the scan (u)"),
@@ -200,7 +200,7 @@ impl<'d> Scene<'d> {
         found.map(|it| it.name.as_str()).collect()
     }
 
-    /// Where something is declared.
+    /// The place of a declaration.
     pub(crate) fn location(&self, entity: &Entity) -> Option<Location> {
         let (path, text, _) = self.files.get(entity.file)?;
         Some(Location {

@@ -4,7 +4,7 @@ use crate::tree::{Node, Step};
 use serde_json::Value;
 use std::sync::OnceLock;
 
-/// Most schemas that are read for one place.
+/// Largest number of schemas that are read for one place.
 const MOST: usize = 2000;
 
 fn schema() -> &'static Value {
