@@ -23,7 +23,7 @@ pub fn pages(requirements: &Requirements, pictures: &BTreeMap<String, Picture>) 
     files
 }
 
-/// The timing picture, with the script it is drawn from.
+/// The timing picture, with the script from which it is drawn.
 fn in_time(text: &mut String, picture: &Picture) {
     let Picture { script, title, .. } = picture;
     let file = picture.path();

@@ -30,7 +30,7 @@ struct Section {
     remedy: String,
 }
 
-/// The place where an error is shown.
+/// The golden that shows an error.
 #[derive(Debug)]
 enum Shown {
     /// In no golden.
@@ -91,7 +91,7 @@ impl Faults {
                 ..*scene
             });
         }
-        // A refusal at the edge says more than the end of a command that waited.
+        // A refusal at the edge is clearer than the end of a waiting command.
         self.first(|event| event.text.starts_with("+Execute") && event.shows(id.number()))
             .or_else(|| self.first(|event| event.shows(id.number())))
     }

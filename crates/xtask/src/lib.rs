@@ -1,7 +1,7 @@
 //! Generated docs and tidy checks.
 //!
-//! `cargo run -p standstill-xtask --example gen` writes the generated files; the tests of this crate fail
-//! when one is stale or the repository is untidy. Users run nothing of it.
+//! `cargo run -p standstill-xtask --example gen` writes the generated files. The tests of this crate fail when one
+//! is stale or the repository is untidy. Users need none of it.
 #![forbid(unsafe_code)]
 
 mod bad_input;

@@ -41,7 +41,7 @@ impl Picture {
         }
     }
 
-    /// What is drawn.
+    /// The trace that is drawn.
     #[cfg(test)]
     pub const fn trace(&self) -> &Trace {
         &self.trace
@@ -59,7 +59,7 @@ impl Picture {
     }
 }
 
-/// Every picture by its name; each script is run. Panics, naming the line, where a script does not run.
+/// Every picture by its name; each script is run. Panics, naming the line, if a script does not run.
 pub fn pictures() -> BTreeMap<String, Picture> {
     let list = root().join("crates/xtask/pictures.txt");
     let list = fs::read_to_string(&list).unwrap_or_else(|error| panic!("{}: {error}", list.display()));

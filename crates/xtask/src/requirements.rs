@@ -1,8 +1,7 @@
 //! `docs/requirements/`: every id, its rule in a few words, and the tests that cover it.
 //!
-//! The rules are in `crates/xtask/requirements/*.txt`, one a line behind its id, and so are the gaps,
-//! each with its reason. A scan script claims ids with `covers`; a Rust test with a comment
-//! `Covers: R21, S3` of its own above it.
+//! The rules are in `crates/xtask/requirements/*.txt`, one on each line behind its id, and so are the gaps, each
+//! with its reason. A scan script claims ids with `covers`, a Rust test with a comment `Covers: R21, S3` above it.
 
 use crate::{Generated, NOTICE, root};
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,7 +22,7 @@ const AREAS: [&str; 9] = [
     "vibration",
 ];
 
-/// Lines between a comment and the `fn` it belongs to, at most.
+/// Largest number of lines between a comment and its `fn`.
 const REACH: usize = 8;
 
 /// One page: its title, and its ids with their rules, in order.
@@ -41,7 +40,7 @@ struct Test {
     name: String,
 }
 
-/// A rule: its page, its id and the rule in short.
+/// A rule: its page, its id and its short text.
 #[derive(Clone, Copy, Debug)]
 pub struct Rule<'a> {
     pub area: &'a str,
@@ -49,7 +48,7 @@ pub struct Rule<'a> {
     pub text: &'a str,
 }
 
-/// Everything that is known.
+/// All rules, gaps and tests.
 #[derive(Debug)]
 pub struct Requirements {
     areas: Vec<Area>,

@@ -46,7 +46,7 @@ const fn blocks(on: AxisEvent) -> &'static [&'static str] {
     }
 }
 
-/// The label of an arrow: the blocks, or some of many, or an event that no command begins.
+/// The label of an arrow: the blocks, or some of many, or an event without a command.
 fn label(on: AxisEvent) -> String {
     match (on, blocks(on)) {
         (AxisEvent::MotionDone, _) => "done".to_owned(),
@@ -144,7 +144,7 @@ fn picture() -> String {
     svg
 }
 
-/// A line between two boxes, shifted to its right so that the way back has a line of its own.
+/// A line between two boxes, shifted to its right so that the opposite direction has a line of its own.
 fn line(arrow: &Arrow) -> String {
     const SHIFT: f64 = 9.0;
     let ((x0, y0), (x1, y1)) = (place(arrow.from), place(arrow.to));
@@ -203,7 +203,7 @@ fn line(arrow: &Arrow) -> String {
     text
 }
 
-/// Where the ray from (`x`, `y`) along (`dx`, `dy`) leaves the box around (`cx`, `cy`).
+/// The point at which the ray from (`x`, `y`) along (`dx`, `dy`) leaves the box around (`cx`, `cy`).
 fn edge(x: f64, y: f64, cx: f64, cy: f64, dx: f64, dy: f64) -> (f64, f64) {
     let room = |offset: f64, half: f64, step: f64| {
         if step > 0.0 {

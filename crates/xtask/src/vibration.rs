@@ -15,7 +15,7 @@ const WAY: f64 = 1.0;
 /// Scans after the end that are examined.
 const AFTER: u32 = 400;
 
-/// Bands of the frequency of the load on its spring, the motor held (Hz).
+/// Bands of the frequency of the load on its spring, with the motor held (Hz).
 const BANDS: [(f64, f64); 5] = [(3.0, 6.0), (6.0, 12.0), (12.0, 25.0), (25.0, 50.0), (50.0, 100.0)];
 
 /// Frequencies tried in a band.
@@ -55,21 +55,22 @@ const MOVES: [(&str, Limits); 3] = {
     ]
 };
 
-/// A move of the second part, whose load swings with [`SLOW`], alone or shaped: its name, how, and its acceleration.
+/// A move of the second part, whose load vibrates with [`SLOW`], shaped or not: its name, its method, and its
+/// acceleration.
 struct Slow {
     name: &'static str,
     shaper: Option<ShaperKind>,
     acceleration: f64,
 }
 
-/// The frequency of the load of the second part (Hz), which the shapers are made for.
+/// The frequency of the load of the second part (Hz), for which the shapers are made.
 const SLOW: f64 = 12.0;
 
 /// Length of the moves of the second part (rad), and their scans.
 const SLOW_WAY: f64 = 2.0;
 const SLOW_SCANS: u32 = 1000;
 
-/// What else limits them: velocity, and the time in which the acceleration is reached.
+/// Its other limits: velocity, and the time in which the acceleration is reached.
 const SLOW_VELOCITY: f64 = 4.0;
 const SLOW_RISE: f64 = 0.1;
 
@@ -102,10 +103,10 @@ const SLOW_MOVES: [Slow; 5] = [
     },
 ];
 
-/// By how much the frequency of the load is off the one the shapers are made for (%).
+/// Differences between the frequency of the load and that of the shapers (%).
 const OFF: [i32; 7] = [-20, -10, -5, 0, 5, 10, 20];
 
-/// What a move did to the mechanism.
+/// The effect of a move on the mechanism.
 struct Run {
     scans: u32,
     /// Largest torque of the motor.

@@ -1,4 +1,4 @@
-//! The links of the pages: each leads to a file and to a heading of it, and every page is in the book.
+//! The links of the pages: each leads to an existing file and heading, and every page is in the book.
 
 use standstill_xtask::{files, root};
 use std::collections::{BTreeMap, BTreeSet};
@@ -30,7 +30,7 @@ fn links(text: &str) -> impl Iterator<Item = &str> {
         .filter_map(|rest| rest.split([')', ' ']).next())
 }
 
-/// What a link names a heading by, at GitHub and in the book; a second heading of the same words has `-1` behind it.
+/// The anchors of headings at GitHub and in the book; a second heading of the same words has `-1` behind it.
 fn anchors(text: &str) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     for line in text.lines().filter(|line| line.starts_with('#')) {
@@ -75,7 +75,7 @@ fn links_lead_to_a_file_and_a_heading() {
                 target => path.parent().unwrap().join(target),
             };
             assert!(target.exists(), "{}: dead link {link}", path.display());
-            // It is the book's list of pages, and no page of it.
+            // It is the book's list of pages, and not a page of it.
             assert!(!target.ends_with("SUMMARY.md"), "{}: {link}", path.display());
             let page = pages.get(&target.canonicalize().unwrap());
             if let (false, Some(page)) = (anchor.is_empty(), page) {

@@ -61,7 +61,7 @@ fn issue_forms_have_what_github_asks_for() {
     assert!(forms >= 4, "{forms} forms");
 }
 
-/// What the commands in it do is a test of the command line.
+/// A test of the command line checks the commands in it.
 #[test]
 fn the_example_workflow_is_one_and_the_guide_shows_it() {
     let name = "docs/how-to/standstill.yml";

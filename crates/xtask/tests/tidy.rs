@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-/// Made once: scripts run for it.
+/// Computed once, because scripts run for it.
 static GENERATED: LazyLock<Vec<Generated>> = LazyLock::new(generated);
 
 #[test]
@@ -20,7 +20,7 @@ fn generated_files_are_fresh() {
     }
 }
 
-/// With a second program `cargo run` of README does not know which one is meant.
+/// With a second program `cargo run` of README would be ambiguous.
 #[test]
 fn the_command_line_is_the_only_program() {
     let workspace = fs::read_to_string(root().join("Cargo.toml")).unwrap();
@@ -39,7 +39,7 @@ fn the_command_line_is_the_only_program() {
     assert_eq!(programs, ["crates/cli"]);
 }
 
-/// Where Cargo is not to look for tests itself, one that is not named would not run.
+/// If Cargo does not search for tests, a test file that is not named would not run.
 #[test]
 fn every_file_of_tests_is_part_of_a_program() {
     let crates = fs::read_dir(root().join("crates"))
@@ -93,7 +93,7 @@ fn libraries_that_are_not_tested_have_no_tests() {
     }
 }
 
-/// Rust in its docs would not be tried.
+/// Rust code in its docs would not be tested.
 #[test]
 fn libraries_without_tests_of_docs_have_none() {
     let files = files();
@@ -159,7 +159,7 @@ fn every_error_is_shown_by_a_trace_or_has_a_reason() {
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
-/// What `cargo package` itself does not ask for; the rest is a step of `.ci/run`.
+/// Checks that `cargo package` itself does not make; the rest is a step of `.ci/run`.
 #[test]
 fn packages_say_what_a_registry_asks_for() {
     let packages = Package::published();
@@ -203,7 +203,7 @@ fn is(path: &Path, extension: &str) -> bool {
 
 #[test]
 fn forbidden_words_stay_out_of_the_sources() {
-    // Spelled in two halves so that this file passes its own test.
+    // Written in two halves so that this file passes its own test.
     let forbidden = [
         concat!("dbg", "!("),
         concat!("FIX", "ME"),
@@ -246,7 +246,7 @@ fn the_top_level_holds_what_a_newcomer_expects() {
 
 #[test]
 fn layers_depend_only_downwards() {
-    // Package and what it may depend on, from bottom to top (docs/architecture.md).
+    // Packages and their permitted dependencies, from bottom to top (docs/architecture.md).
     let layers: &[(&str, &str, &[&str])] = &[
         ("crates/planner", "standstill-planner", &[]),
         ("crates/axis", "standstill-axis", &["standstill-planner"]),
@@ -429,7 +429,7 @@ fn layers_depend_only_downwards() {
     for &(folder, name, allowed) in layers {
         let manifest = fs::read_to_string(root().join(folder).join("Cargo.toml")).unwrap();
         assert!(manifest.contains(&format!("name = \"{name}\"")), "{folder}");
-        // Dev-dependencies may look upwards; only what ships is layered.
+        // Dev-dependencies may look upwards; only shipped code is layered.
         let shipped = manifest.split("[dev-dependencies]").next().unwrap();
         let dependencies = shipped.split("[dependencies]").nth(1).unwrap_or("");
         for line in dependencies.lines().filter(|line| line.starts_with("standstill")) {

@@ -1,4 +1,4 @@
-//! The statement as data: one object, a pin, a parameter or a type a line.
+//! The statement as data: one object, with one pin, parameter or type on each line.
 
 use super::page::{NATURE, STANDARD, TRADEMARK};
 use super::types::TypeRow;

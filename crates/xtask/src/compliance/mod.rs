@@ -356,7 +356,7 @@ mod tests {
         assert!(nothing.contains("AXIS_REF is not in the catalogue"), "{nothing}");
     }
 
-    /// The data alone is enough to judge the statement by.
+    /// The data alone are enough to judge the statement.
     #[test]
     fn every_supported_row_of_the_data_is_a_pin_and_every_b_row_of_an_offered_block_is_supported() {
         let [_, data] = Compliance::read().pages();

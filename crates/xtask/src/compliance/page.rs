@@ -13,7 +13,7 @@ pub const STANDARD: &str =
 pub const NATURE: &str = "A self-declaration, assessed by the project itself and by nobody else. It is not a \
                           certificate and was not submitted to PLCopen.";
 
-/// Whose name it is.
+/// The owner of the name.
 pub const TRADEMARK: &str = "PLCopen is a trademark of its owner, the PLCopen association. standstill is not \
                              affiliated with it, and shows no logo of it.";
 
