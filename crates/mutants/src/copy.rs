@@ -53,8 +53,8 @@ pub const CRATES: [(&str, &str); 3] = [
     ("crates/fb", "../mutant-hook"),
 ];
 
-/// The crates whose tests run for points that the scripts do not see, and a test of theirs that takes too
-/// long for that: the search through all states.
+/// The crates whose tests run for points that the scripts do not detect, and a test of theirs that takes too long
+/// for this: the search through all states.
 const TESTED: [&str; 6] = ["axis", "fb", "blocks", "drives", "scan", "soak"];
 const TOO_LONG: &str = "search";
 

@@ -25,22 +25,22 @@ const EQUIVALENTS: &str = "crates/mutants/equivalents.txt";
 #[derive(Parser)]
 #[command(about = "Changes the code a little and asks whether a test sees it")]
 struct Args {
-    /// Which of the possible changes are drawn
+    /// The seed of the sample
     #[arg(long, default_value_t = 15)]
     seed: u64,
-    /// How many of them
+    /// The number of changes in the sample
     #[arg(long, default_value_t = 400)]
     count: usize,
-    /// Judge only these of them, by their numbers in the last report
+    /// Judge only these, by their numbers in the last report
     #[arg(long, value_delimiter = ',')]
     only: Vec<usize>,
-    /// Instead of a sample, all whose line in a report contains one of these
+    /// Instead of a sample, judge all changes whose line in a report contains one of these
     #[arg(long)]
     of: Vec<String>,
     /// Judge by scripts only
     #[arg(long)]
     scripts: bool,
-    /// Judge nothing, name all that can be drawn
+    /// Judge nothing; print all possible changes
     #[arg(long)]
     list: bool,
 }

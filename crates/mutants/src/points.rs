@@ -16,7 +16,7 @@ pub struct Point {
     pub line: usize,
     /// The bytes of the file that are replaced.
     pub range: Range<usize>,
-    /// What stands there instead.
+    /// The replacement.
     pub mutated: String,
     /// Whether the bytes are a whole statement, or an expression.
     pub statement: bool,
@@ -144,7 +144,7 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// A condition between two ways; a `let` among `&&` cannot be a value.
+    /// A condition between two paths; a `let` among `&&` cannot be a value.
     fn condition(&mut self, condition: &Expr) {
         match condition {
             Expr::Let(_) => {}
