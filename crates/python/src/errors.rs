@@ -18,7 +18,7 @@ fn of_class<'py>(py: Python<'py>, class: &str, arguments: impl pyo3::call::PyCal
     made.map_or_else(|error| error, PyErr::from_value)
 }
 
-/// A run that could not go on.
+/// A run that could not continue.
 pub fn run(py: Python<'_>, text: &str) -> PyErr {
     of_class(py, "RunError", (text,))
 }

@@ -1,4 +1,4 @@
-//! `plan`: the keys of one line as they come from Python.
+//! `plan`: the keys of one line, from Python.
 
 use crate::{answer, errors};
 use pyo3::intern;

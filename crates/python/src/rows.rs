@@ -18,8 +18,8 @@ struct Held {
     lent: Option<Py<PyArray1<u64>>>,
 }
 
-/// A claim for Python: path, text, whether it held, first and last scan, the scan in which it came true,
-/// and the reasons against it, each a scan and a text.
+/// A claim for Python: path, text, whether it is fulfilled, first and last scan, the scan in which it was
+/// fulfilled, and the reasons against it, each a scan and a text.
 type Claim = (
     String,
     String,
@@ -41,7 +41,7 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Of a run that ended early: its claims refer to scans that never came.
+    /// The rows of a run that ended early: its claims refer to scans that never happened.
     pub fn unjudged(trace: Trace) -> Self {
         let digest = digest::whole(&trace);
         Self::with_digest(trace, digest)
@@ -58,7 +58,7 @@ impl Rows {
         }
     }
 
-    /// Of a run with its verdict.
+    /// The rows of a run with its verdict.
     pub fn judged(outcome: Outcome, warnings: &Warnings) -> Self {
         let digest = digest::whole(&outcome.trace);
         let verdict = verdict(&outcome, digest);
@@ -174,7 +174,7 @@ impl Rows {
         self.held(py).trace.names().to_vec()
     }
 
-    /// All rows, one after the other, a word a cell, in the memory of the recording.
+    /// All rows, one after the other, a word for each cell, in the memory of the recording.
     fn words<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u64>>> {
         let mut held = self.held(py);
         if let Some(lent) = &held.lent {

@@ -227,7 +227,7 @@ impl Scans {
         Ok((request, ordered.position, ordered.velocity))
     }
 
-    /// From the next scan on the drive of the axis is here.
+    /// From the next scan on the drive of the axis is at this position.
     fn lead(&self, axis: &str, position: f64) -> PyResult<()> {
         let state = &mut *self.state()?;
         let index = state.axis(axis)?;
@@ -263,7 +263,7 @@ impl Scans {
         self.state()?.with(|session| (session.scans(), session.is_over()))
     }
 
-    /// What every signal was in the last scan.
+    /// The value of every signal in the last scan.
     fn signals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.state()?.signals(py)
     }

@@ -44,7 +44,8 @@ pub fn read(py: Python<'_>, (path, text, set, folders, memory): &Source) -> PyRe
     }
 }
 
-/// Runs a script to its end and judges its claims. Ctrl-C ends the run early: its rows so far come back with the exception.
+/// Runs a script to its end and judges its claims. Ctrl-C ends the run early: the exception then has its rows so
+/// far.
 #[pyfunction]
 pub fn run(py: Python<'_>, source: Source) -> PyResult<(Rows, Option<PyErr>)> {
     let script = read(py, &source)?;
@@ -83,7 +84,7 @@ pub enum Ended {
 }
 
 impl Ended {
-    /// It as an exception.
+    /// The same as an exception.
     pub fn exception(self, py: Python<'_>, source: &Source) -> PyErr {
         match self {
             Self::Run(error) => failed(py, source, &error),
