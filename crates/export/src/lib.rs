@@ -20,7 +20,7 @@ pub use dialect::{Dialect, UnknownDialect};
 pub use names::{BadPrefix, Prefix};
 pub use write::{WriteError, write};
 
-/// For whom.
+/// The targets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     /// Hosts in C and C++: headers.

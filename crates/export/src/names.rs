@@ -37,12 +37,12 @@ impl Prefix {
         }
     }
 
-    /// As in names of functions and types.
+    /// The form for names of functions and types.
     pub fn lower(&self) -> &str {
         &self.0
     }
 
-    /// As in constants.
+    /// The form for constants.
     pub fn upper(&self) -> String {
         self.0.to_ascii_uppercase()
     }

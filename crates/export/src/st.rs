@@ -6,10 +6,10 @@ use crate::names::pou;
 use standstill_fb::{BlockInfo, Direction, EnumInfo, Pin, PinType, TableInfo, Value};
 use std::fmt::Write as _;
 
-/// What a compiler takes.
+/// The syntax that a compiler accepts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Syntax {
-    /// `(a := 1, b := 3)`; edition 2 only has elements in order from 0.
+    /// `(a := 1, b := 3)`; edition 2 has only elements in order from 0.
     pub numbered_enumerations: bool,
 }
 

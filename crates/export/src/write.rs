@@ -5,17 +5,17 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-/// Why nothing was written.
+/// The reason why nothing was written.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {source}; nothing was written: name a folder that can be written with --out", path.display())]
 pub struct WriteError {
-    /// Where it happened.
+    /// The file or folder.
     pub path: PathBuf,
-    /// What.
+    /// The error.
     pub source: io::Error,
 }
 
-/// Writes `files` into `folder`, which is made if it does not exist.
+/// Writes `files` into `folder`, which is created if it does not exist.
 ///
 /// All files are written beside their places first and moved there when all are complete, so that a full
 /// disk leaves the earlier files.

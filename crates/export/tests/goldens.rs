@@ -60,7 +60,7 @@ fn a_dialect_changes_names_and_numbers_and_nothing_else() {
             let other = export(target, &Prefix::default(), &dialect);
             for (plain, other) in plain.iter().zip(&other) {
                 differences += &format!("== {}\n", other.name);
-                // A line by line comparison: what a dialect changes keeps its line, but for what it adds.
+                // Compared line by line: a line that a dialect changes stays in its place, except for additions.
                 let known: Vec<_> = plain.text.lines().collect();
                 for line in other.text.lines().filter(|line| !known.contains(line)) {
                     differences += &format!("{line}\n");
@@ -96,7 +96,7 @@ fn a_prefix_is_in_every_name_of_c() {
     }
 }
 
-/// Names of C that are ours may not be words of C, C++, or macros of common headers.
+/// Our names in C must not be words of C, C++, or macros of common headers.
 #[test]
 fn no_field_is_a_word_of_c_or_cpp() {
     let words = [
@@ -180,7 +180,7 @@ fn the_imports_are_json_and_name_every_block() {
     let value: serde_json::Value = serde_json::from_str(&json.text).unwrap();
     let imports = value["imports"].as_array().unwrap();
     assert_eq!(imports.len(), standstill_blocks::REGISTRY.len() + 2);
-    // One whose pins are those of IEC 61131-3 for good.
+    // A block whose pins are fixed by IEC 61131-3.
     let timer = imports.iter().find(|import| import["name"] == "ton").unwrap();
     assert_eq!(timer["in"]["size"], 16);
     assert_eq!(timer["in"]["fields"][1]["name"], "PT");

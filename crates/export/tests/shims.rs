@@ -17,7 +17,7 @@ struct Declared<'a> {
     body: &'a str,
 }
 
-/// Reads the blocks of a shim; bodies stand between these two lines.
+/// Reads the blocks of a shim; bodies are between these two lines.
 fn blocks<'a>(text: &'a str, (open, close): (&str, &str)) -> Vec<Declared<'a>> {
     let mut found = Vec::new();
     for part in text.split("\nFUNCTION_BLOCK ").skip(1) {
@@ -78,7 +78,7 @@ fn dialects() -> Vec<Dialect> {
     all
 }
 
-/// Types of a shim as C has them after matiec: all upper case, arrays in a structure called `table`.
+/// Types of a shim in C after matiec: all upper case, arrays in a structure called `table`.
 const MATIEC: &str = r"
 typedef uint8_t BOOL; typedef int16_t INT; typedef uint16_t WORD; typedef uint16_t UINT; typedef uint32_t DWORD; typedef double LREAL;
 typedef int32_t DINT; typedef uint64_t ULINT; typedef struct { long int tv_sec; long int tv_nsec; } TIME;
@@ -129,8 +129,8 @@ fn the_bodies_for_matiec_compile_against_its_layout() {
     }
 }
 
-/// Values as C++ has them after STruC++: elementary ones wrapped, in structures, too; enumerations scoped and wrapped
-/// twice, and without a conversion to numbers; arrays as objects that are indexed as in the program.
+/// Values in C++ after STruC++: elementary ones are wrapped, in structures, too; enumerations are scoped and
+/// wrapped twice, without a conversion to numbers; arrays are objects that are indexed as in the program.
 const STRUCPP: &str = r"
 template <class T> class Wrapped {
     T value{};
