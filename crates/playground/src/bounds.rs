@@ -2,25 +2,25 @@
 
 use standstill_script::model::Script;
 
-/// Most bytes of a script with the files it names.
+/// Largest number of bytes of a script with the files that it names.
 pub const BYTES_MAX: usize = 1 << 20;
 
-/// Most scans of a run; a quarter of an hour at 1 ms.
+/// Largest number of scans of a run; a quarter of an hour at 1 ms.
 pub const SCANS_MAX: u64 = 1_000_000;
 
-/// Most cells of a run, that is scans times columns: 8 bytes each.
+/// Largest number of cells of a run, that is scans times columns: 8 bytes each.
 pub const CELLS_MAX: u64 = 20_000_000;
 
-/// Most block instances.
+/// Largest number of block instances.
 pub const BLOCKS_MAX: usize = 2_000;
 
-/// Most instructions that the calls of all programs may take in one scan.
+/// Largest number of instructions that the calls of all programs may take in one scan.
 pub const FUEL_MAX: u64 = 20_000_000;
 
-/// Most lines to plan at once.
+/// Largest number of lines to plan at once.
 pub const LINES_MAX: usize = 200;
 
-/// Most characters of a link's fragment that is read.
+/// Largest number of characters of a link's fragment that are read.
 pub const LINK_MAX: usize = 1 << 17;
 
 /// The remedy for a script that is too large.

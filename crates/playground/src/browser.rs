@@ -20,7 +20,7 @@ pub fn check(request: &str) -> String {
     crate::check(request)
 }
 
-/// What a run left.
+/// The result of a run.
 #[wasm_bindgen]
 pub struct Ran(crate::Ran);
 

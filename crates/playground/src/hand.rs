@@ -1,14 +1,14 @@
-//! Axes that follow the pointer: from frame to frame to its present place, planned anew in each.
+//! Axes that follow the pointer: planned again from frame to frame to its present position.
 
 use crate::project::refused;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use standstill_planner::{Limits, OnlinePlan, Setpoint};
 
-/// Most axes side by side.
+/// Largest number of axes side by side.
 const AXES_MAX: usize = 8;
 
-/// Most scans of a frame.
+/// Largest number of scans of a frame.
 const SCANS_MAX: u32 = 1_000;
 
 /// Steps of the load's own motion in a scan.
@@ -24,7 +24,7 @@ struct Request {
     /// The target of the axes (u).
     target: f64,
     limits: Bounds,
-    /// The limits of the last frame: a state above the new ones comes down within these.
+    /// The limits of the last frame: a state above the new limits comes inside within these.
     before: Bounds,
     load: Spring,
     axes: Vec<Axis>,
@@ -43,7 +43,7 @@ struct Bounds {
     snap: f64,
 }
 
-/// A load that hangs on a spring.
+/// A load on a spring.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Spring {

@@ -40,7 +40,7 @@ enum File {
 }
 
 impl File {
-    /// The length that arrived.
+    /// The number of bytes received.
     fn len(&self) -> usize {
         match self {
             Self::Text(text) | Self::Bytes { base64: text } => text.len(),

@@ -11,7 +11,7 @@ use standstill_trace::{Cell, Column, Kind, Role, Trace, digest};
 /// Scans between two reports of progress.
 const PROGRESS_EVERY: u64 = 1_000;
 
-/// What a run left.
+/// The result of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Ran {
     /// JSON. For a run: `verdict` (the last line of the command line's text), `passed`, `digest`,

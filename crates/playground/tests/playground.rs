@@ -43,7 +43,7 @@ fn project(path: &Path) -> Value {
         }
     }
     let text = fs::read_to_string(path).expect("a text");
-    // And those that they name: what belongs to another script would only make the link longer.
+    // And the texts that those name: files of another script would only make the link longer.
     let (mut named, mut all) = (BTreeMap::new(), text.clone());
     for _ in 0..files.len() {
         for (name, file) in &files {
@@ -237,7 +237,7 @@ fn links_that_cannot_be_read_are_refused_with_the_cause() {
     }
     assert!(why(&link.replacen("1.", "2.", 1)).contains("later version"));
     assert!(why(&format!("1.{}", "A".repeat(LINK_MAX))).contains("are read"));
-    // A small link that would unpack to more than a script may be.
+    // A small link that would unpack to more than a script may have.
     let bomb = json!({"pack": {"text": "a".repeat(BYTES_MAX - 100)}});
     assert!(shared(&bomb)["link"].is_string());
     assert!(shared(&json!({"pack": {"text": "a".repeat(BYTES_MAX)}}))["refused"].is_string());
@@ -288,7 +288,7 @@ fn an_axis_led_by_hand_comes_to_its_target_within_its_limits() {
         .map(|order| json!({"order": order, "state": [0.0, 0.0, 0.0, 0.0], "load": [0.0, 0.0]}))
         .to_vec();
     for frame in 0..150 {
-        // The target turns round while the axes are on their way.
+        // The target reverses while the axes are moving.
         let target = if frame < 20 { 60.0 } else { 40.0 };
         let request = json!({
             "cycle": 0.001, "scans": 16, "target": target, "limits": limits, "before": limits,
@@ -305,7 +305,7 @@ fn an_axis_led_by_hand_comes_to_its_target_within_its_limits() {
     for axis in &axes {
         assert_eq!(axis["state"], json!([40.0, 0.0, 0.0, 0.0]), "{axis}");
     }
-    // What a smoother profile is for: the load swings less behind it.
+    // The purpose of a smoother profile: the load vibrates less behind it.
     let swing = |axis: &Value| (axis["load"][0].as_f64().expect("a number") - 40.0).abs();
     assert!(swing(&axes[2]) < 1.0, "{axes:?}");
     assert!(hand("{}").contains("refused"));

@@ -1,4 +1,4 @@
-//! `standstill-bindgen FILE.wasm FOLDER`: what `wasm-bindgen --target web --no-typescript` does.
+//! `standstill-bindgen FILE.wasm FOLDER`: the same as `wasm-bindgen --target web --no-typescript`.
 
 use std::process::ExitCode;
 use wasm_bindgen_cli_support::Bindgen;
