@@ -51,7 +51,7 @@ pub extern "C" fn standstill_result_text(result: i32) -> *const c_char {
     text.as_ptr()
 }
 
-/// The bytes of storage a runtime needs.
+/// Number of bytes of storage that a runtime needs.
 ///
 /// Codes: NULL_POINTER, STRUCT_SIZE, BAD_VALUE (a size of the configuration is 0 or too large).
 ///
@@ -71,8 +71,9 @@ pub unsafe extern "C" fn standstill_runtime_size(config: *const RuntimeConfig, b
     }))
 }
 
-/// Makes a runtime without axes in `storage`, which is aligned to 16 bytes, has what runtime_size tells, and belongs to
-/// the runtime until it is closed. `abi_version` is STANDSTILL_ABI_VERSION. Nothing has to be freed.
+/// Makes a runtime without axes in `storage`. The storage is aligned to 16 bytes, has the size that runtime_size
+/// returns, and belongs to the runtime until it is closed. `abi_version` is STANDSTILL_ABI_VERSION. Nothing has to
+/// be freed.
 ///
 /// Codes: ABI_MISMATCH, NULL_POINTER, STRUCT_SIZE, BAD_VALUE, STORAGE.
 ///
@@ -101,7 +102,8 @@ pub unsafe extern "C" fn standstill_runtime_init(
     }))
 }
 
-/// Ends a runtime whose axes are all off; its storage belongs to the host again, its handle and keys mean nothing.
+/// Ends a runtime whose axes are all off. Its storage belongs to the host again; its handle and keys are no longer
+/// valid.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, NOT_OFF.
 ///
@@ -130,12 +132,12 @@ pub unsafe extern "C" fn standstill_axis_defaults(setup: *mut AxisSetup) -> i32 
     raw::code(unsafe { raw::write_under(setup, AxisSetup::defaults) })
 }
 
-/// Describes an ideal drive: it follows every set-point in the next tick. `size` must be set before.
+/// Describes an ideal drive, which follows every set-point in the next tick. `size` must be set before.
 ///
 /// Codes: NULL_POINTER, STRUCT_SIZE.
 ///
 /// # Safety
-/// The pointer is null or leads to as many bytes as the size in front says.
+/// The pointer is null, or has as many bytes as its size field says.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_drive_defaults"))]
 pub unsafe extern "C" fn standstill_drive_defaults(setup: *mut DriveSetup) -> i32 {
     // SAFETY: the caller's contract.
@@ -147,7 +149,7 @@ pub unsafe extern "C" fn standstill_drive_defaults(setup: *mut DriveSetup) -> i3
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, NO_ROOM, BAD_CONFIG.
 ///
 /// # Safety
-/// Pointers are null or lead to what their types say.
+/// Each pointer is null or valid for its type.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_axis_add"))]
 pub unsafe extern "C" fn standstill_axis_add(
     runtime: *mut Runtime,
@@ -158,7 +160,7 @@ pub unsafe extern "C" fn standstill_axis_add(
     // SAFETY: the caller's contract, here and below.
     unsafe {
         enter(runtime, When::Outside, |inner| {
-            // Fields that a host of the first header does not have are left out.
+            // Fields that a host compiled with the first header does not have get their defaults.
             let setup = raw::read_over(setup, AxisSetup::defaults(0))?;
             let drive = raw::read_over(drive, DriveSetup::defaults(0))?;
             if axis.is_null() {
@@ -171,12 +173,12 @@ pub unsafe extern "C" fn standstill_axis_add(
     }
 }
 
-/// What the last BAD_CONFIG of this runtime was about.
+/// The key and the value of the last BAD_CONFIG of this runtime.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE.
 ///
 /// # Safety
-/// Pointers are null or lead to what their types say.
+/// Each pointer is null or valid for its type.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_config_error"))]
 pub unsafe extern "C" fn standstill_config_error(runtime: *mut Runtime, fault: *mut ConfigFault) -> i32 {
     // SAFETY: the caller's contract, here and in all that follows.
@@ -189,13 +191,13 @@ pub unsafe extern "C" fn standstill_config_error(runtime: *mut Runtime, fault: *
     }
 }
 
-/// Begins a tick at the instant `now_ns` of a monotonic clock: drives are read, axis states follow. Blocks may be called
-/// then, by this thread, until tick_end.
+/// Begins a tick at the instant `now_ns` of a monotonic clock: drives are read, and axis states are updated. This
+/// thread may then call blocks until tick_end.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, TIME_BACKWARDS, INTERNAL.
 ///
 /// # Safety
-/// `runtime` is null or a handle whose storage is still there.
+/// `runtime` is null or a handle whose storage still exists.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_tick_begin"))]
 pub unsafe extern "C" fn standstill_tick_begin(runtime: *mut Runtime, now_ns: i64) -> i32 {
     // SAFETY: the caller's contract.
@@ -207,7 +209,7 @@ pub unsafe extern "C" fn standstill_tick_begin(runtime: *mut Runtime, now_ns: i6
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, NOT_IN_TICK, INTERNAL.
 ///
 /// # Safety
-/// `runtime` is null or a handle whose storage is still there.
+/// `runtime` is null or a handle whose storage still exists.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_tick_end"))]
 pub unsafe extern "C" fn standstill_tick_end(runtime: *mut Runtime) -> i32 {
     // SAFETY: the caller's contract.
@@ -219,13 +221,13 @@ pub unsafe extern "C" fn standstill_tick_end(runtime: *mut Runtime) -> i32 {
     }
 }
 
-/// Stops the resource, in a tick or between two: blocks are not called any more, every axis stops and switches off as
-/// it is set up to. That takes further ticks, so go on with them.
+/// Stops the resource, inside a tick or between two: blocks are no longer called, and every axis stops and switches
+/// off as configured. This takes further ticks, so continue with them.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD.
 ///
 /// # Safety
-/// `runtime` is null or a handle whose storage is still there.
+/// `runtime` is null or a handle whose storage still exists.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_stop"))]
 pub unsafe extern "C" fn standstill_stop(runtime: *mut Runtime) -> i32 {
     // SAFETY: the caller's contract.
@@ -242,19 +244,19 @@ pub unsafe extern "C" fn standstill_stop(runtime: *mut Runtime) -> i32 {
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, NOT_OFF, INTERNAL.
 ///
 /// # Safety
-/// `runtime` is null or a handle whose storage is still there.
+/// `runtime` is null or a handle whose storage still exists.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_start"))]
 pub unsafe extern "C" fn standstill_start(runtime: *mut Runtime) -> i32 {
     // SAFETY: the caller's contract.
     unsafe { enter(runtime, When::Outside, |inner| inner.start()) }
 }
 
-/// Gives the place of a block instance back and sets its key to 0. What the instance commanded goes on.
+/// Frees the place of a block instance and sets its key to 0. The command of the instance continues.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, UNKNOWN_KEY.
 ///
 /// # Safety
-/// Pointers are null or lead to what their types say.
+/// Each pointer is null or valid for its type.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_instance_release"))]
 pub unsafe extern "C" fn standstill_instance_release(runtime: *mut Runtime, key: *mut u64) -> i32 {
     // SAFETY: the caller's contract, here and in all that follows.
@@ -270,13 +272,13 @@ pub unsafe extern "C" fn standstill_instance_release(runtime: *mut Runtime, key:
     }
 }
 
-/// An axis as it stands: its state, set-point, actual position and error. After tick_end the set-point is the one of
-/// this tick.
+/// The present data of an axis: its state, set-point, actual position and error. After tick_end the set-point is
+/// that of this tick.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE, UNKNOWN_AXIS.
 ///
 /// # Safety
-/// Pointers are null or lead to what their types say.
+/// Each pointer is null or valid for its type.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_axis_read"))]
 pub unsafe extern "C" fn standstill_axis_read(
     runtime: *mut Runtime,
@@ -293,12 +295,12 @@ pub unsafe extern "C" fn standstill_axis_read(
     }
 }
 
-/// Tells what the host's own drive under `axis` says; before every tick_begin.
+/// Passes on the report of the host's own drive under `axis`. Call it before every tick_begin.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, UNKNOWN_AXIS, WRONG_DRIVE, BAD_VALUE.
 ///
 /// # Safety
-/// Pointers are null or lead to what their types say.
+/// Each pointer is null or valid for its type.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_feedback_write"))]
 pub unsafe extern "C" fn standstill_feedback_write(
     runtime: *mut Runtime,
@@ -318,12 +320,12 @@ pub unsafe extern "C" fn standstill_feedback_write(
     }
 }
 
-/// Asks what the host's own drive under `axis` is told; after every tick_end.
+/// Reads the command for the host's own drive under `axis`. Call it after every tick_end.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, UNKNOWN_AXIS, WRONG_DRIVE.
 ///
 /// # Safety
-/// Pointers are null or lead to what their types say.
+/// Each pointer is null or valid for its type.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_command_read"))]
 pub unsafe extern "C" fn standstill_command_read(
     runtime: *mut Runtime,
@@ -346,14 +348,14 @@ pub unsafe extern "C" fn standstill_command_read(
     }
 }
 
-/// Lets something befall the simulated drive under `axis`, or clears the cause of it; `mishap` is one of
-/// standstill_mishap, `code` what the drive or the axis calls its fault. WRONG_DRIVE also for what only a CiA 402 drive
-/// knows.
+/// Applies a disturbance to the simulated drive under `axis`, or clears its cause. `mishap` is one of
+/// standstill_mishap, `code` the number of the fault in the drive or the axis. WRONG_DRIVE also for a disturbance
+/// that only a CiA 402 drive knows.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
 ///
 /// # Safety
-/// `runtime` is null or a handle whose storage is still there.
+/// `runtime` is null or a handle whose storage still exists.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_simulate"))]
 pub unsafe extern "C" fn standstill_simulate(
     runtime: *mut Runtime,
@@ -371,13 +373,13 @@ pub unsafe extern "C" fn standstill_simulate(
     }
 }
 
-/// Sets the digital input `number`, 0 to 31, of the simulated drive under `axis` to `level`; it shows from the next
+/// Sets the digital input `number`, 0 to 31, of the simulated drive under `axis` to `level`. It shows from the next
 /// tick_begin on.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
 ///
 /// # Safety
-/// `runtime` is null or a handle whose storage is still there.
+/// `runtime` is null or a handle whose storage still exists.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_simulate_input"))]
 pub unsafe extern "C" fn standstill_simulate_input(
     runtime: *mut Runtime,
@@ -400,13 +402,14 @@ pub unsafe extern "C" fn standstill_simulate_input(
     }
 }
 
-/// Sets the input of touch probe `number`, 1 or 2, of the simulated drive under `axis` to `level`, from the part `at`
-/// (0 to 1) of the cycle on that ends with the next tick_begin. Up to four changes before a tick are kept.
+/// Sets the input of touch probe `number`, 1 or 2, of the simulated drive under `axis` to `level`. The change is at
+/// the part `at` (0 to 1) of the cycle that ends with the next tick_begin. Up to four changes before a tick are
+/// kept.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
 ///
 /// # Safety
-/// `runtime` is null or a handle whose storage is still there.
+/// `runtime` is null or a handle whose storage still exists.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_simulate_probe"))]
 pub unsafe extern "C" fn standstill_simulate_probe(
     runtime: *mut Runtime,
@@ -431,14 +434,14 @@ pub unsafe extern "C" fn standstill_simulate_probe(
     }
 }
 
-/// Somebody pushes the axis by `distance` while the power stage of its simulated drive is off: in units, with a CiA 402
-/// drive and an ideal one that counts in increments.
+/// Pushes the axis by `distance` while the power stage of its simulated drive is off. The distance is in units;
+/// with a CiA 402 drive, and an ideal one that counts, in increments.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE, NOT_OFF (it has
 /// torque).
 ///
 /// # Safety
-/// `runtime` is null or a handle whose storage is still there.
+/// `runtime` is null or a handle whose storage still exists.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_simulate_push"))]
 pub unsafe extern "C" fn standstill_simulate_push(runtime: *mut Runtime, axis: i32, distance: f64) -> i32 {
     // SAFETY: the caller's contract.
@@ -454,14 +457,15 @@ pub unsafe extern "C" fn standstill_simulate_push(runtime: *mut Runtime, axis: i
     }
 }
 
-/// Has the simulated drive under `axis` tell `value` instead of what it measures, from the next tick_begin on until
-/// standstill_simulate clears the cause. `quantity` 0: its position, in increments if the axis has a scaling, else in units;
-/// 1: its actual torque, if it tells one. A number of units or torque may be NaN or infinite, one of increments is whole.
+/// Makes the simulated drive under `axis` report `value` instead of its measurement, from the next tick_begin on
+/// until standstill_simulate clears the cause. `quantity` 0: its position, in increments if the axis has a scaling,
+/// otherwise in units; 1: its actual torque, if it reports one. A number of units or torque may be NaN or infinite;
+/// a number of increments must be whole.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
 ///
 /// # Safety
-/// `runtime` is null or a handle whose storage is still there.
+/// `runtime` is null or a handle whose storage still exists.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_simulate_report"))]
 pub unsafe extern "C" fn standstill_simulate_report(
     runtime: *mut Runtime,
@@ -490,9 +494,9 @@ pub unsafe extern "C" fn standstill_simulate_report(
     }
 }
 
-/// Copies records of the diagnostic ring, oldest first, from number `*next` on; `*next` becomes the number to go on
-/// from, and `*copied` how many there are. Records that were overwritten meanwhile are left out: their numbers are.
-/// `record_size` is sizeof(standstill_record), `room` how many records fit.
+/// Copies records of the diagnostic ring, oldest first, from number `*next` on. `*next` becomes the number to
+/// continue from, and `*copied` the number of records. Records that were overwritten meanwhile are left out, with
+/// their numbers. `record_size` is sizeof(standstill_record), `room` the number of records that fit.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE.
 ///

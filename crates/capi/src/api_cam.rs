@@ -6,8 +6,8 @@ use crate::storage::CamStore;
 use crate::{Code, raw};
 use core::ffi::c_void;
 
-/// The bytes of storage that a store of cams needs: for `slots` cams, 1 to 65535, and `pieces` of them in all, 1 to 2^24; a
-/// cam takes one less than it has rows.
+/// Number of bytes of storage that a store of cams needs: for `slots` cams, 1 to 65535, and `pieces` pieces in all,
+/// 1 to 2^24. A cam takes one piece less than it has rows.
 ///
 /// Codes: NULL_POINTER, BAD_VALUE.
 ///
@@ -24,8 +24,8 @@ pub unsafe extern "C" fn standstill_cams_size(slots: u32, pieces: u32, bytes: *m
     }))
 }
 
-/// Sets a store of cams up in `storage`, which is aligned to 16 bytes, has what cams_size tells, and belongs to the runtime
-/// until runtime_close. Without one MC_CamTableSelect shows ErrorID 153.
+/// Sets up a store of cams in `storage`. The storage is aligned to 16 bytes, has the size that cams_size returns,
+/// and belongs to the runtime until runtime_close. Without a store MC_CamTableSelect shows ErrorID 153.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STORAGE, NO_ROOM (there is one already), BAD_VALUE.
 ///

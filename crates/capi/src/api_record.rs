@@ -42,8 +42,8 @@ impl Entries {
     }
 }
 
-/// The bytes of storage that a flight recorder needs: of all axes of the runtime, and of the block instances in the
-/// list `recorded` of `count` entries, each of `recorded_size` bytes, sizeof(standstill_recorded).
+/// Number of bytes of storage that a flight recorder needs, for all axes of the runtime and the block instances in
+/// the list `recorded`. The list has `count` entries, each of `recorded_size` bytes, sizeof(standstill_recorded).
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE, UNKNOWN_KEY, BAD_VALUE (a number of the configuration).
 ///
@@ -72,13 +72,13 @@ pub unsafe extern "C" fn standstill_recorder_size(
     }
 }
 
-/// Sets a flight recorder up in `storage`, which is aligned to 16 bytes, has what recorder_size tells, and belongs to
-/// the runtime until recorder_end or runtime_close. From now on every tick_end keeps a scan. Axes that are added later
-/// are not recorded.
+/// Sets up a flight recorder in `storage`. The storage is aligned to 16 bytes, has the size that recorder_size
+/// returns, and belongs to the runtime until recorder_end or runtime_close. From now on every tick_end keeps a
+/// scan. Axes that are added later are not recorded.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, STORAGE, UNKNOWN_AXIS, UNKNOWN_KEY, NO_ROOM
-/// (there is one already), BAD_VALUE (also: a name is no IEC identifier, is not ended by 0, or stands twice; a unit
-/// with quotes).
+/// (there is one already), BAD_VALUE (also: a name that is no IEC identifier, has no 0 at its end, or occurs twice;
+/// a unit with quotes).
 ///
 /// # Safety
 /// Each pointer is null or valid for its type; `storage` has the given number of bytes, `recorded` has
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn standstill_recorder_init(
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, NO_RECORDER.
 ///
 /// # Safety
-/// `runtime` is null or a handle whose storage is still there.
+/// `runtime` is null or a handle whose storage still exists.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_recorder_end"))]
 pub unsafe extern "C" fn standstill_recorder_end(runtime: *mut Runtime) -> i32 {
     // SAFETY: the caller's contract.
@@ -130,13 +130,13 @@ pub unsafe extern "C" fn standstill_recorder_end(runtime: *mut Runtime) -> i32 {
     }
 }
 
-/// Trips the flight recorder in the tick that is open or comes next, for a reason of the host's; without effect on one
+/// Trips the flight recorder in the open or the next tick, for a reason of the host's own. No effect on a recorder
 /// that has tripped.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, NO_RECORDER.
 ///
 /// # Safety
-/// `runtime` is null or a handle whose storage is still there.
+/// `runtime` is null or a handle whose storage still exists.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_recorder_trip"))]
 pub unsafe extern "C" fn standstill_recorder_trip(runtime: *mut Runtime) -> i32 {
     // SAFETY: the caller's contract.
@@ -147,12 +147,12 @@ pub unsafe extern "C" fn standstill_recorder_trip(runtime: *mut Runtime) -> i32 
     }
 }
 
-/// The flight recorder forgets everything and waits for the next trigger.
+/// Deletes the contents of the flight recorder and waits for the next trigger.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, NO_RECORDER.
 ///
 /// # Safety
-/// `runtime` is null or a handle whose storage is still there.
+/// `runtime` is null or a handle whose storage still exists.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_recorder_arm"))]
 pub unsafe extern "C" fn standstill_recorder_arm(runtime: *mut Runtime) -> i32 {
     // SAFETY: the caller's contract.
@@ -163,12 +163,12 @@ pub unsafe extern "C" fn standstill_recorder_arm(runtime: *mut Runtime) -> i32 {
     }
 }
 
-/// Where the flight recorder stands.
+/// The state of the flight recorder.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE, NO_RECORDER.
 ///
 /// # Safety
-/// Pointers are null or lead to what their types say.
+/// Each pointer is null or valid for its type.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_recorder_state"))]
 pub unsafe extern "C" fn standstill_recorder_state(
     runtime: *mut Runtime,
@@ -184,15 +184,16 @@ pub unsafe extern "C" fn standstill_recorder_state(
     }
 }
 
-/// Copies the next piece of the flight recorder's text to `buffer`, which has `room` bytes, and tells how many they
-/// are: 0 after the last one. `dump` says which text and how far it is: all 0 but its size and form before the first
-/// call. The text is a trace, as `standstill explain`, `report` and `compare` read it; no 0 ends it.
+/// Copies the next part of the flight recorder's text to `buffer`, which has `room` bytes, and returns the number
+/// of bytes: 0 after the last one. `dump` selects the text and has the progress: set all fields except its size and
+/// form to 0 before the first call. The text is a trace for `standstill explain`, `report` and `compare`; it has no
+/// 0 at its end.
 ///
-/// A line that does not fit is begun anew in the next call, so a buffer of some kilobytes is quicker than one of some
-/// bytes. Between the pieces no scan may be kept: dump a recorder that is frozen, or between two ticks.
+/// A line that does not fit is begun again in the next call, so a buffer of some kilobytes is faster than one of
+/// some bytes. No scan may be kept between the parts: dump a frozen recorder, or dump between two ticks.
 ///
-/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, NO_RECORDER, BAD_VALUE (no such form; or scans
-/// were kept since the first piece).
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, NO_RECORDER, BAD_VALUE (no such form; or
+/// scans were kept since the first part).
 ///
 /// # Safety
 /// Each pointer is null or valid for its type; `buffer` has `room` bytes.
@@ -244,8 +245,8 @@ pub unsafe extern "C" fn standstill_recorder_read(
     }
 }
 
-/// Makes an instance of the block of this IEC name before it is first called, and sets its key; for a flight recorder,
-/// which wants keys. A call with a key of 0 does the same.
+/// Makes an instance of the block with this IEC name before its first call, and sets its key. A flight recorder
+/// needs keys. A call with a key of 0 does the same.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, BAD_VALUE (no block has this name), NO_ROOM.
 ///

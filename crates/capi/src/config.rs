@@ -11,7 +11,7 @@ use standstill_drives::mechanism::{Gains, Load, Plant, Stops};
 use standstill_drives::simulated::{self, Cia402Setup, IdealDriveSetup, MotorSetup, PlantSetup};
 use standstill_drives::switches::{Marker, Switches};
 
-/// A mode in which the load swings; none without a frequency.
+/// A vibration mode of the load; none without a frequency.
 fn mode(
     key: &'static str,
     (frequency, damping, shaper): (f64, f64, i32),
@@ -30,7 +30,7 @@ fn mode(
     }))
 }
 
-/// What cannot be used.
+/// The invalid value of a configuration.
 pub(crate) struct SetupFault {
     pub key: &'static str,
     pub value: f64,
@@ -507,7 +507,7 @@ const fn fault(key: &'static str, value: f64) -> SetupFault {
     SetupFault { key, value }
 }
 
-/// 0 means not given, and returns `instead`. NaN is a value, and is refused as one.
+/// `instead` if the value is 0, which means not given. NaN is a value, and is refused as one.
 fn or(value: f64, instead: f64) -> f64 {
     if value == 0.0 { instead } else { value }
 }

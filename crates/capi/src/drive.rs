@@ -19,15 +19,15 @@ pub(crate) enum AnyDrive {
 /// The reports of a host since the begin of the last tick.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum News {
-    /// Nothing.
+    /// No report.
     None,
     /// Only values that were refused, because they are not numbers.
     NoNumber,
-    /// Feedback.
+    /// A feedback.
     Fresh,
 }
 
-/// A drive of the host: the feedback it reports and the commands it gets.
+/// A drive of the host: the feedback that it reports and the commands that it receives.
 pub(crate) struct HostDrive {
     feedback: DriveFeedback,
     report: DriveReport,

@@ -9,7 +9,7 @@ use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 pub(crate) enum When {
     /// Between begin and end, on the thread that began the tick.
     InTick,
-    /// Not then.
+    /// Not during a tick.
     Outside,
     /// At any time.
     Any,
@@ -31,7 +31,7 @@ fn me() -> usize {
     1
 }
 
-/// Marks a call as under way.
+/// Marks a call as in progress.
 #[cfg(not(feature = "std"))]
 struct Busy<'a>(&'a Runtime);
 
@@ -125,7 +125,7 @@ unsafe fn try_enter(
     result
 }
 
-/// The reason why a function for the open tick is refused.
+/// The reason why a function that needs an open tick is refused.
 fn not_in_tick(owner: usize) -> Code {
     if owner == 0 {
         Code::NotInTick

@@ -1,9 +1,8 @@
 //! The C library: a runtime behind an opaque handle, blocks as functions on flat structures.
 //!
-//! This crate is the border to C. It checks its arguments and returns a result code instead of undefined
-//! behaviour wherever C permits it; `docs/embedding-c.md` lists what it cannot see. It has no motion,
-//! states or blocks of its own. There is no global state, no heap and no clock: a runtime lives in memory
-//! its host gives it.
+//! This crate is the border to C. It checks its arguments and returns a result code instead of undefined behaviour
+//! wherever C permits it; `docs/embedding-c.md` lists what it cannot detect. It has no motion, states or blocks of
+//! its own. There is no global state, no heap and no clock: a runtime is in memory of its host.
 //!
 //! The two headers in `include/` are generated: `standstill.h` from this crate, `standstill_blocks.h` from the table of
 //! blocks.

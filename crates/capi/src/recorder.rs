@@ -74,7 +74,7 @@ impl<const N: usize> fmt::Write for Text<N> {
     }
 }
 
-/// What an axis is called.
+/// The name of an axis.
 struct AxisName {
     name: Text<NAME>,
     unit: Text<UNIT>,

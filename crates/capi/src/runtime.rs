@@ -128,7 +128,7 @@ pub(crate) struct Inner {
     pub cams: CamStore,
     /// Past set-points of axes with vibration.
     pub history: List<Setpoint>,
-    /// Those that axes have taken.
+    /// Number of set-points that axes have taken.
     history_taken: usize,
 }
 
@@ -226,7 +226,7 @@ impl Inner {
             .map_err(|fault| self.refuse(fault.key, fault.value))?;
         let needed = axis.history_needed();
         if needed > self.history.len() - self.history_taken {
-            // The value is what the axis needs.
+            // The value is the number that the axis needs.
             return Err(self.refuse("vibration", needed as f64));
         }
         axis.set_history(self.history_taken);
@@ -311,7 +311,7 @@ impl Inner {
         Ok(())
     }
 
-    /// Begins a tick: drives are read, axis states follow.
+    /// Begins a tick: drives are read, and axis states are updated.
     pub fn begin(&mut self, now_ns: i64) -> Result<(), Code> {
         if self.started && now_ns < self.now_ns {
             return Err(Code::TimeBackwards);
@@ -384,7 +384,7 @@ impl Inner {
         }
     }
 
-    /// An axis as it stands.
+    /// The present data of an axis.
     pub fn status(&self, axis: i32) -> Result<AxisStatus, Code> {
         let place = self.place(axis)?;
         let axis = self.axes.slice().get(place).ok_or(Code::UnknownAxis)?;

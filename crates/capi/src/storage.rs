@@ -189,7 +189,7 @@ pub(crate) fn size(config: &RuntimeConfig) -> Result<usize, Code> {
 /// Makes a runtime in the storage.
 ///
 /// # Safety
-/// `storage` is not null, `bytes` bytes can be read and written there, and nothing but the runtime uses them until it is
+/// `storage` is not null, `bytes` bytes can be read and written there, and only the runtime uses them until it is
 /// closed.
 pub(crate) unsafe fn init(
     storage: *mut u8,

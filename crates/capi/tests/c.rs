@@ -1,9 +1,9 @@
-//! The library from C: the examples are compiled with all warnings as errors, as C and as C++, linked to both libraries,
-//! run, and run under valgrind. One of them is the same as a scan script, to the bit.
+//! The library from C: the examples are compiled with all warnings as errors, as C and as C++, linked to both
+//! libraries, run, and run under valgrind. One of them is equal to a scan script, to the bit.
 //!
-//! Without a C compiler or valgrind the tests say SKIP; with `CI` in the environment that is a failure. What needs the library
-//! built once more, under another prefix, valgrind among it, says SKIP without `STANDSTILL_SEARCH` in the environment: it takes a
-//! minute. `.ci/run` leaves nothing out.
+//! Without a C compiler or valgrind the tests say SKIP; with `CI` in the environment that is a failure. Tests that
+//! need a second build of the library under another prefix, including valgrind, say SKIP without
+//! `STANDSTILL_SEARCH` in the environment: the build takes a minute. `.ci/run` leaves nothing out.
 
 use standstill_export::{Dialect, Prefix, Target, export};
 use standstill_trace::Cell;
@@ -33,7 +33,7 @@ fn scratch(name: &str) -> PathBuf {
     folder
 }
 
-/// Whether a tool can be run. Without it a test ends early, loudly, and not in CI.
+/// Whether a tool can be run. Without it a test ends early with a message; in CI it fails.
 fn has(tool: &str) -> bool {
     let found = Command::new(tool).arg("--version").output().is_ok();
     if !found {
@@ -43,7 +43,7 @@ fn has(tool: &str) -> bool {
     found
 }
 
-/// Whether the library may be built once more; see the top of this file.
+/// Whether a second build of the library is permitted; see the top of this file.
 fn may_build_another() -> bool {
     let may = standstill_testkit::searches();
     if !may {
@@ -73,7 +73,7 @@ fn text(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
-/// The static (`a`) or the shared library (`so`) as everybody gets them: cargo has built both for this test, beside it.
+/// The static (`a`) or the shared library (`so`) in its normal form: cargo has built both for this test, beside it.
 fn library(ending: &str) -> PathBuf {
     let name = format!("libstandstill_capi.{ending}");
     let library = env::current_exe().unwrap().with_file_name(name);
@@ -84,8 +84,8 @@ fn library(ending: &str) -> PathBuf {
 /// A prefix that is not ours.
 const OTHER: &str = "acme";
 
-/// The libraries with that prefix, not optimised and with no information for a debugger, and its headers: made once. As in what
-/// is given away, nothing checks anything that only a debug build does; the other tests have those checks.
+/// The libraries with that prefix, not optimised and without debug information, and its headers; built once. As in
+/// a release build, they have no debug assertions; the other tests have those.
 static ACME: LazyLock<PathBuf> = LazyLock::new(|| {
     let folder = scratch("c-library-acme");
     for file in export(Target::C, &Prefix::new(OTHER).unwrap(), &Dialect::default()) {
@@ -124,7 +124,7 @@ fn acme(ending: &str) -> PathBuf {
     ACME.join(format!("debug/libstandstill_capi.{ending}"))
 }
 
-/// Compiles a program with one of the libraries; everything a compiler may say is an error.
+/// Compiles a program with one of the libraries; every warning of a compiler is an error.
 fn compile(compiler: &[&str], source: &Path, include: &Path, library: &Path, to: &Path) {
     let (tool, options) = compiler.split_first().unwrap();
     let mut arguments: Vec<&OsStr> = options.iter().map(OsStr::new).collect();
@@ -133,7 +133,7 @@ fn compile(compiler: &[&str], source: &Path, include: &Path, library: &Path, to:
     arguments.push(source.as_os_str());
     arguments.push(OsStr::new("-o"));
     arguments.push(to.as_os_str());
-    // After this a compiler of C++ no longer takes what follows for C++.
+    // From here on a compiler of C++ no longer treats the files as C++.
     arguments.extend(["-x", "none"].map(OsStr::new));
     arguments.push(library.as_os_str());
     arguments.extend(["-lpthread", "-ldl", "-lm"].map(OsStr::new));
@@ -190,14 +190,14 @@ fn the_diagnostic_ring_tells_c_what_happened() {
     );
 }
 
-/// The library under another prefix, so that it has every example with it, too.
+/// The library under another prefix, so that this prefix is tested with every example, too.
 #[test]
 fn valgrind_has_nothing_to_report() {
     if !may_build_another() || !has("cc") || !has("valgrind") {
         return;
     }
     let folder = scratch("c-valgrind");
-    // Where code is optimised, valgrind sees branches on what is not there that change nothing.
+    // In optimised code, valgrind sees branches on undefined values that change nothing.
     let library = acme("a");
     for example in EXAMPLES {
         let program = folder.join(example);
@@ -221,7 +221,7 @@ fn valgrind_has_nothing_to_report() {
     }
 }
 
-/// Compares what an example prints, row by row, with a scan script: doubles as their bits, then flags.
+/// Compares the output of an example, row by row, with a scan script: doubles as their bits, then flags.
 fn same_bits(example: &str, script: &str, reals: &[&str], flags: &[&str]) {
     if !has("cc") {
         return;
@@ -295,7 +295,7 @@ fn ctypes_and_a_scan_script_move_by_the_same_bits() {
     );
 }
 
-/// Switches, inputs and probes of simulated drives are those of scan scripts.
+/// Switches, inputs and probes of simulated drives are equal to those of scan scripts.
 #[test]
 fn c_homes_and_latches_by_the_bits_of_a_scan_script() {
     same_bits(
@@ -358,7 +358,8 @@ fn gears_of_a_c_host_move_by_the_bits_of_a_scan_script() {
     );
 }
 
-/// The same axis twice, a denominator of 0, a slave and a master that are no axes, and a ring: each has its ErrorID, and that nothing moves for
+/// The same axis twice, a denominator of 0, a slave and a master that do not exist, and a ring: each has its
+/// ErrorID. The comparison with the script shows that nothing moves because of them.
 /// them is what the comparison with the script holds.
 #[test]
 fn gears_of_a_c_host_are_refused_with_their_numbers() {
@@ -374,8 +375,8 @@ fn gears_of_a_c_host_are_refused_with_their_numbers() {
     );
 }
 
-/// What the recorder in memory of a C host dumps is a trace: its files are read by what `explain`, `report` and
-/// `compare` read with, written again they are the same, and its rows are those of the scan script.
+/// The dump of the recorder in memory of a C host is a trace. The readers of `explain`, `report` and `compare` read
+/// its files, which are the same if written again, and its rows are those of the scan script.
 #[test]
 fn the_dump_of_a_c_host_is_a_trace() {
     if !has("cc") {
@@ -459,7 +460,7 @@ fn two_libraries_of_different_prefixes_live_in_one_program() {
     run(&program, &[]);
 }
 
-/// The header and the library are made apart: every function the header declares is there.
+/// Header and library are made separately: every function that the header declares exists.
 #[test]
 fn every_block_has_its_function() {
     if !has("cc") {
@@ -487,7 +488,7 @@ fn every_block_has_its_function() {
     run(&program, &[]);
 }
 
-/// What rusty lays out in an instance, as our own C file has it: the compiler holds every offset.
+/// The layout of an instance in rusty is that of our own C file: the compiler checks every offset.
 #[test]
 fn the_bodies_for_rusty_compile_and_move_an_axis() {
     if !has("cc") {
@@ -498,7 +499,7 @@ fn the_bodies_for_rusty_compile_and_move_an_axis() {
         fs::write(folder.join(file.name), file.text).unwrap();
     }
     let source = folder.join("host.c");
-    // What the compiler of a program would emit: zeroed instances, VAR_IN_OUT as an address.
+    // The output of a program's compiler: zeroed instances, VAR_IN_OUT as an address.
     fs::write(
         &source,
         r#"

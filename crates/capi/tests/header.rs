@@ -21,7 +21,7 @@ const INTRODUCTION: &str = "\
  * SPDX-License-Identifier: MIT OR Apache-2.0
  */";
 
-/// Fits a C compiler of 1999 and any of C++. It stands behind the guard of the header, so it has its own.
+/// For a C compiler of 1999 and any C++ compiler. It is behind the guard of the header, so it has its own.
 const CHECKS: &str = r#"
 #ifndef STANDSTILL_ASSERT
 #if defined(__cplusplus)
@@ -151,7 +151,8 @@ fn header() -> String {
     without_rust_sections(&String::from_utf8(text).unwrap()).replace("STANDSTILL_RESULT_", "STANDSTILL_")
 }
 
-/// The header stands twice: here for hosts, and in the package that exports it, which can include nothing from outside.
+/// The header exists twice: here for hosts, and in the package that exports it, which can include nothing from
+/// outside.
 #[test]
 fn the_header_is_fresh() {
     let expected = header();

@@ -22,22 +22,22 @@
 #include <stdint.h>
 
 /**
- * Bytes of a name in a record.
+ * Number of bytes of a name in a record.
  */
 #define STANDSTILL_NAME 32
 
 /**
- * Bytes of a unit's label.
+ * Number of bytes of a unit's label.
  */
 #define STANDSTILL_UNIT 16
 
 #define STANDSTILL_ABI_VERSION 1
 
 /**
- * What a function says.
+ * The result of a function.
  *
- * With anything but OK and INTERNAL it has done nothing: no output was written, no block called, no motion begun or
- * ended.
+ * With any code except OK and INTERNAL the function has done nothing: it has written no output, called no block,
+ * and begun or ended no motion.
  */
 enum standstill_result
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -53,7 +53,7 @@ enum standstill_result
    */
   STANDSTILL_NULL_POINTER = -1,
   /**
-   * The size in front of a structure is smaller than its first version was: it was not set.
+   * The size in front of a structure is smaller than that of its first version: it was not set.
    */
   STANDSTILL_STRUCT_SIZE = -2,
   /**
@@ -65,7 +65,7 @@ enum standstill_result
    */
   STANDSTILL_STORAGE = -4,
   /**
-   * There is no runtime at this address: it was not initialised, or closed.
+   * There is no runtime at this address: it was not initialised, or it was closed.
    */
   STANDSTILL_NO_RUNTIME = -5,
   /**
@@ -81,15 +81,15 @@ enum standstill_result
    */
   STANDSTILL_IN_TICK = -8,
   /**
-   * The instant is before that of the tick before: use a monotonic clock.
+   * The instant is before that of the previous tick: use a monotonic clock.
    */
   STANDSTILL_TIME_BACKWARDS = -9,
   /**
-   * No instance has this key: it is of another runtime, was released, or was overwritten.
+   * No instance has this key: it belongs to another runtime, was released, or was overwritten.
    */
   STANDSTILL_UNKNOWN_KEY = -10,
   /**
-   * The key is of an instance of another block.
+   * The key belongs to an instance of another block.
    */
   STANDSTILL_WRONG_BLOCK = -11,
   /**
@@ -101,31 +101,33 @@ enum standstill_result
    */
   STANDSTILL_UNKNOWN_AXIS = -13,
   /**
-   * A value of the configuration cannot be used; config_error says which.
+   * A value of the configuration is invalid; config_error returns its key.
    */
   STANDSTILL_BAD_CONFIG = -14,
   /**
-   * The drive under the axis is of another kind: simulated ones are not fed, others not made to fail.
+   * The drive under the axis is of another kind. Simulated drives take no feedback; others cannot be made to
+   * fail.
    */
   STANDSTILL_WRONG_DRIVE = -15,
   /**
-   * A number stands for nothing where a choice is asked for.
+   * A number is not one of the permitted choices.
    */
   STANDSTILL_BAD_VALUE = -16,
   /**
-   * An array has more records than its block takes, or records at address null.
+   * An array has more records than its block accepts, or records at address null.
    */
   STANDSTILL_TABLE = -17,
   /**
-   * An axis is switched on or moving: stop, and go on with ticks until every axis is Disabled.
+   * An axis is switched on or moving: stop, and continue with ticks until every axis is Disabled.
    */
   STANDSTILL_NOT_OFF = -18,
   /**
-   * The resource was stopped: blocks are not called, axes are on their way to power off.
+   * The resource was stopped: blocks are not called, and the axes are stopping and switching off.
    */
   STANDSTILL_STOPPED = -19,
   /**
-   * A defect of the library was caught. It has stopped the resource as stop does, and stays stopped.
+   * A defect of the library was caught. It has stopped the resource as stop does, and the resource stays
+   * stopped.
    */
   STANDSTILL_INTERNAL = -20,
   /**
@@ -142,7 +144,7 @@ typedef int32_t standstill_result;
 #endif // __cplusplus
 
 /**
- * What may befall a simulated drive.
+ * The disturbances of a simulated drive.
  */
 enum standstill_mishap
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -150,11 +152,11 @@ enum standstill_mishap
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
   /**
-   * Whatever it was, its cause is gone.
+   * Removes the cause of any of them.
    */
   STANDSTILL_MISHAP_CLEAR = 0,
   /**
-   * A fault of the drive with a code of its own.
+   * A fault of the drive with its own code.
    */
   STANDSTILL_MISHAP_FAULT = 1,
   /**
@@ -170,11 +172,11 @@ enum standstill_mishap
    */
   STANDSTILL_MISHAP_AXIS = 4,
   /**
-   * A CiA 402 drive no longer listens to its controller ..
+   * A CiA 402 drive no longer obeys its controller ..
    */
   STANDSTILL_MISHAP_LOCAL = 5,
   /**
-   * .. and listens again.
+   * .. and obeys it again.
    */
   STANDSTILL_MISHAP_REMOTE = 6,
   /**
@@ -205,26 +207,27 @@ typedef struct standstill_runtime_config {
    */
   uint32_t size;
   /**
-   * Most axes, 1 to 1024.
+   * Largest number of axes, 1 to 1024.
    */
   uint32_t axes;
   /**
-   * Most block instances, up to 65534.
+   * Largest number of block instances, up to 65534.
    */
   uint32_t instances;
   /**
-   * Set-points kept for axes with vibration, in all, up to 2^24: for each mode of an axis twice its period in ticks, but at
-   * most 4096, and 4. 40 bytes of storage for each.
+   * Number of set-points kept for axes with vibration, in all, up to 2^24. For each mode of an axis: twice its
+   * period in ticks, but at most 4096, and 4. Each takes 40 bytes of storage.
    */
   uint32_t history;
   /**
-   * Nominal time between ticks (ns), above 0. Every tick_end advances motion by this, however late it comes.
+   * Nominal time between ticks (ns), above 0. Every tick_end advances motion by this time, even if it is late.
    */
   int64_t cycle_ns;
 } standstill_runtime_config;
 
 /**
- * How an axis is set up. axis_defaults fills everything but the five limits; docs/scan-scripts.md tells more of each.
+ * The configuration of an axis. axis_defaults fills in everything except the five limits; docs/scan-scripts.md
+ * describes each.
  */
 typedef struct standstill_axis_setup {
   /**
@@ -256,19 +259,19 @@ typedef struct standstill_axis_setup {
    */
   double snap;
   /**
-   * What 0 at the pin Acceleration stands for; 0: the limit. So the next three.
+   * Value for 0 at the pin Acceleration; 0: the limit. The same for the next three.
    */
   double default_acceleration;
   /**
-   * The same of Deceleration.
+   * The same for Deceleration.
    */
   double default_deceleration;
   /**
-   * The same of Jerk.
+   * The same for Jerk.
    */
   double default_jerk;
   /**
-   * The same of Snap.
+   * The same for Snap.
    */
   double default_snap;
   /**
@@ -276,19 +279,19 @@ typedef struct standstill_axis_setup {
    */
   double position;
   /**
-   * Drive increments that are scaling_units; 0: the drive speaks units.
+   * Number of drive increments in scaling_units; 0: the drive uses units.
    */
   uint32_t scaling_increments;
   /**
-   * User units that are scaling_increments.
+   * Number of user units in scaling_increments.
    */
   uint32_t scaling_units;
   /**
-   * The drive counts the other way if not 0.
+   * The drive counts in the other direction if not 0.
    */
   uint32_t scaling_invert;
   /**
-   * What is done with values above the limits: 0 lowers and records, 1 refuses the command.
+   * Treatment of values above the limits: 0 lowers and records them, 1 refuses the command.
    */
   int32_t above_limit;
   /**
@@ -300,24 +303,24 @@ typedef struct standstill_axis_setup {
    */
   double modulo;
   /**
-   * Lowest end of a move (u); -INFINITY for none.
+   * Lowest target of a move (u); -INFINITY for none.
    */
   double software_limit_min;
   /**
-   * Highest end of a move (u); INFINITY for none.
+   * Highest target of a move (u); INFINITY for none.
    */
   double software_limit_max;
   /**
-   * How moves are planned: 0 overlapped, 1 grid, 2 sequential, 3 online, 4 fastest, 5 s_curve, 6 trapezoid,
-   * 7 short_path.
+   * Method of planning moves: 0 overlapped, 1 grid, 2 sequential, 3 online, 4 fastest, 5 s_curve, 6 trapezoid, 7
+   * short_path.
    */
   int32_t profile;
   /**
-   * Commands that can wait, 0 to 16.
+   * Largest number of waiting commands, 0 to 16.
    */
   uint32_t queue;
   /**
-   * When it is switched off in motion: 0 ramps down, 1 coasts, 2 leaves it to the drive.
+   * Reaction to switching off in motion: 0 ramps down, 1 coasts, 2 leaves it to the drive.
    */
   int32_t on_power_off;
   /**
@@ -325,11 +328,11 @@ typedef struct standstill_axis_setup {
    */
   uint32_t needs_homed;
   /**
-   * Deceleration of ramps nobody commanded (u/s^2); 0: the limit.
+   * Deceleration of ramps without a command (u/s^2); 0: the limit.
    */
   double stop_deceleration;
   /**
-   * Jerk of ramps nobody commanded (u/s^3); 0: the limit.
+   * Jerk of ramps without a command (u/s^3); 0: the limit.
    */
   double stop_jerk;
   /**
@@ -341,15 +344,15 @@ typedef struct standstill_axis_setup {
    */
   double max_following_error;
   /**
-   * A move is done when the actual position is this near (u); 0: the set position decides alone.
+   * A move is done when the actual position is this near to the target (u); 0: the set position decides alone.
    */
   double in_position_window;
   /**
-   * .. for so many scans.
+   * .. for this number of scans.
    */
   uint32_t in_position_scans;
   /**
-   * Stops at the limit switches the drive reports if not 0.
+   * Stops at the limit switches that the drive reports if not 0.
    */
   uint32_t hardware_limits;
   /**
@@ -377,51 +380,53 @@ typedef struct standstill_axis_setup {
    */
   double homing_creep;
   /**
-   * An axis slower than this stands at its block (u/s).
+   * An axis slower than this is at rest at its block (u/s).
    */
   double homing_block_velocity;
   /**
-   * .. for so many scans.
+   * .. for this number of scans.
    */
   uint64_t homing_block_scans;
   /**
-   * Scans the search may take; 0: any.
+   * Largest number of scans of the search; 0: any.
    */
   uint64_t homing_time_limit;
   /**
-   * Way the search may take (u); 0: any.
+   * Largest distance of the search (u); 0: any.
    */
   double homing_distance_limit;
   /**
-   * Scans the drive may take to confirm its power, then MC_Power shows error 503; 0: any. A structure that ends before
-   * has 0.
+   * Largest number of scans until the drive confirms its power, then MC_Power shows error 503; 0: any. A
+   * structure that ends before this field has 0.
    */
   uint64_t power_timeout;
   /**
-   * How far a slave may be off the law of its gear (u), then error 420; 0: any distance. This and what follows is 0 in a
-   * structure that ends before.
+   * Largest distance of a slave from the law of its gear (u), then error 420; 0: any distance. In a structure
+   * that ends before this field, it and all later ones are 0.
    */
   double max_deviation;
   /**
-   * What a slave does that cannot keep up: 0 lags and catches up, 1 stops with error 420, 2 has its
-   * master move no faster than the slave can follow while it is in gear.
+   * Reaction of a slave that cannot keep up: 0 lags and catches up, 1 stops with error 420, 2 makes its master
+   * move no faster than the slave can follow while it is in gear.
    */
   int32_t on_limit;
   /**
-   * What a slave does whose master goes out of operation: 0 stops with error 421, 1 comes to rest and stays coupled.
+   * Reaction of a slave whose master goes out of operation: 0 stops with error 421, 1 comes to rest and stays
+   * coupled.
    */
   int32_t on_master_lost;
   /**
-   * As a master of actual values: scans of each of the four averages slaves see them through, at most 64; 0: 16; below 0:
-   * no filter.
+   * As a master of actual values: number of scans of each of the four averages that filter it for slaves, at
+   * most 64; 0: 16; below 0: no filter.
    */
   int32_t actual_filter;
   /**
-   * As a master of actual values: slaves see it ahead by what the filter delays at its velocity, if not 0.
+   * As a master of actual values: slaves see it ahead by the delay of the filter at its velocity, if not 0.
    */
   uint32_t actual_lead;
   /**
-   * What commands get at most: velocity (u/s), at most that of the axis; 0: that of the axis, here and in the next four.
+   * Limits of commands: velocity (u/s), at most that of the axis; 0: that of the axis, here and in the next
+   * four.
    */
   double application_velocity;
   /**
@@ -429,7 +434,7 @@ typedef struct standstill_axis_setup {
    */
   double application_acceleration;
   /**
-   * .. deceleration (u/s^2); 0: the acceleration above, as far as the axis has it.
+   * .. deceleration (u/s^2); 0: the acceleration above, but at most the deceleration of the axis.
    */
   double application_deceleration;
   /**
@@ -441,8 +446,8 @@ typedef struct standstill_axis_setup {
    */
   double application_snap;
   /**
-   * Deceleration of MC_Stop and of ramps nobody commanded, which may be above the limit (u/s^2); 0: the limit, here and in the
-   * next two. With one of the three stop_deceleration and stop_jerk are 0.
+   * Deceleration of MC_Stop and of ramps without a command, which may be above the limit (u/s^2); 0: the limit,
+   * here and in the next two. If one of the three is set, stop_deceleration and stop_jerk must be 0.
    */
   double hard_stop_deceleration;
   /**
@@ -458,7 +463,7 @@ typedef struct standstill_axis_setup {
    */
   int32_t jog_at_limit;
   /**
-   * Absolute targets outside the first turn: 0 error 119, 1 brought into it.
+   * Absolute targets outside the first turn: 0 error 119, 1 moved into it.
    */
   int32_t modulo_targets;
   /**
@@ -466,16 +471,17 @@ typedef struct standstill_axis_setup {
    */
   int32_t edge_while_busy;
   /**
-   * How many derivatives of a cam must go on without a jump for a slave, 1 to 3; below 0: none; 0: 3 with a snap limit, 2 with
-   * a jerk limit, 1 without. Where its limits ask for more, it stops at the rows at which one jumps.
+   * Number of derivatives of a cam that must be continuous for a slave, 1 to 3; below 0: none; 0: 3 with a snap
+   * limit, 2 with a jerk limit, 1 without. If its limits need more, it stops at the rows at which one jumps.
    */
   int32_t cam_continuity;
   /**
-   * Frequency without damping (Hz) in which its load swings; 0: none, and nothing is shaped. RuntimeConfig.history is the memory.
+   * Frequency without damping (Hz) of the load's vibration; 0: none, and nothing is shaped.
+   * RuntimeConfig.history is the memory.
    */
   double vibration_frequency;
   /**
-   * Damping ratio of that, 0 to 0.9.
+   * Its damping ratio, 0 to 0.9.
    */
   double vibration_damping;
   /**
@@ -491,7 +497,7 @@ typedef struct standstill_axis_setup {
    */
   int32_t vibration_shaper;
   /**
-   * That of the second one.
+   * The shaper of the second mode.
    */
   int32_t vibration2_shaper;
 } standstill_axis_setup;
@@ -505,8 +511,8 @@ typedef struct standstill_drive_setup {
    */
   uint32_t size;
   /**
-   * 0: the host's own, by feedback_write and command_read. Simulated: 1 ideal, 2 CiA 402 node (needs a scaling of
-   * the axis), 3 a motor with a mechanism.
+   * 0: the host's own, with feedback_write and command_read. Simulated: 1 ideal, 2 CiA 402 node (needs a scaling
+   * of the axis), 3 a motor with a mechanism.
    */
   int32_t kind;
   /**
@@ -562,16 +568,16 @@ typedef struct standstill_drive_setup {
    */
   double load_damping;
   /**
-   * Largest torque of the motor; 0: any, of a CiA 402 drive three times the rated one.
+   * Largest torque of the motor; 0: any; for a CiA 402 drive three times the rated one.
    */
   double torque_max;
   /**
-   * Simulated, from here on; a structure that ends here has none of it. Limit switches stand along the travel if not
-   * 0.
+   * From here on for simulated drives; a structure that ends here has none of these. There are limit switches
+   * along the travel if not 0.
    */
   uint32_t limit_switches;
   /**
-   * A home switch does if not 0.
+   * There is a home switch if not 0.
    */
   uint32_t home_switch;
   /**
@@ -579,7 +585,7 @@ typedef struct standstill_drive_setup {
    */
   uint32_t marker;
   /**
-   * CiA 402, homing by the drive: 0 upwards, 1 downwards, to where its home switch goes on.
+   * CiA 402, homing by the drive: 0 upwards, 1 downwards, to the edge at which its home switch becomes active.
    */
   int32_t homing_direction;
   /**
@@ -599,11 +605,11 @@ typedef struct standstill_drive_setup {
    */
   double home_switch_to;
   /**
-   * A reference pulse is here (u) ..
+   * Position of a reference pulse (u) ..
    */
   double marker_at;
   /**
-   * .. and one every so many units from there; 0: there is but one.
+   * .. and the distance to the next one (u); 0: there is only one.
    */
   double marker_every;
   /**
@@ -612,7 +618,7 @@ typedef struct standstill_drive_setup {
   double homing_velocity;
   /**
    * CiA 402: rated torque of its motor, which has inertia, viscous, coulomb and torque_max; 0: it has no torque
-   * mode and tells no torque.
+   * mode and reports no torque.
    */
   double rated_torque;
   /**
@@ -624,15 +630,16 @@ typedef struct standstill_drive_setup {
    */
   double stop_damping;
   /**
-   * Where the lower one begins (u).
+   * Begin of the lower one (u).
    */
   double stop_negative;
   /**
-   * Where the upper one begins (u).
+   * Begin of the upper one (u).
    */
   double stop_positive;
   /**
-   * Mechanism, its loops: position (1/s); NaN: what holds any rigid mechanism. So the next two.
+   * Mechanism, its loops: position (1/s); NaN: a value that is stable for any rigid mechanism. The same for the
+   * next two.
    */
   double gain_position;
   /**
@@ -654,7 +661,7 @@ typedef struct standstill_drive_setup {
 } standstill_drive_setup;
 
 /**
- * Why a configuration was refused.
+ * The reason why a configuration was refused.
  */
 typedef struct standstill_config_fault {
   /**
@@ -666,17 +673,17 @@ typedef struct standstill_config_fault {
    */
   uint32_t reserved;
   /**
-   * The value refused; 0 where it is no number.
+   * The refused value; 0 if it is no number.
    */
   double value;
   /**
-   * The key, as scan scripts call it, ending in 0; empty: nothing was refused.
+   * The key, as in scan scripts, with a 0 at its end; empty: nothing was refused.
    */
   char key[STANDSTILL_NAME];
 } standstill_config_fault;
 
 /**
- * An axis as it stands.
+ * The present data of an axis.
  */
 typedef struct standstill_axis_status {
   /**
@@ -731,8 +738,8 @@ typedef struct standstill_axis_status {
 } standstill_axis_status;
 
 /**
- * What a host's own drive tells in a tick. It is taken by the next tick_begin, once: a tick without a new one has lost
- * its communication with the drive.
+ * The report of a host's own drive in a tick. The next tick_begin takes it, once: a tick without a new report has
+ * lost its communication with the drive.
  */
 typedef struct standstill_feedback {
   /**
@@ -752,15 +759,15 @@ typedef struct standstill_feedback {
    */
   uint8_t fault;
   /**
-   * .. and its cause is still there.
+   * .. and its cause is still present.
    */
   uint8_t cause_present;
   /**
-   * The drive's own error code: of its fault, or of its homing that failed.
+   * The drive's own error code: of its fault, or of its failed homing.
    */
   uint16_t fault_code;
   /**
-   * The feedback is old: nothing arrived.
+   * The feedback is old: no new one has arrived.
    */
   uint8_t lost;
   /**
@@ -776,7 +783,7 @@ typedef struct standstill_feedback {
    */
   uint8_t limit_switch_positive;
   /**
-   * The one in negative direction.
+   * The limit switch in negative direction.
    */
   uint8_t limit_switch_negative;
   /**
@@ -784,19 +791,19 @@ typedef struct standstill_feedback {
    */
   uint8_t simulated;
   /**
-   * Actual position (u), of an axis without scaling.
+   * Actual position (u) of an axis without scaling.
    */
   double position;
   /**
-   * Actual position, of an axis with scaling.
+   * Actual position of an axis with scaling.
    */
   int64_t increments;
   /**
-   * Digital inputs, a bit each.
+   * Digital inputs, one bit each.
    */
   uint32_t inputs;
   /**
-   * Digital outputs as they are, a bit each.
+   * Present digital outputs, one bit each.
    */
   uint32_t outputs;
   /**
@@ -812,11 +819,11 @@ typedef struct standstill_feedback {
    */
   uint8_t torque_known;
   /**
-   * It does not hold the torque it is asked for.
+   * It does not hold the requested torque.
    */
   uint8_t torque_limited;
   /**
-   * It has a home switch, so the next three.
+   * It has a home switch; the next three are alike.
    */
   uint8_t has_home_switch;
   /**
@@ -852,7 +859,7 @@ typedef struct standstill_feedback {
    */
   int32_t homing;
   /**
-   * Where probes saw it (u).
+   * Positions at the edges of the probes (u).
    */
   double probe_position[2];
   /**
@@ -860,7 +867,7 @@ typedef struct standstill_feedback {
    */
   int64_t probe_increments[2];
   /**
-   * Where the reference pulse was (u).
+   * Position at the reference pulse (u).
    */
   double marker_position;
   /**
@@ -868,7 +875,7 @@ typedef struct standstill_feedback {
    */
   int64_t marker_increments;
   /**
-   * Where the reference is, attained or done (u).
+   * Position of the reference, attained or done (u).
    */
   double home_position;
   /**
@@ -878,7 +885,7 @@ typedef struct standstill_feedback {
 } standstill_feedback;
 
 /**
- * What a host's own drive is told, after tick_end.
+ * The command for a host's own drive, after tick_end.
  */
 typedef struct standstill_command {
   /**
@@ -894,19 +901,19 @@ typedef struct standstill_command {
    */
   double position;
   /**
-   * The same of an axis with scaling.
+   * The same for an axis with scaling.
    */
   int64_t increments;
   /**
-   * Velocity (u/s), to feed forward.
+   * Velocity (u/s) for feed-forward.
    */
   double velocity;
   /**
-   * From now on the position of the command before is called this (u); if renamed.
+   * From now on the position of the previous command has this value (u); valid if renamed.
    */
   double rename;
   /**
-   * Torque to hold instead of the position; if has_torque.
+   * Torque to hold instead of the position; valid if has_torque.
    */
   double torque;
   /**
@@ -918,11 +925,11 @@ typedef struct standstill_command {
    */
   double velocity_max;
   /**
-   * Digital outputs, a bit each.
+   * Digital outputs, one bit each.
    */
   uint32_t outputs;
   /**
-   * Positions are called anew: rename.
+   * Positions are renamed: see rename.
    */
   uint8_t renamed;
   /**
@@ -930,7 +937,7 @@ typedef struct standstill_command {
    */
   uint8_t has_torque;
   /**
-   * The next reference pulse is to be latched.
+   * The drive is to latch the next reference pulse.
    */
   uint8_t marker;
   /**
@@ -938,7 +945,7 @@ typedef struct standstill_command {
    */
   uint8_t homing;
   /**
-   * What probes 1 and 2 wait for: 0 nothing, 1 a rising edge, 2 a falling one.
+   * Edges that probes 1 and 2 wait for: 0 none, 1 a rising edge, 2 a falling one.
    */
   uint8_t probe_edge[2];
   /**
@@ -956,7 +963,7 @@ typedef struct standstill_record {
    */
   uint64_t number;
   /**
-   * The tick it happened in, from 0.
+   * The tick in which it happened, from 0.
    */
   uint64_t scan;
   /**
@@ -977,15 +984,15 @@ typedef struct standstill_record {
    */
   uint32_t error_id;
   /**
-   * Scans of a plan, number of a point, or code of a drive.
+   * Number of scans of a plan, number of a point, or code of a drive.
    */
   uint64_t count;
   /**
-   * What was asked for; the excess of velocity; where to; the velocity.
+   * The requested value; the excess of velocity; the target; the velocity.
    */
   double value;
   /**
-   * What was used instead, or the limit; the excess of acceleration; the velocity when passing.
+   * The value used instead, or the limit; the excess of acceleration; the velocity when passing.
    */
   double limit;
   /**
@@ -993,13 +1000,13 @@ typedef struct standstill_record {
    */
   double third;
   /**
-   * Name of the pin or field, ending in 0; empty: the axis state decided.
+   * Name of the pin or field, with a 0 at its end; empty: the axis state decided.
    */
   char name[STANDSTILL_NAME];
 } standstill_record;
 
 /**
- * How much a flight recorder keeps, and when it stops.
+ * The extent of a flight recorder, and its trigger.
  */
 typedef struct standstill_recorder_config {
   /**
@@ -1011,15 +1018,15 @@ typedef struct standstill_recorder_config {
    */
   uint32_t scans;
   /**
-   * Of these, scans after that of the trigger; less than scans.
+   * Of these, the number of scans after that of the trigger; less than scans.
    */
   uint32_t after;
   /**
-   * Records (plans, refusals, faults) that are kept, up to 2^24; older ones give way.
+   * Number of records (plans, refusals, faults) that are kept, up to 2^24; newer ones replace older ones.
    */
   uint32_t records;
   /**
-   * What freezes it: 0 an axis that goes into ErrorStop, or recorder_trip; 1 only recorder_trip.
+   * The event that freezes it: 0 an axis that goes into ErrorStop, or recorder_trip; 1 only recorder_trip.
    */
   int32_t trigger;
   /**
@@ -1029,15 +1036,16 @@ typedef struct standstill_recorder_config {
 } standstill_recorder_config;
 
 /**
- * One of the things a flight recorder has names for: a block instance, which is recorded, or an axis, which is anyway.
+ * A name for a flight recorder: of a block instance, which is then recorded, or of an axis, which is always
+ * recorded.
  */
 typedef struct standstill_recorded {
   /**
-   * Key of the instance, of an entry that is no axis.
+   * Key of the instance, if the entry is no axis.
    */
   uint64_t key;
   /**
-   * Number of the axis; 0: it is an instance.
+   * Number of the axis; 0: the entry is an instance.
    */
   int32_t axis;
   /**
@@ -1045,17 +1053,18 @@ typedef struct standstill_recorded {
    */
   uint32_t reserved;
   /**
-   * What columns of the trace are called: an IEC identifier, ended by 0. An axis without an entry is axis1, ..
+   * The name in columns of the trace: an IEC identifier, with a 0 at its end. An axis without an entry is axis1,
+   * ..
    */
   char name[STANDSTILL_NAME];
   /**
-   * Label of the axis' unit, or empty; ended by 0.
+   * Label of the axis' unit, or empty; with a 0 at its end.
    */
   char unit[STANDSTILL_UNIT];
 } standstill_recorded;
 
 /**
- * A flight recorder as it stands.
+ * The present state of a flight recorder.
  */
 typedef struct standstill_recorder_status {
   /**
@@ -1067,29 +1076,29 @@ typedef struct standstill_recorder_status {
    */
   int32_t state;
   /**
-   * Number of the first scan that is there.
+   * Number of the first scan in it.
    */
   uint64_t first;
   /**
-   * Scans that are there.
+   * Number of scans in it.
    */
   uint64_t scans;
   /**
-   * The scan that tripped it; if it has.
+   * The scan that tripped it, if it has tripped.
    */
   uint64_t tripped_at;
   /**
-   * The axis that went into ErrorStop then; 0: the host tripped it.
+   * The axis that went into ErrorStop; 0: the host tripped it.
    */
   int32_t axis;
   /**
-   * Scans until it freezes; if it has tripped.
+   * Number of scans until it freezes, if it has tripped.
    */
   uint32_t left;
 } standstill_recorder_status;
 
 /**
- * How far the text of a flight recorder has been read.
+ * The progress of reading the text of a flight recorder.
  */
 typedef struct standstill_dump {
   /**
@@ -1097,19 +1106,19 @@ typedef struct standstill_dump {
    */
   uint32_t size;
   /**
-   * Which text: 0 JSON Lines, all in one; 1 CSV, 2 the header that stands in NAME.csv.meta.json beside it.
+   * The text: 0 JSON Lines, all in one; 1 CSV, 2 the header for the file NAME.csv.meta.json beside it.
    */
   int32_t form;
   /**
-   * The line to go on with; 0 before the first piece, and so the others.
+   * The line to continue with; 0 before the first part, like the other fields.
    */
   uint64_t line;
   /**
-   * Bytes of it that were there already.
+   * Number of its bytes that were already read.
    */
   uint64_t skip;
   /**
-   * What the recorder was at the first piece.
+   * The recorder's stamp at the first part.
    */
   uint64_t stamp;
 } standstill_dump;
@@ -1129,15 +1138,16 @@ uint32_t standstill_abi_version(void);
 const char *standstill_result_text(int32_t result);
 
 /**
- * The bytes of storage a runtime needs.
+ * Number of bytes of storage that a runtime needs.
  *
  * Codes: NULL_POINTER, STRUCT_SIZE, BAD_VALUE (a size of the configuration is 0 or too large).
  */
 int32_t standstill_runtime_size(const struct standstill_runtime_config *config, size_t *bytes);
 
 /**
- * Makes a runtime without axes in `storage`, which is aligned to 16 bytes, has what runtime_size tells, and belongs to
- * the runtime until it is closed. `abi_version` is STANDSTILL_ABI_VERSION. Nothing has to be freed.
+ * Makes a runtime without axes in `storage`. The storage is aligned to 16 bytes, has the size that runtime_size
+ * returns, and belongs to the runtime until it is closed. `abi_version` is STANDSTILL_ABI_VERSION. Nothing has to
+ * be freed.
  *
  * Codes: ABI_MISMATCH, NULL_POINTER, STRUCT_SIZE, BAD_VALUE, STORAGE.
  */
@@ -1148,7 +1158,8 @@ int32_t standstill_runtime_init(uint32_t abi_version,
                                 struct standstill_runtime **runtime);
 
 /**
- * Ends a runtime whose axes are all off; its storage belongs to the host again, its handle and keys mean nothing.
+ * Ends a runtime whose axes are all off. Its storage belongs to the host again; its handle and keys are no longer
+ * valid.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, NOT_OFF.
  */
@@ -1162,7 +1173,7 @@ int32_t standstill_runtime_close(struct standstill_runtime *runtime);
 int32_t standstill_axis_defaults(struct standstill_axis_setup *setup);
 
 /**
- * Describes an ideal drive: it follows every set-point in the next tick. `size` must be set before.
+ * Describes an ideal drive, which follows every set-point in the next tick. `size` must be set before.
  *
  * Codes: NULL_POINTER, STRUCT_SIZE.
  */
@@ -1179,15 +1190,15 @@ int32_t standstill_axis_add(struct standstill_runtime *runtime,
                             int32_t *axis);
 
 /**
- * What the last BAD_CONFIG of this runtime was about.
+ * The key and the value of the last BAD_CONFIG of this runtime.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE.
  */
 int32_t standstill_config_error(struct standstill_runtime *runtime, struct standstill_config_fault *fault);
 
 /**
- * Begins a tick at the instant `now_ns` of a monotonic clock: drives are read, axis states follow. Blocks may be called
- * then, by this thread, until tick_end.
+ * Begins a tick at the instant `now_ns` of a monotonic clock: drives are read, and axis states are updated. This
+ * thread may then call blocks until tick_end.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, TIME_BACKWARDS, INTERNAL.
  */
@@ -1201,8 +1212,8 @@ int32_t standstill_tick_begin(struct standstill_runtime *runtime, int64_t now_ns
 int32_t standstill_tick_end(struct standstill_runtime *runtime);
 
 /**
- * Stops the resource, in a tick or between two: blocks are not called any more, every axis stops and switches off as
- * it is set up to. That takes further ticks, so go on with them.
+ * Stops the resource, inside a tick or between two: blocks are no longer called, and every axis stops and switches
+ * off as configured. This takes further ticks, so continue with them.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD.
  */
@@ -1216,22 +1227,22 @@ int32_t standstill_stop(struct standstill_runtime *runtime);
 int32_t standstill_start(struct standstill_runtime *runtime);
 
 /**
- * Gives the place of a block instance back and sets its key to 0. What the instance commanded goes on.
+ * Frees the place of a block instance and sets its key to 0. The command of the instance continues.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, UNKNOWN_KEY.
  */
 int32_t standstill_instance_release(struct standstill_runtime *runtime, uint64_t *key);
 
 /**
- * An axis as it stands: its state, set-point, actual position and error. After tick_end the set-point is the one of
- * this tick.
+ * The present data of an axis: its state, set-point, actual position and error. After tick_end the set-point is
+ * that of this tick.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE, UNKNOWN_AXIS.
  */
 int32_t standstill_axis_read(struct standstill_runtime *runtime, int32_t axis, struct standstill_axis_status *status);
 
 /**
- * Tells what the host's own drive under `axis` says; before every tick_begin.
+ * Passes on the report of the host's own drive under `axis`. Call it before every tick_begin.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, UNKNOWN_AXIS, WRONG_DRIVE, BAD_VALUE.
  */
@@ -1240,23 +1251,23 @@ int32_t standstill_feedback_write(struct standstill_runtime *runtime,
                                   const struct standstill_feedback *feedback);
 
 /**
- * Asks what the host's own drive under `axis` is told; after every tick_end.
+ * Reads the command for the host's own drive under `axis`. Call it after every tick_end.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, UNKNOWN_AXIS, WRONG_DRIVE.
  */
 int32_t standstill_command_read(struct standstill_runtime *runtime, int32_t axis, struct standstill_command *command);
 
 /**
- * Lets something befall the simulated drive under `axis`, or clears the cause of it; `mishap` is one of
- * standstill_mishap, `code` what the drive or the axis calls its fault. WRONG_DRIVE also for what only a CiA 402 drive
- * knows.
+ * Applies a disturbance to the simulated drive under `axis`, or clears its cause. `mishap` is one of
+ * standstill_mishap, `code` the number of the fault in the drive or the axis. WRONG_DRIVE also for a disturbance
+ * that only a CiA 402 drive knows.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
  */
 int32_t standstill_simulate(struct standstill_runtime *runtime, int32_t axis, int32_t mishap, uint16_t code);
 
 /**
- * Sets the digital input `number`, 0 to 31, of the simulated drive under `axis` to `level`; it shows from the next
+ * Sets the digital input `number`, 0 to 31, of the simulated drive under `axis` to `level`. It shows from the next
  * tick_begin on.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
@@ -1264,8 +1275,9 @@ int32_t standstill_simulate(struct standstill_runtime *runtime, int32_t axis, in
 int32_t standstill_simulate_input(struct standstill_runtime *runtime, int32_t axis, uint32_t number, uint8_t level);
 
 /**
- * Sets the input of touch probe `number`, 1 or 2, of the simulated drive under `axis` to `level`, from the part `at`
- * (0 to 1) of the cycle on that ends with the next tick_begin. Up to four changes before a tick are kept.
+ * Sets the input of touch probe `number`, 1 or 2, of the simulated drive under `axis` to `level`. The change is at
+ * the part `at` (0 to 1) of the cycle that ends with the next tick_begin. Up to four changes before a tick are
+ * kept.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
  */
@@ -1276,8 +1288,8 @@ int32_t standstill_simulate_probe(struct standstill_runtime *runtime,
                                   uint8_t level);
 
 /**
- * Somebody pushes the axis by `distance` while the power stage of its simulated drive is off: in units, with a CiA 402
- * drive and an ideal one that counts in increments.
+ * Pushes the axis by `distance` while the power stage of its simulated drive is off. The distance is in units;
+ * with a CiA 402 drive, and an ideal one that counts, in increments.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE, NOT_OFF (it has
  * torque).
@@ -1285,21 +1297,19 @@ int32_t standstill_simulate_probe(struct standstill_runtime *runtime,
 int32_t standstill_simulate_push(struct standstill_runtime *runtime, int32_t axis, double distance);
 
 /**
- * Has the simulated drive under `axis` tell `value` instead of what it measures, from the next tick_begin on until
- * standstill_simulate clears the cause. `quantity` 0: its position, in increments if the axis has a scaling, else in units;
- * 1: its actual torque, if it tells one. A number of units or torque may be NaN or infinite, one of increments is whole.
+ * Makes the simulated drive under `axis` report `value` instead of its measurement, from the next tick_begin on
+ * until standstill_simulate clears the cause. `quantity` 0: its position, in increments if the axis has a scaling,
+ * otherwise in units; 1: its actual torque, if it reports one. A number of units or torque may be NaN or infinite;
+ * a number of increments must be whole.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
  */
-int32_t standstill_simulate_report(struct standstill_runtime *runtime,
-                                   int32_t axis,
-                                   int32_t quantity,
-                                   double value);
+int32_t standstill_simulate_report(struct standstill_runtime *runtime, int32_t axis, int32_t quantity, double value);
 
 /**
- * Copies records of the diagnostic ring, oldest first, from number `*next` on; `*next` becomes the number to go on
- * from, and `*copied` how many there are. Records that were overwritten meanwhile are left out: their numbers are.
- * `record_size` is sizeof(standstill_record), `room` how many records fit.
+ * Copies records of the diagnostic ring, oldest first, from number `*next` on. `*next` becomes the number to
+ * continue from, and `*copied` the number of records. Records that were overwritten meanwhile are left out, with
+ * their numbers. `record_size` is sizeof(standstill_record), `room` the number of records that fit.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE.
  */
@@ -1311,18 +1321,16 @@ int32_t standstill_log_read(struct standstill_runtime *runtime,
                             uint32_t *copied);
 
 /**
- * The bytes of storage that a store of cams needs: for `slots` cams, 1 to 65535, and `pieces` of them in all, 1 to 2^24; a
- * cam takes one less than it has rows.
+ * Number of bytes of storage that a store of cams needs: for `slots` cams, 1 to 65535, and `pieces` pieces in all,
+ * 1 to 2^24. A cam takes one piece less than it has rows.
  *
  * Codes: NULL_POINTER, BAD_VALUE.
  */
-int32_t standstill_cams_size(uint32_t slots,
-                             uint32_t pieces,
-                             size_t *bytes);
+int32_t standstill_cams_size(uint32_t slots, uint32_t pieces, size_t *bytes);
 
 /**
- * Sets a store of cams up in `storage`, which is aligned to 16 bytes, has what cams_size tells, and belongs to the runtime
- * until runtime_close. Without one MC_CamTableSelect shows ErrorID 153.
+ * Sets up a store of cams in `storage`. The storage is aligned to 16 bytes, has the size that cams_size returns,
+ * and belongs to the runtime until runtime_close. Without a store MC_CamTableSelect shows ErrorID 153.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STORAGE, NO_ROOM (there is one already), BAD_VALUE.
  */
@@ -1333,8 +1341,8 @@ int32_t standstill_cams_init(struct standstill_runtime *runtime,
                              uint32_t pieces);
 
 /**
- * The bytes of storage that a flight recorder needs: of all axes of the runtime, and of the block instances in the
- * list `recorded` of `count` entries, each of `recorded_size` bytes, sizeof(standstill_recorded).
+ * Number of bytes of storage that a flight recorder needs, for all axes of the runtime and the block instances in
+ * the list `recorded`. The list has `count` entries, each of `recorded_size` bytes, sizeof(standstill_recorded).
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE, UNKNOWN_KEY, BAD_VALUE (a number of the configuration).
  */
@@ -1346,13 +1354,13 @@ int32_t standstill_recorder_size(struct standstill_runtime *runtime,
                                  size_t *bytes);
 
 /**
- * Sets a flight recorder up in `storage`, which is aligned to 16 bytes, has what recorder_size tells, and belongs to
- * the runtime until recorder_end or runtime_close. From now on every tick_end keeps a scan. Axes that are added later
- * are not recorded.
+ * Sets up a flight recorder in `storage`. The storage is aligned to 16 bytes, has the size that recorder_size
+ * returns, and belongs to the runtime until recorder_end or runtime_close. From now on every tick_end keeps a
+ * scan. Axes that are added later are not recorded.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, STORAGE, UNKNOWN_AXIS, UNKNOWN_KEY, NO_ROOM
- * (there is one already), BAD_VALUE (also: a name is no IEC identifier, is not ended by 0, or stands twice; a unit
- * with quotes).
+ * (there is one already), BAD_VALUE (also: a name that is no IEC identifier, has no 0 at its end, or occurs twice;
+ * a unit with quotes).
  */
 int32_t standstill_recorder_init(struct standstill_runtime *runtime,
                                  void *storage,
@@ -1370,7 +1378,7 @@ int32_t standstill_recorder_init(struct standstill_runtime *runtime,
 int32_t standstill_recorder_end(struct standstill_runtime *runtime);
 
 /**
- * Trips the flight recorder in the tick that is open or comes next, for a reason of the host's; without effect on one
+ * Trips the flight recorder in the open or the next tick, for a reason of the host's own. No effect on a recorder
  * that has tripped.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, NO_RECORDER.
@@ -1378,29 +1386,30 @@ int32_t standstill_recorder_end(struct standstill_runtime *runtime);
 int32_t standstill_recorder_trip(struct standstill_runtime *runtime);
 
 /**
- * The flight recorder forgets everything and waits for the next trigger.
+ * Deletes the contents of the flight recorder and waits for the next trigger.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, NO_RECORDER.
  */
 int32_t standstill_recorder_arm(struct standstill_runtime *runtime);
 
 /**
- * Where the flight recorder stands.
+ * The state of the flight recorder.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE, NO_RECORDER.
  */
 int32_t standstill_recorder_state(struct standstill_runtime *runtime, struct standstill_recorder_status *status);
 
 /**
- * Copies the next piece of the flight recorder's text to `buffer`, which has `room` bytes, and tells how many they
- * are: 0 after the last one. `dump` says which text and how far it is: all 0 but its size and form before the first
- * call. The text is a trace, as `standstill explain`, `report` and `compare` read it; no 0 ends it.
+ * Copies the next part of the flight recorder's text to `buffer`, which has `room` bytes, and returns the number
+ * of bytes: 0 after the last one. `dump` selects the text and has the progress: set all fields except its size and
+ * form to 0 before the first call. The text is a trace for `standstill explain`, `report` and `compare`; it has no
+ * 0 at its end.
  *
- * A line that does not fit is begun anew in the next call, so a buffer of some kilobytes is quicker than one of some
- * bytes. Between the pieces no scan may be kept: dump a recorder that is frozen, or between two ticks.
+ * A line that does not fit is begun again in the next call, so a buffer of some kilobytes is faster than one of
+ * some bytes. No scan may be kept between the parts: dump a frozen recorder, or dump between two ticks.
  *
- * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, NO_RECORDER, BAD_VALUE (no such form; or scans
- * were kept since the first piece).
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, NO_RECORDER, BAD_VALUE (no such form; or
+ * scans were kept since the first part).
  */
 int32_t standstill_recorder_read(struct standstill_runtime *runtime,
                                  struct standstill_dump *dump,
@@ -1409,8 +1418,8 @@ int32_t standstill_recorder_read(struct standstill_runtime *runtime,
                                  size_t *length);
 
 /**
- * Makes an instance of the block of this IEC name before it is first called, and sets its key; for a flight recorder,
- * which wants keys. A call with a key of 0 does the same.
+ * Makes an instance of the block with this IEC name before its first call, and sets its key. A flight recorder
+ * needs keys. A call with a key of 0 does the same.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, BAD_VALUE (no block has this name), NO_ROOM.
  */

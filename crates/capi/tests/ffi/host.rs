@@ -22,7 +22,7 @@ pub fn config(axes: u32, instances: u32) -> RuntimeConfig {
 
 pub fn size_of_runtime(config: &RuntimeConfig) -> usize {
     let mut bytes = 0;
-    // SAFETY: both lead to what they say.
+    // SAFETY: both pointers are valid for their types.
     assert_eq!(unsafe { standstill_runtime_size(config, &mut bytes) }, 0);
     bytes
 }
@@ -65,7 +65,7 @@ impl Host {
 
     pub fn add(&self, axis: &AxisSetup, drive: &DriveSetup) -> Result<i32, i32> {
         let mut number = 0;
-        // SAFETY: all lead to what they say.
+        // SAFETY: all pointers are valid for their types.
         match unsafe { standstill_axis_add(self.runtime, axis, drive, &mut number) } {
             0 => Ok(number),
             code => Err(code),
@@ -107,7 +107,7 @@ impl Host {
 
     pub fn status_of(&self, axis: i32) -> AxisStatus {
         let mut status = MaybeUninit::<AxisStatus>::zeroed();
-        // SAFETY: numbers all, and the size is set.
+        // SAFETY: all fields are numbers, and the size is set.
         unsafe {
             status.assume_init_mut().size = size_of::<AxisStatus>() as u32;
             assert_eq!(standstill_axis_read(self.runtime, axis, status.as_mut_ptr()), 0);
@@ -115,7 +115,7 @@ impl Host {
         }
     }
 
-    /// Ticks until every axis is off and closes; the largest step of a position on the way.
+    /// Ticks until every axis is off, and closes. Returns the largest step of a position.
     pub fn run_down(&self, from: i64) -> f64 {
         let mut largest = 0.0_f64;
         for scan in from..from + 2000 {

@@ -75,7 +75,7 @@ fn velocity(
     inputs: &MoveVelocityIn,
     outputs: &mut MoveVelocityOut,
 ) -> i32 {
-    // SAFETY: all lead to what they say; the runtime is null or a handle.
+    // SAFETY: all pointers are valid for their types; the runtime is null or a handle.
     unsafe {
         mc_move_velocity(
             runtime,
@@ -171,7 +171,7 @@ fn a_store_of_cams_is_set_up_once_in_memory_that_is_long_enough_and_aligned() {
     let host = Host::powered();
     let size = |slots, pieces| {
         let mut bytes = 0;
-        // SAFETY: it leads to what it says.
+        // SAFETY: the pointer is valid for its type.
         let code = unsafe { standstill_cams_size(slots, pieces, &mut bytes) };
         (code, bytes)
     };
@@ -296,7 +296,7 @@ fn calls_have_their_place_in_a_tick() {
     assert_eq!(host.end(), 0);
     assert_eq!(host.begin(50_000_000), 0, "the same instant again");
     assert_eq!(host.end(), 0);
-    // After all of that the axis is where it would be without: it was advanced once for each tick.
+    // After all of that the axis is at the same position as without: it was advanced once for each tick.
     let (other, mut key) = moving();
     for scan in [50, 50] {
         assert_eq!(other.begin(scan * 1_000_000), 0);
@@ -364,10 +364,10 @@ fn unknown_keys_and_keys_of_other_blocks_call_nothing() {
     let mut given = [0_u8; 128];
     let mut taken = [0_u8; 128];
     (given[0], taken[0]) = (128, 128);
-    // SAFETY: as their sizes say.
+    // SAFETY: as long as their size fields say.
     let code = unsafe { mc_stop(host.runtime, &mut key, given.as_ptr(), taken.as_mut_ptr()) };
     assert_eq!(code, Code::WrongBlock as i32);
-    // A key is good until its place is given back.
+    // A key is valid until its place is released.
     let mut old = key;
     // SAFETY: a handle, and keys.
     unsafe {
@@ -419,7 +419,7 @@ fn an_axis_of_no_number_is_the_blocks_own_error() {
     assert_eq!(velocity(host.runtime, &mut key, &inputs(), &mut out), 0);
     assert_eq!(host.end(), 0);
     let mut status = host.status();
-    // SAFETY: as its size says.
+    // SAFETY: as long as its size field says.
     let read = |axis, status: &mut AxisStatus| unsafe { standstill_axis_read(host.runtime, axis, status) };
     for axis in [0, 2, -1, i32::MIN] {
         assert_eq!(read(axis, &mut status), Code::UnknownAxis as i32);
@@ -445,7 +445,7 @@ fn a_configuration_that_cannot_be_used_is_named() {
             0.0,
         ),
         (AxisSetup { jerk: -5.0, ..axis }, drive, "limits.jerk", -5.0),
-        // Nothing is lent for its past: this is what it needs.
+        // There is no memory for its past; this is the need.
         (shaped, drive, "vibration", 170.0),
         (
             AxisSetup {
@@ -473,7 +473,7 @@ fn a_configuration_that_cannot_be_used_is_named() {
     for (axis, drive, key, value) in rows {
         assert_eq!(host.add(&axis, &drive), Err(Code::BadConfig as i32));
         let mut fault = MaybeUninit::<ConfigFault>::zeroed();
-        // SAFETY: numbers all, the size is set, and the key ends in 0.
+        // SAFETY: all fields are numbers, the size is set, and the key ends in 0.
         unsafe {
             fault.assume_init_mut().size = size_of::<ConfigFault>() as u32;
             assert_eq!(standstill_config_error(host.runtime, fault.as_mut_ptr()), 0);
@@ -487,7 +487,7 @@ fn a_configuration_that_cannot_be_used_is_named() {
     assert_eq!(host.close(), Code::NoRuntime as i32);
 }
 
-/// A period of 84 scans later than without.
+/// A period of 84 scans later than without shaping.
 #[test]
 fn a_shaped_axis_has_its_velocity_when_all_of_it_has_come_out() {
     let host = Host::made(&RuntimeConfig {
@@ -563,7 +563,7 @@ fn two_threads_are_never_in_one_runtime() {
 #[test]
 fn threads_that_race_for_a_runtime_get_a_code_or_a_whole_tick() {
     struct Shared(*mut Runtime);
-    // SAFETY: the runtime refuses whoever is not alone.
+    // SAFETY: the runtime refuses a second thread.
     unsafe impl Send for Shared {}
     let (host, _) = moving();
     let rounds = if cfg!(miri) { 20 } else { 20_000 };
@@ -590,7 +590,7 @@ fn threads_that_race_for_a_runtime_get_a_code_or_a_whole_tick() {
         .collect();
     let ticks: u64 = workers.into_iter().map(|worker| worker.join().unwrap()).sum();
     assert!(ticks > 0);
-    // Each tick advanced the motion once: at 10 u/s it went a hundredth of a unit in each.
+    // Each tick advanced the motion once: at 10 u/s by a hundredth of a unit.
     let went = host.status().position;
     assert!(
         (went - (ticks as f64 - 1.0) * 0.01).abs() < 1.0,
@@ -636,11 +636,11 @@ fn a_host_that_goes_silent_loses_its_own_drive_and_the_axis_stops() {
     (axis.start_powered, drive.kind) = (1, 0);
     assert_eq!(host.add(&axis, &drive), Ok(1));
     let mut feedback = MaybeUninit::<Feedback>::zeroed();
-    // SAFETY: numbers all.
+    // SAFETY: all fields are numbers.
     let feedback = unsafe { feedback.assume_init_mut() };
     feedback.size = size_of::<Feedback>() as u32;
     (feedback.enabled, feedback.voltage) = (1, 1);
-    // SAFETY: as its size says.
+    // SAFETY: as long as its size field says.
     let tell = |feedback: &Feedback| unsafe { standstill_feedback_write(host.runtime, 1, feedback) };
     // SAFETY: a handle.
     let harm = unsafe { standstill_simulate(host.runtime, 1, 1, 5) };
@@ -654,7 +654,7 @@ fn a_host_that_goes_silent_loses_its_own_drive_and_the_axis_stops() {
         assert_eq!(velocity(host.runtime, &mut key, &inputs(), &mut out), 0);
         assert_eq!(host.end(), 0);
         let mut command = MaybeUninit::<Command>::zeroed();
-        // SAFETY: numbers all, and the size is set.
+        // SAFETY: all fields are numbers, and the size is set.
         unsafe {
             command.assume_init_mut().size = size_of::<Command>() as u32;
             assert_eq!(standstill_command_read(host.runtime, 1, command.as_mut_ptr()), 0);
@@ -713,7 +713,7 @@ fn a_feedback_that_is_no_number_is_refused_and_the_axis_tells_why_it_stops() {
     (axis.start_powered, drive.kind) = (1, 0);
     assert_eq!(host.add(&axis, &drive), Ok(1));
     let mut feedback = MaybeUninit::<Feedback>::zeroed();
-    // SAFETY: numbers all.
+    // SAFETY: all fields are numbers.
     let feedback = unsafe { feedback.assume_init_mut() };
     feedback.size = size_of::<Feedback>() as u32;
     (feedback.enabled, feedback.voltage) = (1, 1);
@@ -721,7 +721,7 @@ fn a_feedback_that_is_no_number_is_refused_and_the_axis_tells_why_it_stops() {
         position: f64::NAN,
         ..*feedback
     };
-    // SAFETY: as its size says.
+    // SAFETY: as long as its size field says.
     let tell = |feedback: &Feedback| unsafe { standstill_feedback_write(host.runtime, 1, feedback) };
     let bad = Code::BadValue as i32;
     let mut now = 0;
@@ -733,7 +733,7 @@ fn a_feedback_that_is_no_number_is_refused_and_the_axis_tells_why_it_stops() {
         assert!(status.position == 0.0 && status.actual_position == 0.0);
         (status.state, status.error_id)
     };
-    // A refused one changes nothing beside one that was taken in the same tick, before or after it.
+    // A refused report does not change an accepted one of the same tick, before or after it.
     assert_eq!((tell(feedback), tell(&wrong)), (0, bad));
     assert_eq!(tick(), (1, 0));
     assert_eq!((tell(&wrong), tell(feedback)), (bad, 0));
@@ -741,7 +741,7 @@ fn a_feedback_that_is_no_number_is_refused_and_the_axis_tells_why_it_stops() {
     // Alone it leaves the tick without feedback.
     assert_eq!(tell(&wrong), bad);
     assert_eq!(tick(), (7, 602));
-    // The first error stays, whatever comes then.
+    // The first error stays, for any later ones.
     assert_eq!(tick(), (7, 602));
 }
 
@@ -763,7 +763,7 @@ fn simulated_drives_fail_when_told_to() {
     assert_eq!(simulate(0, 0), 0);
 }
 
-/// A profile of two points, and tables that are no good.
+/// A profile of two points, and invalid tables.
 #[test]
 fn arrays_come_as_an_address_and_a_count() {
     #[repr(C)]

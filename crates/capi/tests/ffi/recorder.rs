@@ -42,7 +42,7 @@ fn entry(key: u64, axis: i32, name: &str, unit: &str) -> Recorded {
 
 fn make(host: &Host, block: &CStr) -> Result<u64, i32> {
     let mut key = 0;
-    // SAFETY: all lead to what they say.
+    // SAFETY: all pointers are valid for their types.
     match unsafe { standstill_instance_make(host.runtime, block.as_ptr(), &mut key) } {
         0 => Ok(key),
         code => Err(code),
@@ -52,11 +52,11 @@ fn make(host: &Host, block: &CStr) -> Result<u64, i32> {
 /// Memory of a recorder, which outlives it in every test.
 fn init(host: &Host, config: &RecorderConfig, recorded: &[Recorded]) -> Result<Vec<u128>, i32> {
     let (mut bytes, count) = (0, recorded.len() as u32);
-    // SAFETY: all lead to what they say.
+    // SAFETY: all pointers are valid for their types.
     let code = unsafe {
         standstill_recorder_size(host.runtime, config, recorded.as_ptr(), ENTRY, count, &mut bytes)
     };
-    // Names are looked at when it is made.
+    // Names are checked when it is made.
     let bytes = if code == 0 { bytes } else { 4096 };
     let mut storage = vec![0_u128; bytes.div_ceil(16)];
     // SAFETY: the storage is as long as it says.
@@ -69,7 +69,7 @@ fn init(host: &Host, config: &RecorderConfig, recorded: &[Recorded]) -> Result<V
 
 fn state(host: &Host) -> Result<RecorderStatus, i32> {
     let mut status = MaybeUninit::<RecorderStatus>::zeroed();
-    // SAFETY: numbers all, and the size is set.
+    // SAFETY: all fields are numbers, and the size is set.
     unsafe {
         status.assume_init_mut().size = size_of::<RecorderStatus>() as u32;
         match standstill_recorder_state(host.runtime, status.as_mut_ptr()) {
@@ -89,9 +89,9 @@ fn dump(form: i32) -> Dump {
     }
 }
 
-/// One piece, of as many bytes as `room`.
+/// One part, of at most `room` bytes.
 fn piece(host: &Host, at: &mut Dump, room: usize) -> Result<String, i32> {
-    // Memory that was never written: nothing of it may be read.
+    // Memory that was never written: none of it may be read.
     let mut buffer = vec![MaybeUninit::<u8>::uninit(); room];
     let mut length = usize::MAX;
     // SAFETY: so much room is there.
@@ -148,9 +148,9 @@ fn it_keeps_the_last_scans_and_freezes_after_an_error_stop() {
     let now = state(&host).unwrap();
     assert_eq!((now.state, now.first, now.scans, now.tripped_at), (2, 14, 10, 20));
 
-    // The same text whatever the pieces.
+    // The same text for parts of any size.
     let texts = [0, 1, 2].map(|form| whole(&host, form, 1 << 16));
-    // Every piece makes its line anew, which Miri takes long for.
+    // Every part makes its line again, which takes Miri long.
     let rooms: &[usize] = if cfg!(miri) { &[2000] } else { &[7, 100] };
     for (form, expected) in (0..).zip(&texts) {
         for &room in rooms {
@@ -174,7 +174,7 @@ fn it_keeps_the_last_scans_and_freezes_after_an_error_stop() {
     assert!(header.contains("scans 14 to 23 of the machine; tripped by ErrorStop of X in scan 20, here 6"));
     assert!(header.contains("fault 501 DriveFault, code 29952"));
 
-    // Its text is what every trace's is: read and written again it is the same.
+    // Its text is that of every trace: read and written again it is the same.
     let table = standstill_trace::csv::read(table, Some(header)).unwrap();
     assert!(table.lacks.is_empty());
     let mut again = Vec::new();
@@ -184,7 +184,7 @@ fn it_keeps_the_last_scans_and_freezes_after_an_error_stop() {
     standstill_trace::csv::write(&table.trace, &mut again).unwrap();
     assert_eq!(String::from_utf8(again).unwrap(), texts[1]);
 
-    // Armed anew it has nothing, and waits for an axis that goes into ErrorStop, not for one that is there.
+    // Armed again it is empty. It waits for an axis that goes into ErrorStop, not for one that is already there.
     // SAFETY: a handle.
     assert_eq!(unsafe { standstill_recorder_arm(host.runtime) }, 0);
     assert_eq!(state(&host).unwrap().scans, 0);
@@ -198,14 +198,14 @@ fn it_keeps_the_last_scans_and_freezes_after_an_error_stop() {
     assert_eq!((now.state, now.tripped_at, now.axis, now.scans), (2, 34, 0, 8));
 }
 
-/// The inputs of a block that rests are in the trace as they were given, and an instance that was released is zeros.
+/// The trace has the inputs of a block that does nothing as they were given, and zeros for a released instance.
 #[test]
 fn what_a_resting_block_was_given_is_recorded() {
     let host = Host::powered();
     let mut key = make(&host, c"MC_MoveVelocity").unwrap();
     let _memory = init(&host, &keep(4, 0), &[entry(key, 0, "go", "")]).unwrap();
     tick(&host, &mut key, 0, 300);
-    // Without an edge a new velocity is nothing to the block.
+    // Without an edge the block ignores a new velocity.
     let (mut out, other) = (outputs(), 3.25);
     let changed = crate::MoveVelocityIn {
         velocity: other,
@@ -295,7 +295,7 @@ fn a_recorder_that_cannot_be_made_changes_nothing() {
     let mut bytes = 0;
     let mut storage = vec![0_u128; 4096];
     let at: *mut core::ffi::c_void = storage.as_mut_ptr().cast();
-    // SAFETY: pointers are null or lead to what they say.
+    // SAFETY: pointers are null or valid for their types.
     unsafe {
         let size = |config, list, size, bytes| standstill_recorder_size(rt, config, list, size, 1, bytes);
         let null_pointer = Code::NullPointer as i32;
@@ -329,7 +329,7 @@ fn a_recorder_that_cannot_be_made_changes_nothing() {
         assert_eq!(piece(&host, &mut dump(0), 100), Err(in_tick));
         assert_eq!(host.end(), 0);
     }
-    // What was dumped in part before another scan was kept is not gone on with.
+    // A partial dump cannot be continued after another scan was kept.
     let mut at = dump(0);
     assert_eq!(piece(&host, &mut at, 10).unwrap(), "{\"standsti");
     assert_eq!(piece(&host, &mut at, 0).unwrap(), "");
@@ -338,7 +338,7 @@ fn a_recorder_that_cannot_be_made_changes_nothing() {
     for form in [-1, 3] {
         assert_eq!(piece(&host, &mut dump(form), 10), Err(bad));
     }
-    // SAFETY: pointers are null or lead to what they say.
+    // SAFETY: pointers are null or valid for their types.
     unsafe {
         let (mut at, mut length) = (dump(0), 0);
         let null_pointer = Code::NullPointer as i32;
@@ -355,7 +355,7 @@ fn a_recorder_that_cannot_be_made_changes_nothing() {
             null_pointer
         );
     }
-    // A place far outside is no text.
+    // A place far outside has no text.
     let mut far = Dump {
         line: u64::MAX,
         skip: u64::MAX,
@@ -388,7 +388,7 @@ struct SetPositionOut {
     rest: [u8; 11],
 }
 
-/// The ring of records holds 64: of 70 axes that move their coordinates in one tick it has lost some.
+/// The ring of records holds 64. If 70 axes shift their coordinates in one tick, it loses some records.
 #[test]
 fn the_moves_of_70_axes_in_one_tick_are_told() {
     const AXES: i32 = 70;
@@ -416,7 +416,7 @@ fn the_moves_of_70_axes_in_one_tick_are_told() {
             ..SetPositionOut::default()
         };
         let mut key = 0;
-        // SAFETY: all lead to what they say.
+        // SAFETY: all pointers are valid for their types.
         let code = unsafe {
             mc_set_position(
                 host.runtime,

@@ -13,7 +13,7 @@ const FIRST: u32 = 96;
 
 fn fault_of(host: &Host) -> (String, f64) {
     let mut fault = MaybeUninit::<ConfigFault>::zeroed();
-    // SAFETY: numbers all, and the size is set; the key ends in 0.
+    // SAFETY: all fields are numbers, and the size is set; the key ends in 0.
     unsafe {
         fault.assume_init_mut().size = size_of::<ConfigFault>() as u32;
         assert_eq!(standstill_config_error(host.runtime, fault.as_mut_ptr()), 0);
@@ -23,18 +23,18 @@ fn fault_of(host: &Host) -> (String, f64) {
     }
 }
 
-/// A host compiled with the first header knows nothing of what came behind it: it is neither read nor written.
+/// A host compiled with the first header does not know later fields: they are neither read nor written.
 #[test]
 fn the_drive_of_the_first_header_is_served() {
     let host = Host::new(1, 4);
     let (axis, mut drive) = Host::setup();
     drive.size = FIRST - 1;
     assert_eq!(host.add(&axis, &drive), Err(Code::StructSize as i32));
-    // Behind the old structure stands something else of the host's, here an axis that would be refused.
+    // Behind the old structure there is other data of the host, here an axis that would be refused.
     drive.size = FIRST;
     (drive.limit_switches, drive.limit_switch_negative) = (1, f64::NAN);
     drive.delay = 7;
-    // SAFETY: as its size says, and more.
+    // SAFETY: at least as long as its size field says.
     assert_eq!(unsafe { standstill_drive_defaults(&mut drive) }, 0);
     assert_eq!((drive.size, drive.delay, drive.limit_switches), (FIRST, 0, 1));
     assert!(drive.limit_switch_negative.is_nan());
@@ -66,7 +66,7 @@ fn an_axis_of_the_first_header_has_no_power_timeout() {
     axis.size = FIRST_AXIS;
     axis.power_timeout = 7;
     axis.on_limit = 9;
-    // SAFETY: as its size says, and more.
+    // SAFETY: at least as long as its size field says.
     assert_eq!(unsafe { standstill_axis_defaults(&mut axis) }, 0);
     let behind = (axis.size, axis.power_timeout, axis.on_limit);
     assert_eq!(behind, (FIRST_AXIS, 7, 9), "behind its end");
@@ -92,14 +92,15 @@ fn power_that_is_not_confirmed_is_an_error_of_mc_power() {
         ..drive
     };
     assert_eq!(host.add(&axis, &never), Ok(1));
-    // Asked for in the first tick, so that the last one in time is the twenty-first.
+    // Requested in the first tick, so that the last one in time is the twenty-first.
     assert_eq!(switched_on(&host, 20), (0, 0));
     let other = Host::new(1, 4);
     assert_eq!(other.add(&axis, &never), Ok(1));
     assert_eq!(switched_on(&other, 21), (503, 0), "the axis stays Disabled");
 }
 
-/// Calls MC_Power with Enable in so many ticks; its ErrorID and the state of the axis in the last.
+/// Calls MC_Power with Enable in this number of ticks. Returns its ErrorID and the state of the axis in the last
+/// one.
 fn switched_on(host: &Host, ticks: i64) -> (u32, i32) {
     #[repr(C)]
     struct In {
@@ -288,7 +289,7 @@ fn inputs_probes_and_pushes_have_their_ranges_and_their_time() {
         [Code::InTick as i32; 3]
     );
     assert_eq!(host.end(), 0);
-    // Pushed while it is off, the axis is somewhere else.
+    // Pushed while it is off, the axis is at another position.
     assert_eq!(host.stop(), 0);
     for scan in 1..4 {
         assert_eq!((host.begin(scan * TICK), host.end()), (0, 0));
@@ -296,7 +297,7 @@ fn inputs_probes_and_pushes_have_their_ranges_and_their_time() {
     assert_eq!(push(1, 2.5), 0);
     assert_eq!((host.begin(4 * TICK), host.end()), (0, 0));
     assert_eq!(host.status().actual_position, 2.5);
-    // Of a host's own drive nothing is simulated.
+    // Nothing is simulated for a host's own drive.
     let own = Host::new(1, 1);
     let (axis, mut drive) = Host::setup();
     drive.kind = 0;
@@ -311,8 +312,8 @@ fn inputs_probes_and_pushes_have_their_ranges_and_their_time() {
     }
 }
 
-/// A limit switch of the drive stops an axis that runs into it; CLEAR and what only a CiA 402 node knows have their
-/// codes.
+/// A limit switch of the drive stops an axis that runs into it. CLEAR and disturbances that only a CiA 402 node
+/// knows have their codes.
 #[test]
 fn a_limit_switch_stops_and_an_axis_fails() {
     let host = Host::new(2, 4);
@@ -346,7 +347,7 @@ fn a_limit_switch_stops_and_an_axis_fails() {
         status.position > 0.5 && status.position < 1.1,
         "it stopped behind the switch"
     );
-    // The axis itself fails, and its cause goes.
+    // The axis itself fails, and its cause is cleared.
     let host = Host::powered();
     // SAFETY: a handle.
     assert_eq!(unsafe { standstill_simulate(host.runtime, 1, 4, 77) }, 0);
