@@ -1,4 +1,4 @@
-//! Cams: the laws between two rows, their joints, their bounds, and their place between two axes.
+//! Cams: the laws between two rows, their joints, their bounds, and their anchor between two axes.
 
 use standstill_planner::cam::CAM_ROWS;
 use standstill_planner::{
@@ -181,7 +181,7 @@ fn points_of_a_polynomial_give_it_back() {
     assert_eq!(made.head.smooth.continuity, 3);
 }
 
-/// Where another law, or the end of a cam without periods, knows the derivatives, points take them.
+/// Points take the derivatives that another law, or the end of a cam without periods, has at their row.
 #[test]
 fn estimated_points_join_their_neighbours() {
     let rows = [
@@ -237,7 +237,7 @@ fn continuity_is_told_with_the_row_and_the_jump() {
     assert_eq!(made(&line, false).unwrap().head.smooth.jump, (1, slope));
 }
 
-/// Lines from 0 over 10 and 20, which go on as one, to 30 and 40, and a rest to 50.
+/// Lines from 0 over 10 and 20 (one straight line) to 30 and 40, then a dwell to 50.
 fn zigzag(periodic: bool) -> Made {
     let line = CamShape::Line;
     let rows = [
@@ -281,7 +281,7 @@ fn the_next_corner_is_found_both_ways_through_periods_and_not_where_it_is_stood_
             "{x} {forwards}: {place}"
         );
     }
-    // It is as far as it is.
+    // The corner is found within its distance, and not within less.
     let cam = cam.cam();
     assert!(cam.next_corner(15.0, true, 4.9, 3).is_none());
     assert!(cam.next_corner(15.0, true, 5.1, 3).is_some());
@@ -300,7 +300,7 @@ fn without_periods_the_ends_are_corners_and_there_is_none_outside() {
     assert_eq!(next(-5.0, false), None);
     assert_eq!(next(5.0, false), Some(0.0));
     assert_eq!(next(0.0, false), None);
-    // The rest does not move the slave, so it ends without a jump.
+    // The dwell does not move the slave, so it ends without a jump.
     assert_eq!(next(45.0, true), None);
     assert_eq!(next(60.0, false), Some(40.0));
     let line = made(
@@ -350,7 +350,7 @@ fn rows_that_make_no_cam_are_told_by_number() {
     let second = |master| [good, row(master, 1.0, CamShape::Rest7)];
     assert_eq!(cause(&second(0.0)), Some((CamCause::Order, 2)));
     assert_eq!(cause(&second(-1.0)), Some((CamCause::Order, 2)));
-    // So short that its derivatives are no numbers.
+    // So short that its derivatives are not finite.
     assert_eq!(cause(&second(1e-200)), Some((CamCause::NotFinite, 2)));
 }
 
@@ -458,7 +458,7 @@ fn the_example_has_its_values_and_its_highest_velocity() {
     assert_eq!(made.head.range, (0.0, 100.0));
 }
 
-/// What is reached anywhere is below the bound, and the bound close to it.
+/// The bound is above every value on the cam, and close to the largest.
 #[test]
 fn bounds_hold_and_are_close() {
     let mut random = Random(11);
@@ -492,7 +492,7 @@ fn bounds_hold_and_are_close() {
     }
 }
 
-/// A part of a cam is bounded by no more than the whole, and by no less than what is in it.
+/// The bounds of a part of a cam are at most those of the whole, and at least the values in the part.
 #[test]
 fn parts_of_a_cam_have_bounds_of_their_own() {
     let made = up_and_back();
@@ -513,7 +513,7 @@ fn parts_of_a_cam_have_bounds_of_their_own() {
             assert!(bound <= all, "{low} {high} {bound} {all}");
         }
     }
-    // Near the end of a rise little is left of the curvature in its middle.
+    // Near the end of a rise, the curvature of its middle is no longer in the part.
     let near = law().bounds_between(&made.cam(), 175.0, 180.0);
     assert!(near.second < 0.2 * made.head.bounds.second, "{near:?}");
 }
@@ -522,7 +522,7 @@ fn parts_of_a_cam_have_bounds_of_their_own() {
 #[test]
 fn periods_are_exact_however_many() {
     let made = up_and_back();
-    // A master with turns of 1000, of which 360 is no part, and a cam of 360 three quarters as long.
+    // The master has turns of 1000, which is no multiple of 360. The cam is scaled to three quarters of its length.
     let law = CamLaw {
         master_scaling: 0.75,
         master_turn: Some(1000.0),
@@ -622,7 +622,7 @@ fn scalings_stretch_and_mirror() {
     }
 }
 
-/// Before its first row and behind its last a cam without periods holds the slave.
+/// Before its first row and after its last one a cam without periods holds the slave.
 #[test]
 fn without_periods_the_ends_hold() {
     let rows = [row(10.0, 5.0, CamShape::Rest7), row(20.0, 12.0, CamShape::Rest7)];
@@ -686,7 +686,7 @@ fn limits_of_a_shadow_leave_the_slave_within_its_own() {
     }
 }
 
-/// The bits of a cam are the same on every processor: a digest over all that is computed.
+/// The bits of a cam are the same on every processor: a digest of all results.
 #[test]
 fn the_bits_are_these() {
     let mut rows = vec![

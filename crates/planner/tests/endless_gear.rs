@@ -25,12 +25,12 @@ fn rounded(up: u128, down: u128) -> f64 {
     }
     let shift = up.leading_zeros();
     let (quotient, rest) = ((up << shift) / down, (up << shift) % down);
-    // More bits than a number has, and the last one tells whether anything is left.
+    // The quotient has more bits than an f64, and its last bit says whether anything is left.
     assert!(quotient >> 55 > 0);
     (quotient | u128::from(rest > 0)) as f64 / (1_u128 << shift) as f64
 }
 
-/// Where the slave is exactly: its whole turns, and the rest rounded once.
+/// The exact place of the slave: its whole turns, and the rest rounded once.
 fn exact(anchor: &Anchor, turns: i64, position: f64) -> (i64, f64) {
     let turn = units(TURN);
     let way = turns as u128 * turn + units(position) - units(anchor.master.position);
@@ -63,7 +63,7 @@ fn every_scan_at_three_sevenths_is_the_exact_place_rounded_once() {
             slave: at(slave),
             ..Anchor::default()
         });
-        // Where the master is in each scan of a turn: it comes back to the same places.
+        // The places of the master in the scans of a turn: they repeat in every turn.
         masters.push(
             (0..SCANS_OF_A_TURN)
                 .map(|scan| (master + 1.8 * scan as f64) % TURN)
@@ -71,7 +71,7 @@ fn every_scan_at_three_sevenths_is_the_exact_place_rounded_once() {
         );
     }
     for scan in 0..scans {
-        // Each scan with one of the two anchors, by turns from one cycle of 7 turns to the next.
+        // The two anchors alternate from one cycle of 7 turns to the next.
         let which = (scan / (7 * SCANS_OF_A_TURN) % 2) as usize;
         let (anchor, master) = (&anchors[which], &masters[which]);
         let position = master[(scan % SCANS_OF_A_TURN) as usize];

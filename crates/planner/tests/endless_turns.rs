@@ -1,5 +1,4 @@
-//! Endless motions brought back by whole turns: their place after a thousand million turns, against exact
-//! integer arithmetic.
+//! Endless motions brought back by whole turns: their place after 10^9 turns, against exact integer arithmetic.
 
 use standstill_planner::{Limits, MoveProfile, OnlinePlan, Plan, Planner, RampPlan, Setpoint, Standard};
 
@@ -31,7 +30,7 @@ fn a_thousand_million_turns_in_few_steps_are_exact() {
     };
     let mut plan = RampPlan::new(&at_speed, velocity, &limits(), &limits(), CYCLE).unwrap();
     assert_eq!(plan.scans(), 0);
-    // 2^23 scans of a third of a unit each are 1.2 million turns; 1000 such are more than 10^9.
+    // 2^23 scans of a third of a unit each are 1.2 million turns; 1000 times that is more than 10^9.
     let (stride, strides) = (1_u64 << 23, 1000_u64);
     let mut turns = 0_i128;
     for _ in 0..strides {

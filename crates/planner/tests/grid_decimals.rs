@@ -62,7 +62,7 @@ fn snap_alone_takes_the_nominal_scans() {
     assert!(strict_would_differ > 10, "no input here needs the slack");
 }
 
-/// The steps of the sequential planner that compare two bounds take the same slack.
+/// The steps of the sequential planner that compare two bounds use the same slack.
 #[test]
 fn ratios_of_two_bounds_take_the_nominal_scans() {
     for tenths in 1..100_u64 {

@@ -22,7 +22,7 @@ fn thresholds(request: &Move) -> [u128; 4] {
     .map(|ratio| (ratio * (1.0 - 1.0 / power(2.0, 40))).ceil().max(1.0) as u128)
 }
 
-/// All four boxes, those an order does without as 0.
+/// All four boxes; those that an order does not have are 0.
 fn boxes(plan: &GridPlan) -> [u128; 4] {
     let mut boxes = [0; 4];
     let given = plan.boxes();
@@ -51,7 +51,7 @@ fn reaches([n1, n2, n3, n4]: [u128; 4], [k4, k3, k2, k1]: [u128; 4]) -> bool {
     n4 >= k4 && n3 * n4 >= k3 && n2 * n3 * n4 >= k2 && n1 * n2 * n3 * n4 >= k1
 }
 
-/// Whether any boxes of the given sum do, by trying all of them.
+/// Whether any boxes of the given sum meet the conditions, by trying all of them.
 fn exists(method: Method, missing: usize, k: [u128; 4], sum: u128) -> bool {
     let n1s = if missing >= 1 { 0..=0 } else { 1..=sum / 7 };
     n1s.into_iter().any(|n1| {
@@ -189,7 +189,7 @@ fn long_moves_are_shortest_by_trying_all_pairs() {
         }
         let missing = usize::from(request.limits.snap == ABSENT);
         if missing == 0 {
-            // Snap alone, or nearly so, is the hardest for the walk.
+            // Snap alone, or nearly so, is the hardest for the search.
             request.limits.jerk *= random.log(1.0, 100.0);
         }
         let done = check(&request, missing, 700, |m, k, sum| {
@@ -200,8 +200,8 @@ fn long_moves_are_shortest_by_trying_all_pairs() {
     assert!(checked.iter().all(|n| *n > 20), "{checked:?}");
 }
 
-/// Where thresholds need more than 53 bits the products are compared in 128 bits; the result must be as
-/// exact. All pairs would take too long, so those around the result are tried.
+/// Where thresholds need more than 53 bits, the products are compared in 128 bits, and the result must be as exact.
+/// All pairs would take too long, so those around the result are tried.
 #[test]
 fn moves_beyond_53_bits_are_shortest_among_the_pairs_around() {
     let mut random = Random(46);

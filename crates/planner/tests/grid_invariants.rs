@@ -31,7 +31,7 @@ fn degree(plan: &GridPlan) -> u64 {
     plan.order().degree() as u64
 }
 
-/// Invariant 1: the closed form is the recurrence, which ends exactly on P with everything else 0.
+/// Invariant 1: the closed form equals the recurrence, which ends exactly at P with all derivatives 0.
 #[test]
 fn forward_euler_is_the_integer_recurrence_and_lands_exactly() {
     for (request, plan) in plans(1, 60, 3000) {
@@ -178,8 +178,8 @@ fn set_points_are_the_exact_profile() {
     }
 }
 
-/// Invariants 2 and 9 as published: never back, never outside the way, at the end the target to the bit and
-/// at rest for ever.
+/// Invariants 2 and 9 as published: the position never moves back and never leaves the path. At the end it is the
+/// target to the bit, and stays there.
 #[test]
 fn positions_are_one_way_and_end_on_the_target_to_the_bit() {
     for (request, plan) in plans(4, 200, 20_000) {
@@ -378,7 +378,7 @@ fn methods_are_ordered() {
     }
 }
 
-/// Invariant 6: raising a bound never costs a scan and a longer way never saves one.
+/// Invariant 6: a higher bound never costs a scan, and a longer distance never saves one.
 #[test]
 fn fewest_scans_are_monotone() {
     let mut random = Random(9);
@@ -485,7 +485,7 @@ fn a_mirrored_move_is_the_exact_negative() {
     }
 }
 
-/// Invariant 11: a move that only snap limits has no other segments in the sequential planner.
+/// Invariant 11: a move limited by snap only has no other segments in the sequential planner.
 #[test]
 fn snap_alone_gives_no_spurious_segment() {
     let mut random = Random(12);

@@ -44,7 +44,7 @@ fn bad_numbers_are_refused_with_their_name() {
             Field::Target,
         );
     }
-    // Each end is a number, their distance is not.
+    // Each end is finite, their distance is not.
     let apart = Move {
         start: -1e308,
         target: 1e308,
@@ -64,7 +64,7 @@ fn bad_numbers_are_refused_with_their_name() {
             let mut request = sound();
             set(&mut request.limits, bad);
             assert_invalid(&request, field);
-            // A move of no length is no excuse.
+            // A move of length 0 is refused for it too.
             request.target = request.start;
             assert_invalid(&request, field);
         }

@@ -1,5 +1,5 @@
-//! Many random moves. 10,000 in a plain test run; `STANDSTILL_SOAK=1000000` runs more and prints the
-//! largest work of one.
+//! Many random moves: 10,000 in a plain test run. `STANDSTILL_SOAK=1000000` runs more and prints the most work of
+//! one.
 
 use crate::grid_support::{Move, Random, limits, servo};
 use standstill_planner::grid::Work;
@@ -43,7 +43,7 @@ fn random_moves_never_fail_overshoot_or_break_a_bound() {
                 "{round} {request:?}"
             );
             let n = u64::from(plan.scans());
-            // All of a short move, a hundred scans of a long one, always the last ones.
+            // All scans of a short move, about a hundred of a long one, always the last ones.
             let step = (n / 100).max(1);
             for k in (0..n).step_by(step as usize).chain(n.saturating_sub(3)..n) {
                 samples += 1;
@@ -69,7 +69,7 @@ fn random_moves_never_fail_overshoot_or_break_a_bound() {
     assert!(!worst.capped);
 }
 
-/// Snap alone or jerk alone makes the longest walks; they stay inside the caps up to 10^6 scans.
+/// Moves with snap alone or jerk alone need the longest searches; they stay inside the caps up to 10^6 scans.
 #[test]
 fn moves_with_one_active_bound_stay_inside_the_caps() {
     let mut random = Random(7);

@@ -5,8 +5,8 @@ use serde_json::Value;
 use standstill_planner::grid::Counts;
 use standstill_planner::{GridPlan, Method, PlanError};
 
-/// Whether a value is within `ulps` units of the last place, plus what the start position rounds away from
-/// the distance of the vector.
+/// Whether a value is within `ulps` units in the last place, plus the rounding of the vector's distance by the
+/// start position.
 fn agrees(value: f64, expected: f64, ulps: f64, vector: &Value) -> bool {
     let request = vector_move(vector);
     let distance = number(&vector["in"]["dx"]);
@@ -137,7 +137,7 @@ fn refused_vectors_are_refused_for_the_reason_of_the_vectors() {
         seen += 1;
         let request = vector_move(&vector);
         if request.limits.acceleration.is_infinite() {
-            // Infinite is this interface's word for an absent bound; refusing the word is up to the reader.
+            // Infinite means no bound in this interface; the reader is the one to refuse the word.
             assert!(request.plan(Method::Overlapped).is_ok());
             continue;
         }

@@ -118,8 +118,8 @@ fn a_curve_starts_in_its_start_meets_its_points_and_lands_on_the_last() {
     }
 }
 
-/// Each derivative is the slope of the one below it, so nothing jumps: between any two scans it changes by no more than
-/// what the next one allows.
+/// Each derivative is the slope of the one below it, so nothing jumps: between two scans it changes by no more than
+/// the next derivative allows.
 #[test]
 fn position_to_jerk_are_continuous() {
     let mut random = Random(2);
@@ -220,7 +220,7 @@ fn what_is_accepted_keeps_the_limits_and_what_is_refused_does_not() {
         match plan {
             Ok(_) => assert!(most <= 1.0 + 1e-9, "{case}: {most}"),
             Err(fault) => {
-                // The snap jumps at points, where no scan may show its peak.
+                // The snap jumps at points, and its peak may be between two scans.
                 let seen = if fault.cause == ProfileCause::Snap {
                     0.9
                 } else {
@@ -263,7 +263,7 @@ fn an_acceleration_fades_out_within_jerk_and_snap() {
         (end.velocity - (50.0 + 0.5 * 100.0 * 0.0774597)).abs() < 1e-3,
         "{end:?}"
     );
-    // Where nothing bounds them it is gone at once.
+    // Where nothing bounds the derivatives, the acceleration is gone at once.
     let free = Limits {
         jerk: f64::INFINITY,
         snap: f64::INFINITY,
@@ -281,7 +281,7 @@ fn an_acceleration_fades_out_within_jerk_and_snap() {
     assert_eq!(plan.scans(), 1024);
 }
 
-/// Samples 50 ms apart of t^3 (2 - t)^3 give it back away from its ends, whose jerk a profile does not have.
+/// Samples 50 ms apart of t^3 (2 - t)^3 reproduce it, except near its ends, whose jerk a profile does not have.
 #[test]
 fn close_points_of_a_smooth_motion_give_that_motion() {
     let place = |t: f64| t * t * t * (2.0 - t) * (2.0 - t) * (2.0 - t);

@@ -1,4 +1,4 @@
-//! The third-order kernel by itself: from any state, inside its bounds or not, it arrives, with little
+//! The third-order kernel by itself: from any state, inside its bounds or not, it reaches the goal with little
 //! work.
 
 use standstill_planner::kernel::{
@@ -65,7 +65,7 @@ fn follow(case: &Case, profile: &Profile) -> ([f64; 3], f64, f64) {
     for span in profile.spans.iter() {
         let (t, u) = (span.duration, span.input);
         assert!(t > 0.0 && t.is_finite() && u.abs() <= 1.0, "{profile:?}");
-        // What rounding left of zero is zero in a cruise, which may last long.
+        // A rounding residue of zero counts as zero in a cruise, which may last long.
         if u == 0.0 && a.abs() <= 1e-13 * peak_a {
             a = 0.0;
         }
@@ -122,7 +122,7 @@ fn every_state_arrives() {
     assert!(steps < MAX_STEPS / 2);
 }
 
-/// Bounds that are all just touched at once, or not quite: the switches lie at the ends of their brackets.
+/// All bounds are just touched at once, or nearly: the switches are at the ends of their brackets.
 #[test]
 fn where_every_bound_is_just_touched_it_arrives() {
     let mut random = Random(57);
@@ -160,7 +160,7 @@ fn where_every_bound_is_just_touched_it_arrives() {
     println!("worst end {worst:e}");
 }
 
-/// A push of any length to either side and a profile from there is never faster than the profile at once.
+/// A push of any length to either side, followed by a profile, is never faster than the profile at once.
 #[test]
 fn no_detour_is_faster() {
     let mut random = Random(53);
@@ -187,7 +187,7 @@ fn no_detour_is_faster() {
             }
         }
         let indirect = spent + solve(&detour).spans.duration();
-        // The arrest must be inside, or coming inside comes first and is not the fastest.
+        // The arrest must be inside; otherwise coming inside has priority and is not the fastest.
         let arrest = case.v + case.a * case.a.abs() / 2.0;
         if arrest <= case.bounds.v.plus && arrest >= -case.bounds.v.minus {
             assert!(
@@ -199,7 +199,8 @@ fn no_detour_is_faster() {
     }
 }
 
-/// A bracket of a few neighbouring numbers, and functions that are hard to interpolate: the root ends by itself.
+/// A bracket of a few neighbouring numbers, and functions that are hard to interpolate: the root search ends by
+/// itself.
 #[test]
 fn a_root_needs_no_cap() {
     let up = |x: f64, ulps: u64| f64::from_bits(x.to_bits() + ulps);
@@ -225,7 +226,7 @@ fn a_root_needs_no_cap() {
     assert!(most <= 94);
 }
 
-/// Functions that jump over zero, which no step comes near to, and steep ones; with slopes that mislead, too.
+/// Functions that jump over zero, so that no step comes near it, and steep ones; also with misleading slopes.
 #[test]
 fn a_zero_needs_no_cap() {
     let mut random = Random(59);
@@ -273,7 +274,7 @@ fn a_zero_needs_no_cap() {
     assert!(most <= 114, "{most}");
 }
 
-/// Powers, flat where they begin or with a slope there, and roots from near one end of the bracket to near the other.
+/// Powers, flat or with a slope where they begin, and roots from near one end of the bracket to near the other.
 #[test]
 fn a_zero_with_slopes_takes_few_steps() {
     let mut random = Random(61);

@@ -35,7 +35,7 @@ fn thresholds(request: &Move) -> Thresholds {
     Thresholds { k4, up, down, k2, k1 }
 }
 
-/// The three lengths of a ramp, those an order does without as 0.
+/// The three lengths of a ramp; those that an order does not have are 0.
 fn lengths(ramp: &[u32]) -> [u128; 3] {
     let mut lengths = [0; 3];
     for (slot, length) in lengths[3 - ramp.len()..].iter_mut().zip(ramp) {
@@ -44,7 +44,7 @@ fn lengths(ramp: &[u32]) -> [u128; 3] {
     lengths
 }
 
-/// Whether a ramp is one: which of its lengths there are, and that no two pulses add up.
+/// Whether the lengths are a valid ramp: which of them are present, and that no two pulses overlap.
 fn is_ramp([n1, n2, n3]: [u128; 3], missing: usize) -> bool {
     let lengths = [n1, n2, n3];
     lengths[missing..].iter().all(|n| *n >= 1)

@@ -83,8 +83,8 @@ fn segments_lead_to_the_target_through_the_published_states_with_the_peaks_told(
                 segment.snap,
             ];
             let last = moved(first, segment.duration);
-            // Where a changes its sign inside a segment the velocity has its peak: where jerk is constant or
-            // falls linearly, at a root of a quadratic.
+            // The velocity peaks where a changes its sign inside a segment. Jerk is constant or falls linearly
+            // there, so it is a root of a quadratic.
             let mut instants = vec![0.0, segment.duration];
             let (a, j, s) = (segment.acceleration, segment.jerk, segment.snap);
             if a * last[2] < 0.0 {
@@ -140,8 +140,8 @@ fn segments_lead_to_the_target_through_the_published_states_with_the_peaks_told(
     assert!(overlapped > 100, "{overlapped}");
 }
 
-/// Forwards the speed grows with the acceleration and falls with the deceleration at most, in the continuous
-/// plan and in every backward difference of the published positions.
+/// In the forward direction the speed rises at most with the acceleration and falls at most with the deceleration:
+/// in the continuous plan and in every backward difference of the published positions.
 #[test]
 fn each_rate_and_every_other_bound_holds_in_differences_of_published_positions() {
     for (request, plan) in plans(22, 300, 3000) {
@@ -169,7 +169,7 @@ fn each_rate_and_every_other_bound_holds_in_differences_of_published_positions()
         {
             differences = differences.windows(2).map(|pair| pair[1] - pair[0]).collect();
             let degree = degree as u64 + 1;
-            // What 2^degree roundings of a position can make of nothing.
+            // The most that 2^degree roundings of a position can produce.
             let resolution = power(2.0, degree) * largest * f64::EPSILON;
             for difference in &differences {
                 let cycles = power(request.cycle, degree);
@@ -331,8 +331,8 @@ fn scaling_by_powers_of_two_changes_no_box() {
     }
 }
 
-/// From rest the online planner may switch between scans, so it is never longer: this is what landing every
-/// switch on the grid costs, with equal rates and with two (docs/planner.md, section 13).
+/// From rest the online planner may switch between scans, so it is never longer. The difference is the cost of
+/// placing every switch on the grid, with equal rates and with two (docs/planner.md, section 13).
 #[test]
 fn the_grid_costs_a_few_scans_over_the_online_plan() {
     let mut random = Random(27);
@@ -358,7 +358,7 @@ fn the_grid_costs_a_few_scans_over_the_online_plan() {
                 OnlinePlan::new(&rest, request.target, limits, limits, request.cycle).expect("valid");
             assert!(grid >= online.scans(), "{request:?}: {grid} {}", online.scans());
             more.push(grid - online.scans());
-            // A few scans more are any share of very few.
+            // For very few scans, a few more are a large share.
             if online.scans() >= 50 {
                 shares.push(f64::from(grid) / f64::from(online.scans()) - 1.0);
             }
@@ -467,7 +467,7 @@ fn very_unequal(target: f64, velocity: f64) -> Move {
     }
 }
 
-/// A search that its cap ends returns a plan all the same, never longer than with the lower rate for both.
+/// A search ended by its cap still returns a plan, never longer than with the lower rate for both.
 #[test]
 fn a_search_that_meets_its_cap_still_plans() {
     let mut capped = 0;
@@ -485,7 +485,7 @@ fn a_search_that_meets_its_cap_still_plans() {
     assert!(capped > 0);
 }
 
-/// With the lower rate for both these would take more scans than a plan counts.
+/// With the lower rate for both, these moves would take more scans than a plan can count.
 #[test]
 fn what_is_too_long_by_the_lower_rate_alone_is_planned() {
     for (target, velocity) in [(4e6, 100.0), (3e6, 1e4), (5e6, 1e6), (-4e6, 100.0)] {

@@ -5,7 +5,7 @@ use crate::grid_support::{Move, Random, servo};
 use standstill_planner::grid::{Family, UnequalWork};
 use standstill_planner::{Limits, Method, UnequalPlan};
 
-/// What rounding may add to a bound: the slack of eq. 7 in docs/planner.md, and what products take.
+/// The most that rounding may add to a bound: the slack of eq. 7 in docs/planner.md, and that of products.
 const SLACK: f64 = 1.0 + 1.0 / (1_u64 << 39) as f64;
 
 fn rounds() -> u64 {
@@ -71,7 +71,7 @@ fn random_moves_never_fail_overshoot_break_a_bound_or_lose_to_the_lower_rate() {
                 plan.peaks()
             );
             let n = u64::from(plan.scans());
-            // All of a short move, a hundred scans of a long one, always the last ones.
+            // All scans of a short move, about a hundred of a long one, always the last ones.
             let step = (n / 100).max(1);
             let mut last = start;
             for k in (0..n).step_by(step as usize).chain(n.saturating_sub(3)..=n) {

@@ -1,6 +1,5 @@
-//! The unit of length or time does not matter: a million times larger or smaller, which is no power of
-//! two, it changes no count of scans. Here for the grid and the papers' systems; `online_plans` and
-//! `ramp_plans` have theirs.
+//! The unit of length or time does not matter: a factor of a million, which is no power of two, changes no number
+//! of scans. Here for the grid and the papers' systems; `online_plans` and `ramp_plans` have their own tests.
 
 use crate::grid_support::{Move, Random, limits, servo};
 use standstill_planner::papers::{Profile, SCurve, ShortPath, ShortPathPolicy, Timed, Tracking, Trapezoid};
@@ -9,7 +8,7 @@ use standstill_planner::{Limits, Method, Setpoint};
 /// Units of length and time.
 const UNITS: [(f64, f64); 4] = [(1e6, 1.0), (1e-6, 1.0), (1.0, 1e6), (1.0, 1e-6)];
 
-/// A value with so many times in its denominator, in other units.
+/// A value with this many units of time in its denominator, in other units.
 fn scaled(value: f64, degree: u32, (length, time): (f64, f64)) -> f64 {
     (0..degree).fold(value * length, |value, _| value / time)
 }
@@ -78,7 +77,7 @@ fn the_papers_plans_have_the_same_scans() {
         let jerk = acceleration * random.log(1.0, 1000.0);
         let bounds = limits(velocity, acceleration, jerk, f64::INFINITY);
         let way = velocity * velocity / acceleration * random.log(4.0, 1000.0);
-        // A third of it each for the plateau and the ramps.
+        // A third of it each for the plateau and the two ramps.
         let duration = 1.5 * way / velocity;
         let cycle = duration * random.log(1e-4, 1e-1);
         let from = velocity * random.log(1e-3, 0.2);

@@ -68,7 +68,7 @@ pub fn vector_move(vector: &Value) -> Move {
     }
 }
 
-/// `x` to a power from 0 on, multiplied out so that every platform rounds alike.
+/// `x` to a power of 0 or more, multiplied out so that every platform rounds alike.
 pub fn power(x: f64, exponent: u64) -> f64 {
     (0..exponent).fold(1.0, |product, _| product * x)
 }

@@ -27,8 +27,8 @@ fn draw(random: &mut Random, case: usize, equal: bool) -> (DirectedLimits, f64) 
     (sides, cycle)
 }
 
-/// Chains of moves to random targets, with end velocities now and then, A and D apart in every other chain: no bound is
-/// exceeded, every target met. The rungs are counted.
+/// Chains of moves to random targets, some with end velocities, every other chain with A and D apart. No bound is
+/// exceeded and every target is met. Returns how often each rung was used.
 fn chains(seed: u64, count: usize) -> [u32; 4] {
     let mut random = Random(seed);
     let mut rungs = [0; 4];
@@ -104,7 +104,7 @@ fn many_chains_keep_the_bound_of_each_direction() {
     println!("{:?}", chains(73, 50_000));
 }
 
-/// The same bound in both directions, and a bound the move comes nowhere near, change no bit.
+/// The same bound in both directions, or a bound that the move does not come near, changes no bit.
 #[test]
 fn a_bound_that_is_not_met_changes_nothing() {
     let mut random = Random(75);
@@ -125,8 +125,8 @@ fn a_bound_that_is_not_met_changes_nothing() {
     }
 }
 
-/// A move from rest under the bound of one direction takes as long as under that bound in both; the wider other
-/// direction is of use only where the move turns.
+/// A move from rest under the bound of one direction takes as long as under that bound in both. A wider bound in
+/// the other direction helps only where the move turns.
 #[test]
 fn a_push_goes_for_the_bound_of_its_own_side() {
     let mut random = Random(77);
@@ -190,7 +190,7 @@ fn a_start_beyond_its_bound_is_brought_inside() {
                 };
                 velocity.abs() - bound
             };
-            // The largest excess is where the start, or what its acceleration makes of it, is.
+            // The largest excess is at the start, or where the acceleration of the start leads.
             let told = plan.excess().map_or(0.0, |excess| excess.velocity);
             let mut inside = false;
             let mut seen: f64 = 0.0;
@@ -236,7 +236,7 @@ fn ramps_keep_the_bound_of_each_direction() {
     }
 }
 
-/// A direction without a bound that makes sense is told by its name.
+/// A direction whose bound is not valid is refused by its name.
 #[test]
 fn a_bound_that_is_none_is_named() {
     let limits = Limits {

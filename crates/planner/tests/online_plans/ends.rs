@@ -56,7 +56,7 @@ fn cases() -> Vec<Case> {
         .collect()
 }
 
-/// A fifth of them with an end velocity away from the target, a target on the start or the fastest end.
+/// A fifth of them has an end velocity away from the target, a target at the start, or the fastest end.
 #[test]
 fn ends_of_every_kind_are_reached_with_at_most_one_scan_more_than_the_least() {
     let mut surplus = BTreeMap::new();
@@ -84,8 +84,8 @@ fn ends_of_every_kind_are_reached_with_at_most_one_scan_more_than_the_least() {
     );
 }
 
-/// A state without jerk that a motion inside the limits can have come to and go on from: one in the middle of an
-/// acceleration.
+/// A state without jerk in the middle of an acceleration. A motion inside the limits can reach it and continue from
+/// it.
 fn end(random: &mut Random, limits: &DirectedLimits) -> Goal {
     let Limits {
         acceleration,
@@ -113,7 +113,7 @@ fn end(random: &mut Random, limits: &DirectedLimits) -> Goal {
     }
 }
 
-/// Whether an acceleration that is brought to zero as fast as can be keeps the velocity inside 95 % of its bounds.
+/// Whether the fastest way to bring an acceleration to zero keeps the velocity inside 95 % of its bounds.
 fn settles(limits: &DirectedLimits, velocity: f64, acceleration: f64) -> bool {
     let Limits { jerk, snap, .. } = limits.limits;
     let a = acceleration.abs();
@@ -144,7 +144,7 @@ fn directed(random: &mut Random, order: Order, equal: bool) -> DirectedLimits {
     directed
 }
 
-/// Chains: each move begins in the middle of the one before, which mostly has an acceleration and a jerk.
+/// Chains: each move begins in the middle of the one before, usually with an acceleration and a jerk.
 fn chains(seed: u64, count: usize) -> ([u32; 4], u32, u32) {
     let mut random = Random(seed);
     let (mut rungs, mut solves, mut steps) = ([0; 4], 0, 0);
@@ -201,7 +201,7 @@ fn chains(seed: u64, count: usize) -> ([u32; 4], u32, u32) {
                 "{} {seen:?}",
                 context()
             );
-            // From its end on a plan goes on with the end acceleration.
+            // After its end a plan continues with the end acceleration.
             let last = u64::from(plan.scans());
             let (state, since) = (plan.at(last), last as f64 * cycle - plan.duration());
             assert!((-1e-8 * cycle..=cycle).contains(&since));
@@ -299,7 +299,7 @@ fn the_mirrored_move_and_other_units_take_the_same_scans() {
     }
 }
 
-/// Without an end acceleration it is the plan it was.
+/// An end acceleration of 0 gives the same plan as none.
 #[test]
 fn no_end_acceleration_is_the_usual_plan() {
     let mut random = Random(97);
@@ -318,7 +318,7 @@ fn no_end_acceleration_is_the_usual_plan() {
     }
 }
 
-/// An end that is refused is refused with one that is not.
+/// A refusal names an end that is accepted.
 #[test]
 fn an_end_out_of_reach_is_refused_with_the_nearest() {
     let mut random = Random(99);
@@ -371,7 +371,7 @@ fn an_end_out_of_reach_is_refused_with_the_nearest() {
     assert!(refused > 100 && planned > 50);
 }
 
-/// From outside the limits: what is told is what is exceeded, and the goal is met.
+/// From outside the limits: the reported excess is the real one, and the goal is met.
 #[test]
 fn a_start_outside_the_limits_comes_inside_and_arrives() {
     let mut random = Random(101);
@@ -436,7 +436,7 @@ fn a_start_outside_the_limits_comes_inside_and_arrives() {
     assert!(outside > 50, "{outside}");
 }
 
-/// Numbers at the edges of what a 64-bit float holds: a plan that ends, or a refusal, and no panic.
+/// Numbers at the edges of f64: a plan that ends, or a refusal, and no panic.
 #[test]
 fn extreme_numbers_are_planned_or_refused() {
     let values = [
@@ -531,8 +531,9 @@ fn extreme_numbers_are_planned_or_refused() {
     assert!(planned > 100);
 }
 
-/// A long cruise behind a ramp whose root is off by a few last places: where it begins, no position steps. Found once in 2*10^9
-/// random scans: 2e-14 u, with a cycle of 1 ms a millionth of the snap limit.
+/// A long cruise after a ramp whose root is off by a few units in the last place: the position does not step where
+/// the cruise begins. Found once in 2*10^9 random scans: 2e-14 u, with a cycle of 1 ms a millionth of the snap
+/// limit.
 #[test]
 fn a_cruise_begins_without_a_step() {
     let limits = Limits {

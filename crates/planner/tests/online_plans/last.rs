@@ -5,7 +5,7 @@ use standstill_planner::kernel::MAX_STEPS;
 use standstill_planner::online::{MAX_SOLVES, Rung};
 use standstill_planner::{Limits, OnlinePlan, Segment, Setpoint};
 
-/// Limits, others, and a state on a plan under the others: often outside the first.
+/// Limits, other limits, and a state on a plan under the others: often outside the first.
 fn outside(random: &mut Random, case: usize) -> (Limits, Limits, Setpoint, f64) {
     let before = support::limits(random, ORDERS[case % 3]);
     let cycle = 0.01 * before.velocity / before.acceleration;
@@ -24,8 +24,8 @@ fn outside(random: &mut Random, case: usize) -> (Limits, Limits, Setpoint, f64) 
     (now, before, start, cycle)
 }
 
-/// The most ramps solved, steps of a root and pieces of plans from rung `first` on, to targets at rest and
-/// passed, also the present position.
+/// The most ramps solved, root steps and pieces of plans from rung `first` on. Targets are reached at rest or
+/// passed; the present position is among them.
 fn hardest(first: Rung, seed: u64, count: usize) -> (u32, u32, usize) {
     let mut random = Random(seed);
     let mut most = (0, 0, 0);
@@ -88,7 +88,8 @@ fn millions_of_plans_reach_no_cap() {
     }
 }
 
-/// A position passed where the axis is, with a velocity it has not: back, and through it again.
+/// The present position can be passed with a velocity that the axis does not have: it goes back and through it
+/// again.
 #[test]
 fn the_present_position_can_be_passed_with_another_velocity() {
     let limits = Limits {
@@ -110,12 +111,12 @@ fn the_present_position_can_be_passed_with_another_velocity() {
     let first = plan.segments().next().expect("a segment");
     assert!(first.snap < 0.0, "{first:?}");
     assert!((0..u64::from(plan.scans())).any(|scan| plan.at(scan).velocity < 0.0));
-    // With the velocity it has it is there already.
+    // With its own velocity it is already there.
     let there = pass(limits.velocity);
     assert_eq!((there.scans(), there.duration()), (0, 0.0));
 }
 
-/// A last span too short to move the clock: what it does does not rub off on the cruise before it.
+/// A last span too short to move the clock does not affect the cruise before it.
 #[test]
 fn a_span_too_short_for_the_clock_leaves_no_trace() {
     for (jerk, snap) in [
@@ -141,8 +142,8 @@ fn a_span_too_short_for_the_clock_leaves_no_trace() {
     }
 }
 
-/// Where the first rungs have a root that no number is near enough to: a target as good as where the turn to
-/// nearly the opposite velocity ends.
+/// The root of the first rungs is between two numbers, and neither is near enough: the target is almost exactly
+/// where the turn to nearly the opposite velocity ends.
 #[test]
 fn a_root_between_two_numbers_is_no_refusal() {
     let limits = Limits {

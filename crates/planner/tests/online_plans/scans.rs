@@ -12,7 +12,7 @@ struct Case {
     euler: bool,
     cycle: f64,
     limits: Limits,
-    /// What the start kept; lower limits took its place in flight.
+    /// The limits that the start kept; lower ones replaced them in flight.
     before: Limits,
     start: Setpoint,
     /// None if only the end velocity is asked for.
@@ -152,8 +152,8 @@ fn check_ramps(text: &str) {
     assert!(surplus.keys().all(|more| *more <= 0));
 }
 
-/// From outside the lowered limits coming inside has priority, by rules the programme does not have; docs say how
-/// the two differ.
+/// From outside the lowered limits, coming inside has priority, by rules that the programme does not have. The docs
+/// say how the two differ.
 #[test]
 fn under_lowered_limits_a_plan_needs_few_scans_more_than_the_least() {
     let (mut inside, mut outside) = (BTreeMap::new(), BTreeMap::new());

@@ -45,7 +45,7 @@ fn scaled_state(state: &Setpoint, length: f64, time: f64) -> Setpoint {
     }
 }
 
-/// By a million either way, which is no power of two: the same scans. By powers of two: the same bits.
+/// Other units by a factor of a million, which is no power of two: the same scans. By powers of two: the same bits.
 #[test]
 fn other_units_change_no_scan() {
     let mut random = Random(61);
@@ -98,7 +98,7 @@ fn the_mirrored_move_is_the_mirror_image() {
     }
 }
 
-/// At a velocity of zero, or next to it, which is no direction, the derivatives above decide; also where they can't be
+/// At or near a velocity of zero, which has no direction, the higher derivatives decide; also where they cannot be
 /// stopped inside the limits.
 #[test]
 fn the_mirrored_move_from_no_velocity_is_the_mirror_image() {
@@ -120,7 +120,7 @@ fn the_mirrored_move_from_no_velocity_is_the_mirror_image() {
         let cycle = time * random.log(0.001, 0.3);
         let target = within(&mut random, 30.0 * limits.velocity * time) * random.log(1e-9, 1.0);
         let planned = |start: &Setpoint, target| OnlinePlan::new(start, target, &limits, &limits, cycle);
-        // What comes out too far to come back in any time that is counted.
+        // The move leads too far to come back in any time that can be counted.
         let Ok(one) = planned(&start, target) else {
             assert!(planned(&scaled_state(&start, -1.0, 1.0), -target).is_err());
             continue;
@@ -144,8 +144,8 @@ fn the_mirrored_move_from_no_velocity_is_the_mirror_image() {
     assert!(outside > 600, "{outside} of 6000 begin outside what can be kept");
 }
 
-/// States on a limit, and an outward ulp or 1e-12 of the limit further: the plan changes by no more than
-/// the change is worth.
+/// States on a limit, and one ulp or 1e-12 of the limit outside: the plan changes by no more than this difference
+/// explains.
 #[test]
 fn a_nudge_outwards_on_a_limit_changes_nothing() {
     let mut random = Random(65);
@@ -162,7 +162,7 @@ fn a_nudge_outwards_on_a_limit_changes_nothing() {
             ..
         } = limits;
         let time = v / a;
-        // What the acceleration takes to end, in time and velocity.
+        // The time and velocity that it takes to end the acceleration.
         let room = if order == Order::Four {
             (2.0 * a / s).sqrt().max(j / s + a / j) * a
         } else {
@@ -211,7 +211,7 @@ fn a_nudge_outwards_on_a_limit_changes_nothing() {
     println!("largest relative change of duration {worst:e}");
 }
 
-/// The end velocity of 0 is no special case: nearly 0 takes nearly as long.
+/// The end velocity 0 is no special case: nearly 0 takes nearly as long.
 #[test]
 fn passing_nearly_at_rest_is_nearly_stopping() {
     let mut random = Random(67);
@@ -232,7 +232,7 @@ fn passing_nearly_at_rest_is_nearly_stopping() {
     assert!(worst <= 1e-3, "{worst:e}");
 }
 
-/// A plan taken up again from any of its own states, to the same target, goes on as it did.
+/// A plan made again from any of its own states, to the same target, continues as it did.
 #[test]
 fn a_move_planned_again_continues_itself() {
     let mut random = Random(69);
@@ -251,7 +251,7 @@ fn a_move_planned_again_continues_itself() {
     println!("largest relative change of duration {worst:e}");
 }
 
-/// Every rung by itself keeps the limits and arrives, and none is shorter than the first.
+/// Every rung by itself keeps the limits and reaches the target, and none is shorter than the first.
 #[test]
 fn every_rung_arrives() {
     let mut random = Random(71);
@@ -276,7 +276,7 @@ fn every_rung_arrives() {
             assert!(plan.rung() >= rung, "{rung:?}");
             assert_eq!(plan.excess(), None, "{rung:?} {plan:?}");
             let ratio = plan.duration() / best.duration();
-            // With an end velocity a longer way may take less time.
+            // With an end velocity a longer distance may take less time.
             assert!(
                 ratio >= 1.0 - 1e-9 || end_velocity != 0.0,
                 "{rung:?} {ratio} {limits:?} {start:?} {target}"
@@ -385,7 +385,7 @@ const SERVO: Limits = Limits {
 #[test]
 fn special_targets() {
     let rest = Setpoint::at_rest(0.3);
-    // There already.
+    // The axis is already there.
     let none = plan(&rest, 0.3, &SERVO, 1e-3);
     assert_eq!(
         (none.scans(), none.duration(), none.segments().count()),
@@ -397,7 +397,7 @@ fn special_targets() {
         velocity: 1.0,
         ..rest
     };
-    // Inside the braking distance: past the target and back, and sooner than by way of a full stop.
+    // Inside the braking distance: past the target and back, sooner than with a full stop first.
     let near = plan(&cruising, 0.301, &SERVO, 1e-3);
     assert!((0..=u64::from(near.scans())).any(|scan| near.at(scan).velocity < 0.0));
     assert!(
@@ -406,7 +406,7 @@ fn special_targets() {
                 .expect("a plan")
                 .duration()
     );
-    // Behind, and where it is: the same.
+    // Behind the axis, and at its place: the same.
     for target in [0.3, -2.0] {
         let back = plan(&cruising, target, &SERVO, 1e-3);
         assert_eq!(back.at(u64::from(back.scans())), Setpoint::at_rest(target));
@@ -426,7 +426,8 @@ fn special_targets() {
     assert!(plan(&rest, 0.9, &SERVO, 1e-3).scans() <= grid.scans());
 }
 
-/// Too fast for a lowered limit: inside it as soon as the old limits allow, told, and on to the target.
+/// Too fast for a lowered limit: inside it as soon as the old limits allow, with the excess reported, and on to the
+/// target.
 #[test]
 fn over_a_lowered_velocity_limit() {
     let cruising = Setpoint {
@@ -455,8 +456,9 @@ fn over_a_lowered_velocity_limit() {
     }
 }
 
-/// Above a velocity limit that was lowered, the old limits hold; where the way back to the target begins at once, the
-/// acceleration has to be at its own limit when the velocity passes zero, however much more the deceleration may be.
+/// Above a lowered velocity limit the old limits hold. Where the way back to the target begins at once, the
+/// acceleration has to be at its own limit when the velocity passes zero, even if the deceleration may be much
+/// higher.
 #[test]
 fn over_a_lowered_velocity_limit_it_turns_within_both_accelerations() {
     let mut random = Random(67);
@@ -591,7 +593,7 @@ fn absurd_inputs_end_in_a_plan_or_a_refusal() {
     assert!(planned > count / 20);
 }
 
-/// A plan that remembers where it was: scan after scan, back again, and with coordinates moved on the way.
+/// A plan that remembers its last scan: scan after scan, back again, and with its coordinates moved in between.
 #[test]
 fn next_is_the_same_as_at() {
     let mut random = Random(31);

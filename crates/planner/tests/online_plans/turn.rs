@@ -1,5 +1,5 @@
-//! Moves with an acceleration at their target. They turn there, in a scan, exactly, with the acceleration that leads back; or they pass it
-//! slowing down or speeding up.
+//! Moves with an acceleration at their target. They turn there exactly, within a scan, with the acceleration that
+//! leads back. Or they pass it while slowing down or speeding up.
 
 use super::support::{self, Random, integrate};
 use standstill_planner::kernel::MAX_STEPS;
@@ -7,11 +7,11 @@ use standstill_planner::{DirectedLimits, Goal, Limits, OnlinePlan, Order, Passag
 
 struct Seen {
     turned: u32,
-    /// With less acceleration than asked for.
+    /// Turns with less acceleration than asked for.
     softer: u32,
     solves: u32,
     steps: u32,
-    /// Scans more than the shortest of all candidates takes, in part of them.
+    /// Scans above the shortest of all candidates, as a fraction of them.
     longer: Vec<f64>,
 }
 
@@ -65,7 +65,7 @@ fn turns(seed: u64, count: usize) -> Seen {
             ..Setpoint::at_rest(target)
         };
         assert_eq!(end, turned, "{}", context());
-        // Less where only that makes the scans whole.
+        // Less only where that makes the scans whole.
         let back = -side * end.acceleration;
         assert!(0.0 < back && back <= acceleration, "{end:?} {}", context());
         all.softer += u32::from(back < acceleration);
@@ -133,7 +133,8 @@ fn turns_are_in_a_scan_exactly_on_their_target_within_the_limits() {
     assert!(turned > 1_000 && softer > 50 && steps <= MAX_STEPS);
 }
 
-/// From above the velocity of the move, and with little room: by way of a velocity that is held it would take 16 scans.
+/// From above the velocity of the move, and with little room: with a stretch at constant velocity it would take 16
+/// scans.
 #[test]
 fn a_turn_close_behind_a_fast_start_is_come_to_in_one_go() {
     let limits = Limits {
@@ -161,8 +162,8 @@ fn a_turn_close_behind_a_fast_start_is_come_to_in_one_go() {
     assert!((at_turn.acceleration + 9_780.0).abs() < 1e-6, "{at_turn:?}");
 }
 
-/// How many of random targets are passed with the acceleration that is asked for, a part of `bound` against the way, at most as fast
-/// as wanted.
+/// How many random targets are passed with the requested acceleration, a fraction of `bound` against the direction
+/// of motion, and at most at the wanted speed.
 fn passed(seed: u64, bound: impl Fn(&Limits) -> f64) -> u32 {
     let mut random = Random(seed);
     let mut passed = 0;
@@ -198,7 +199,7 @@ fn passed(seed: u64, bound: impl Fn(&Limits) -> f64) -> u32 {
             "{state:?} {}",
             context()
         );
-        // Speeding up it may gain some in the rest of the scan.
+        // While speeding up it may gain some speed in the rest of the scan.
         let gained = (-passage.brake * cycle).max(0.0);
         assert!(
             side * state.velocity <= passage.wanted * (1.0 + 1e-9) + gained,
@@ -225,7 +226,7 @@ fn what_brakes_through_its_target_keeps_the_limits_and_comes_to_rest() {
 #[test]
 fn what_speeds_up_through_its_target_keeps_the_limits_and_comes_to_rest() {
     let passed = passed(43, |limits| -limits.acceleration);
-    // Most ways have room for the wanted speed without acceleration.
+    // Most moves have room for the wanted speed without acceleration.
     assert!(passed > 200, "only {passed}");
 }
 

@@ -107,7 +107,7 @@ fn stepping() -> String {
     let curve = SCurve::new(0.0, 50.0, &case_bounds(&case)).expect("a plan");
     let profile = curve.profile();
     let jerk = number(&case["input"]["J"]);
-    // Jerk after each switch, until the next; the two pulses in the middle are one.
+    // The jerk after each switch, up to the next; the two pulses in the middle are one.
     let signs = [1.0, 0.0, -1.0, 0.0, 1.0, 0.0].map(|sign| sign * jerk);
     let switches = || {
         let middle = curve.times().velocity;
@@ -148,7 +148,7 @@ fn stepping() -> String {
     )
 }
 
-/// Without the sign of what rounding left of nothing.
+/// Makes 0 of a rounding residue, without its sign.
 fn snapped(value: f64) -> f64 {
     if value.abs() < 1e-9 { 0.0 } else { value }
 }
@@ -258,7 +258,7 @@ fn bui_lengths() -> String {
         let printed = numbers(&published["S"]);
         let velocities = numbers(&input["V"]);
         (0..velocities.len()).map(move |i| {
-            // Of a longer way what is not cruise is S(V).
+            // On a longer path the part without cruise is S(V).
             let (way, peak) = (1.0, velocities[i]);
             let limits = bounds(peak, a, j);
             let plan = ShortPath::new(0.0, v_s, way, v_e, &limits, ShortPathPolicy::Paper).expect("a plan");

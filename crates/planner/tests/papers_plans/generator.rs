@@ -63,7 +63,7 @@ pub struct Generator<T> {
     enable_before: bool,
     started_before: bool,
     clock_before: T,
-    /// The sixteen instants and the amplitude in force, in units of the plan's own.
+    /// The sixteen instants and the amplitude in force, in the units of the plan.
     instants: [T; 16],
     amplitude: i128,
     /// d, j, a, v, x of the sample before.
@@ -83,7 +83,7 @@ impl<T: Clock> Generator<T> {
         }
     }
 
-    /// One sample. `plan` is what a start in the sample before has planned.
+    /// One sample. `plan` is the plan for a start in the sample before.
     pub fn sample(&mut self, enable: bool, plan: &GridPlan) -> Euler {
         // (70), (56): a start takes effect one sample after its edge, and loads the profile.
         if self.started_before {

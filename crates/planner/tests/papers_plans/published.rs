@@ -91,8 +91,8 @@ fn short_paths_are_those_of_the_corrected_paper() {
             Some(expected) => same_short_path(&case, expected, &nearest, v_s),
             None => assert_eq!(nearest, paper, "{}", case["id"]),
         }
-        // Where the paper misprints a velocity, its numbers are those of the meant one; the misprinted one
-        // gives others.
+        // Where the paper misprints a velocity, its results are those of the intended one; the misprinted one gives
+        // others.
         if let Some(expected) = case.get("expected_for_printed_input") {
             let mut printed = input.clone();
             printed["v_s"] = case["published"]["v_s"].clone();
@@ -103,7 +103,7 @@ fn short_paths_are_those_of_the_corrected_paper() {
     }
 }
 
-/// The path lengths at which the paper's types meet: right there the peak is the stated velocity.
+/// The path lengths at which the paper's types meet: exactly there the peak is the stated velocity.
 #[test]
 fn short_path_types_meet_where_the_paper_says() {
     for case in cases("bui_path_length") {
@@ -116,7 +116,7 @@ fn short_path_types_meet_where_the_paper_says() {
             let plan =
                 ShortPath::new(0.0, v_s, *length, v_e, &limits, ShortPathPolicy::Paper).expect("a plan");
             let base = v_s.max(v_e);
-            // At the larger velocity itself the excess is a square root of what rounding left.
+            // At the larger velocity itself the excess is the square root of a rounding residue.
             let slack = if *peak > base { 1e-12 } else { 1e-9 };
             let off = (plan.peak_velocity() - peak).abs();
             assert!(off <= slack, "{}: {} {peak}", case["id"], plan.peak_velocity());
@@ -154,7 +154,7 @@ fn the_static_formula_with_its_missing_bound_is_the_s_curve() {
     }
 }
 
-/// Acceleration, velocity and the three times of the essay's section I, in the order that makes them right.
+/// Acceleration, velocity and the three times of the essay's section I, in the order that makes them correct.
 pub fn static_formula(d: f64, v: f64, a: f64, j: f64) -> [f64; 5] {
     let a_f = a.min(cube_root(d * j * j / 2.0)).min((v * j).sqrt());
     let square = a_f * a_f;
@@ -274,7 +274,7 @@ fn general_cases_are_planned_in_the_least_time() {
     }
 }
 
-/// No case of the file goes untested.
+/// Every case of the file is tested.
 #[test]
 fn every_kind_of_case_is_read() {
     let text = include_str!("../data/planner3-published.json");

@@ -169,8 +169,8 @@ fn stepping_is_the_same_move() {
     }
 }
 
-/// The paper steps with the jerk of the instant and never splits a step. On a switch off the grid that ends
-/// beside the target and not at rest, which the paper took for rounding of its 32-bit numbers.
+/// The paper steps with the jerk of the instant and never splits a step. With a switch off the grid, this ends
+/// beside the target and not at rest. The paper took that for rounding of its 32-bit numbers.
 #[test]
 fn stepping_without_splits_misses_the_target_as_the_paper_did() {
     let case = case("blejan-5-D2");

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use ShortPathPolicy::{Nearest, Paper};
 
-/// Way and two velocities under limits.
+/// Distance and two velocities under limits.
 struct Case {
     way: f64,
     from: f64,
@@ -190,13 +190,13 @@ fn type_5_meets_its_closed_form() {
     assert!(seen > 100, "{seen}");
 }
 
-/// The duration does not jump where the types meet, nor does the peak.
+/// Neither the duration nor the peak jumps where the types meet.
 #[test]
 fn nothing_jumps_where_the_feed_rate_is_just_reached() {
     let mut random = Random(0xB006);
     for _ in 0..500 {
         let case = Case::random(&mut random);
-        // An end velocity at the feed rate is out of reach at once, and what is planned then is another move.
+        // An end velocity at the feed rate is out of reach at once, and the plan is then for another move.
         let highest = 0.99 * case.limits.velocity;
         let long = Case {
             way: 1e6,
@@ -224,7 +224,7 @@ fn nothing_jumps_where_the_feed_rate_is_just_reached() {
     }
 }
 
-/// Which end velocities can be reached is not a question of how near they are to the start velocity.
+/// Whether an end velocity can be reached does not depend on how near it is to the start velocity.
 #[test]
 fn a_lower_end_velocity_may_need_less_way() {
     let limits = bounds(0.08, 20.0, 100.0);

@@ -100,10 +100,10 @@ pub fn integrated_until(start: State, segments: &[Segment], time: f64) -> State 
     state
 }
 
-/// Asserts what a case states of a whole profile from `start`.
+/// Asserts the whole profile that a case states, from `start`.
 pub fn same_profile(case: &Value, expected: &Value, profile: &Profile, start: State) {
     let segments: Vec<_> = profile.segments().collect();
-    // Segments of no length and neighbours of the same jerk say nothing.
+    // Segments of length 0, and neighbours of the same jerk, say nothing.
     let mut merged: Vec<(f64, f64)> = Vec::new();
     for segment in expected["segments"].as_array().expect("a list") {
         let (t, jerk) = (number(&segment[0]), number(&segment[1]));
@@ -160,7 +160,7 @@ pub fn cube_root(x: f64) -> f64 {
     (0..200).fold(x.max(1.0), |root, _| (2.0 * root + x / (root * root)) / 3.0)
 }
 
-/// How many random cases: `count` in a plain test run, `STANDSTILL_SOAK_FACTOR` times as many if that is set.
+/// The number of random cases: `count`, times `STANDSTILL_SOAK_FACTOR` if that is set.
 pub fn rounds(count: u64) -> u64 {
     let factor = std::env::var("STANDSTILL_SOAK_FACTOR")
         .ok()
@@ -191,7 +191,7 @@ pub fn keeps_its_word(profile: &Profile, start: State, limits: &Limits, what: &s
             (segment.acceleration - a).abs() <= 1e-11 * limits.acceleration,
             "{what}"
         );
-        // What rounding left of an acceleration of zero would be integrated over a long cruise.
+        // The rounding residue of a zero acceleration would be integrated over a long cruise.
         state = [state[0], segment.velocity, segment.acceleration];
         for step in 0..=8 {
             let t = segment.duration * f64::from(step) / 8.0;
@@ -211,7 +211,7 @@ pub fn keeps_its_word(profile: &Profile, start: State, limits: &Limits, what: &s
                 (seen.position - p).abs() <= 1e-12 * length,
                 "{what}: {seen:?} {p}"
             );
-            // An instant late in a long move has no more digits than the clock.
+            // Late in a long move an instant has no more digits than the clock.
             let clock = limits.acceleration * f64::EPSILON * profile.duration();
             assert!(
                 (seen.velocity - v).abs() <= 1e-11 * limits.velocity + clock,

@@ -128,7 +128,7 @@ fn trapezoid(velocity: f64, acceleration: f64, deceleration: f64) -> Limits {
     }
 }
 
-/// Where constant accelerations lead, the bounds kept on the way.
+/// Where constant accelerations lead, with the bounds checked along the path.
 fn judge(plan: &Trapezoid, start: f64, limits: &Limits) {
     let profile = plan.profile();
     assert_eq!(profile.order(), Order::Two);

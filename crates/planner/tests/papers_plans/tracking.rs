@@ -69,7 +69,7 @@ fn a_chase_keeps_its_limits_and_ends_on_the_last_target() {
                 limits.jerk,
                 limits.snap,
             ];
-            // A position has 53 bits; each difference doubles what that leaves.
+            // A position has 53 bits; each difference doubles the rounding error.
             let mut noise = 4.0 * f64::EPSILON * row.iter().fold(0.0, |m: f64, p| m.max(p.abs()));
             for bound in bounds.iter().take(order.degree()) {
                 row = row.windows(2).map(|pair| (pair[1] - pair[0]) / CYCLE).collect();
@@ -107,7 +107,7 @@ fn a_refused_target_leaves_the_plan() {
     assert_eq!((*tracking.plan(), tracking.now()), (plan, now));
 }
 
-/// The executed segments lead where the set-points lead, cut anywhere, and their peaks are the peaks.
+/// The executed segments lead to the set-points, wherever they are cut, and their peaks are the same.
 #[test]
 fn executed_segments_lead_to_the_present() {
     let mut random = Random(0x7AC2);

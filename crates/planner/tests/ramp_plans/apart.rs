@@ -1,4 +1,4 @@
-//! Acceleration and deceleration thousands of times apart, as chains of random replans met them.
+//! Acceleration and deceleration a factor of thousands apart, as found by chains of random replans.
 
 use standstill_planner::{Excess, Limits, OnlinePlan, RampPlan, Segment, Setpoint};
 
@@ -52,7 +52,7 @@ fn limits([velocity, acceleration, deceleration, jerk, snap]: [f64; 5]) -> Limit
     }
 }
 
-/// Lowered limits that are come back inside by a deceleration that lasts for seconds to days, after an acceleration
+/// Lowered limits with a way back inside by a deceleration that lasts seconds to days, after an acceleration
 /// thousands of times higher: limits, limits before, cycle, position, velocity, acceleration, jerk, goal.
 type Lowered = ([f64; 5], [f64; 5], f64, [f64; 4], Goal);
 
@@ -78,7 +78,7 @@ const LOWERED: &[Lowered] = &[
         [1743.8606346922825, 815.6375143242019, 39.06267834731589, -19182.489254310443], Goal::Velocity(0.0)),
 ];
 
-/// What rounding leaves of the jerk before such a hold is not held with it.
+/// The rounding residue of the jerk before such a stretch is not held throughout it.
 #[test]
 fn a_low_deceleration_is_held_without_a_jump_at_its_end() {
     for &(bounds, before, cycle, [position, velocity, acceleration, jerk], goal) in LOWERED {
@@ -107,9 +107,9 @@ fn a_low_deceleration_is_held_without_a_jump_at_its_end() {
     }
 }
 
-/// Turns in which a hard brake is released down to a low acceleration just at zero velocity: two limits of velocity,
-/// those of acceleration, deceleration and jerk, cycle, position, velocity, acceleration, first goal, the scan at
-/// which it is left, and the next goal.
+/// Turns in which a hard brake is released down to a low acceleration just at zero velocity: two limits of
+/// velocity, the limits of acceleration, deceleration and jerk, cycle, position, velocity, acceleration, first
+/// goal, the scan at which it is replaced, and the next goal.
 type Turn = ([f64; 2], [f64; 3], f64, [f64; 3], Goal, u64, Goal);
 
 #[rustfmt::skip]
@@ -136,7 +136,7 @@ const TURNS: &[Turn] = &[
         Goal::Velocity(-2.823313552420861e-7), 30, Goal::Velocity(0.0)),
 ];
 
-/// In the middle of a release a stop, or a turn that goes on, is not too late for the lower limit.
+/// In the middle of a release, a stop or a continued turn is not too late for the lower limit.
 #[test]
 fn a_release_is_down_to_the_lower_limit_when_the_velocity_is_zero() {
     for &([first, next], [up, down, jerk], cycle, [position, velocity, acceleration], goal, scan, then) in

@@ -15,7 +15,7 @@ struct Worst {
     segments: usize,
 }
 
-/// Goals all forwards: then no plan may exceed a limit, reverse, or report an excess.
+/// All goals are forwards: then no plan may exceed a limit, reverse, or report an excess.
 fn forward_chains(seed: u64, chains: u64) -> Worst {
     let mut random = Random(seed);
     let mut worst = Worst::default();
@@ -107,7 +107,7 @@ fn a_million_chained_ramps() {
                 (state, limits.velocity * random.unit(), limits, cycle)
             })
             .collect();
-        // One by one, with the timer in it: the median is what counts on a shared machine.
+        // One by one, each timed: the median counts on a shared machine.
         let mut times: Vec<f64> = Vec::new();
         let mut steps = 0;
         for (state, goal, limits, cycle) in &cases {
@@ -139,8 +139,8 @@ fn a_million_chained_ramps() {
     }
 }
 
-/// At the turn of a motion the velocity may be 0 to the bit and the acceleration what rounding leaves, or more: what takes less
-/// than a scan to settle takes no more than two.
+/// At the turn of a motion the velocity may be exactly 0 and the acceleration a rounding residue, or more. A state
+/// that needs less than a scan to settle takes at most two.
 #[test]
 fn what_is_almost_at_rest_is_at_rest_in_two_scans() {
     let cycle = 0.001;

@@ -19,7 +19,7 @@ fn excess_seen(seen: &support::Seen, limits: &Limits, goal: f64, heading: f64) -
     }
 }
 
-/// Any goal, and other limits at every link: each plan arrives, and its excess is what an integrator sees.
+/// Any goal, and other limits at every link: each plan arrives, and its excess is the one that an integrator finds.
 /// Returns the most pieces and root steps of a plan, and how many had an excess.
 fn changing_chains(seed: u64, chains: usize) -> (usize, u32, u32) {
     let mut random = Random(seed);

@@ -104,7 +104,7 @@ fn no_linear_programme_is_faster() {
     println!("duration / programme: median {} max {}", ratios[150], ratios[299]);
 }
 
-/// States exactly on a bound: one ulp outwards, on any of them, changes nothing to speak of.
+/// States exactly on a bound: one ulp outwards, on any of them, makes no significant difference.
 #[test]
 fn an_ulp_outwards_on_a_limit_changes_nothing() {
     let mut random = Random(23);
@@ -190,7 +190,7 @@ fn an_ulp_outwards_on_a_limit_changes_nothing() {
                 ));
             }
         }
-        // No ramp is judged by less than the time of a whole one.
+        // The scale is at least the time of a whole ramp.
         let full = steady_duration(limits.velocity, limits.acceleration, &limits);
         let goals = [0.0, limits.velocity, limits.velocity * random.unit()];
         for (there, beyond) in pairs {
@@ -257,7 +257,7 @@ fn other_units_change_no_bit() {
     }
 }
 
-/// By a million either way, which is no power of two: the same scans.
+/// Other units by a factor of a million, which is no power of two: the same scans.
 #[test]
 fn units_a_million_apart_change_no_scan() {
     let mut random = Random(27);
@@ -323,7 +323,7 @@ fn the_mirrored_ramp_is_the_mirror_image() {
     }
 }
 
-/// A ramp taken up again from any of its own states goes on as it did.
+/// A ramp made again from any of its own states continues as it did.
 #[test]
 fn a_ramp_planned_again_continues_itself() {
     let mut random = Random(31);
@@ -376,7 +376,7 @@ fn after_the_end_the_velocity_is_exact_and_a_stop_keeps_its_bits() {
             assert!(now.position >= last.position, "{last:?} {now:?}");
             last = now;
         }
-        // At constant velocity the position goes on in a straight line.
+        // At constant velocity the position continues in a straight line.
         let after = up.at(u64::from(up.scans()) + 1000);
         let expected =
             up.end_position() + limits.velocity * ((f64::from(up.scans()) + 1000.0) * cycle - up.duration());
@@ -428,7 +428,7 @@ fn there_already_takes_no_scan() {
 
 #[test]
 fn the_scan_before_a_switch_shows_what_was_in_force() {
-    // 0 -> 1 at 10 u/s^2 and 100 u/s^3: 0.1 s up, 0.1 s down, and the switch lies on a scan.
+    // 0 -> 1 at 10 u/s^2 and 100 u/s^3: 0.1 s up, 0.1 s down, and the switch is on a scan.
     let limits = Limits {
         velocity: 5.0,
         acceleration: 10.0,
@@ -638,8 +638,8 @@ fn absurd_inputs_end_in_a_plan_or_a_refusal() {
     assert!(planned > count / 10);
 }
 
-/// A ramp that takes its acceleration back for minutes, with a jerk far below all other limits, still ends on a goal close to
-/// where it would come to rest.
+/// A ramp that reduces its acceleration for minutes, with a jerk far below all other limits, still ends at a goal
+/// close to where it would come to rest.
 #[test]
 fn an_arrest_of_minutes_hides_no_goal_close_to_its_end() {
     const JERK: f64 = 3e-7;
@@ -667,7 +667,7 @@ fn an_arrest_of_minutes_hides_no_goal_close_to_its_end() {
                 let seen = support::integrate(&start, &plan, Order::Four);
                 let off = (seen.end.velocity - goal).abs();
                 assert!(off <= 1e-12 * speed, "{seconds} s to {goal:e}: off by {off:e}");
-                // Beyond its end the acceleration comes to the other side; before it, it only stays a little longer.
+                // Beyond its end the acceleration changes its sign; before it, the ramp only lasts a little longer.
                 let least = seconds + 2.0 * (f64::max(goal, 0.0) / JERK).sqrt();
                 assert!(plan.duration() >= least * (1.0 - 1e-6), "{seconds} s to {goal:e}");
             }

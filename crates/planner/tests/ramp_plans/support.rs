@@ -90,8 +90,8 @@ pub fn integrate(start: &Setpoint, plan: &impl Segmented, order: Order) -> Seen 
     for segment in plan.list() {
         assert!(segment.duration > 0.0, "a segment of no length");
         let s = segment.snap;
-        // What may not jump continues, to what a clock that has run for a while resolves; from here on the
-        // stated state holds.
+        // Quantities that may not jump continue, within the resolution of a clock that has run for a while; from
+        // here on the stated state holds.
         let gap = (segment.velocity - v).abs();
         assert!(gap <= 1e-12 * fastest, "velocity jumps by {gap:e} in {plan:?}");
         if order >= Order::Three {
@@ -119,7 +119,7 @@ pub fn integrate(start: &Setpoint, plan: &impl Segmented, order: Order) -> Seen 
                 seen.v_min = seen.v_min.min(v);
                 seen.jerk = seen.jerk.max(jer(t).abs());
                 if v.abs() <= 1e-12 * fastest {
-                    // Rounding decides the sign; other instants of the segment tell.
+                    // Rounding decides the sign here; other instants of the segment show it.
                 } else if v * a > 0.0 {
                     seen.speeding = seen.speeding.max(a.abs());
                 } else {

@@ -74,8 +74,8 @@ fn millions_of_late_turns() {
     println!("{:?}", late_turns(82, 6_000_000));
 }
 
-/// The time a turn takes does not jump as its start moves along a stop: a release that comes too late for
-/// one way of passing zero velocity goes over into the next.
+/// The time of a turn does not jump as its start moves along a stop: a release that comes too late for one way of
+/// passing zero velocity becomes the next one.
 #[test]
 fn the_time_of_a_turn_does_not_jump() {
     let mut random = Random(83);
@@ -100,7 +100,7 @@ fn the_time_of_a_turn_does_not_jump() {
         for part in 2..100 {
             let now = at(duration * f64::from(part) / 100.0);
             if (now - last).abs() > 0.002 * last {
-                // What is left of it between two starts that are next to each other.
+                // The difference between two neighbouring starts.
                 let (mut low, mut high) = (
                     duration * f64::from(part - 1) / 100.0,
                     duration * f64::from(part) / 100.0,
@@ -115,7 +115,7 @@ fn the_time_of_a_turn_does_not_jump() {
                         (low, below) = (middle, there);
                     }
                 }
-                // From rest it is no turn: the rate while the speed grows holds, not the lower one of both (R11).
+                // A start at rest is no turn: the rate for rising speed holds, not the lower one of both (R11).
                 if start(low).is_at_rest() == start(high).is_at_rest() {
                     worst = worst.max((above - below).abs() / below);
                 }

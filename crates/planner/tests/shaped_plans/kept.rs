@@ -87,7 +87,7 @@ fn limits_hold_the_target_is_exact_and_a_way_out_is_the_way_back_mirrored() {
                 peak <= bound * (1.0 + 1e-9),
                 "case {case}: {peak} is above {bound}"
             );
-            // What positions resolve.
+            // The resolution of positions.
             let resolved = 16.0 * 4.0 * size * f64::EPSILON / power(one.cycle, degree);
             assert!(
                 step <= bound * (1.0 + 1e-9) + resolved,
@@ -225,7 +225,7 @@ fn a_mode_that_cannot_be_used_is_refused_with_the_nearest_that_can() {
         let PlanError::OutOfRange { nearest, .. } = refused(value, 0.0, 1e-3) else {
             panic!("{value}");
         };
-        // What is named is taken.
+        // The named value is accepted.
         assert!(Shaper::new(&VibrationMode::new(nearest), 1e-3).is_ok());
     }
 }

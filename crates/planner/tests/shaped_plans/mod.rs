@@ -1,4 +1,4 @@
-//! What shapers leave of a swing, and what they keep of a plan. The load is simulated by [`swing`].
+//! The swing that shapers leave, and the properties of a plan that they keep. The load is simulated by [`swing`].
 
 mod kept;
 mod swing;

@@ -1,4 +1,4 @@
-//! A load on a spring, simulated: the judge of what a shaper leaves. It shares no code with the shapers.
+//! A load on a spring, simulated: the judge of the remaining swing. It shares no code with the shapers.
 
 use standstill_planner::Setpoint;
 
@@ -21,7 +21,7 @@ impl Load {
     ///
     /// Within a scan the acceleration is the one at its end, traced back along the jerk and the snap in force just before.
     /// The response to it is Duhamel's integral.
-    // A judge with the functions of the library: its bits are nobody's.
+    // The judge uses the library's functions: its bits do not matter.
     #[allow(clippy::disallowed_methods)]
     pub fn swing(&self, scans: u32, cycle: f64, at: impl Fn(u64) -> Setpoint) -> f64 {
         let natural = std::f64::consts::TAU * self.frequency;

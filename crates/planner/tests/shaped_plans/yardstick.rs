@@ -4,8 +4,8 @@ use super::swing::Load;
 use super::{Shaped, limits, mode};
 use standstill_planner::{ShaperKind, Shapers};
 
-/// A move, in periods of its load: how long its velocity rises, how long it is constant, and how long the acceleration of the
-/// jerk-limited move rises.
+/// A move, in periods of its load: how long its velocity rises, how long it is constant, and how long the
+/// acceleration of the jerk-limited move rises.
 struct Move {
     name: &'static str,
     rise: f64,
@@ -34,14 +34,14 @@ const MOVES: [Move; 3] = [
     },
 ];
 
-/// What each shaper has to leave at most.
+/// The most that each shaper may leave.
 const YARDSTICK: [(ShaperKind, f64); 3] = [
     (ShaperKind::Zv, 1.0 / 6.0),
     (ShaperKind::Ei, 1.0 / 20.0),
     (ShaperKind::Zvd, 1.0 / 32.0),
 ];
 
-/// True frequencies, by that which the shaper was made for.
+/// True frequencies, as a ratio to the one that the shaper was made for.
 const OFF: [f64; 5] = [0.9, 0.95, 1.0, 1.05, 1.1];
 
 const CYCLE: f64 = 1e-3;
@@ -122,8 +122,9 @@ fn a_shaped_move_leaves_its_part_of_the_swing_of_a_jerk_limited_one() {
     }
 }
 
-/// Against the same move unshaped, at the frequency that the shaper was made for, whatever part of a scan its period has:
-/// nothing, but for `ei`, which tolerates 3 %, and for the share of a scan that `period` can't place.
+/// Against the same move unshaped, at the frequency that the shaper was made for, for any fraction of a scan in its
+/// period: nothing is left. Exceptions: `ei`, which tolerates 3 %, and the fraction of a scan that `period` cannot
+/// place.
 ///
 /// Covers: VB2
 #[test]
