@@ -1,6 +1,5 @@
-//! Bounds so high that they limit nothing: the bounds that a plan uses (docs/planner.md, eq. 39); it
-//! lands, keeps the other bounds and does not jump. Every difference is taken from published positions
-//! alone.
+//! Bounds so high that they limit nothing: the bounds that a plan uses (docs/planner.md, eq. 39). The plan reaches
+//! its target, keeps the other bounds and does not jump. Every difference is taken from published positions alone.
 
 use standstill_planner::{
     Limits, MoveProfile, OnlinePlan, Plan, Planner, RampPlan, Setpoint, Standard, StandardPlan,
@@ -21,7 +20,7 @@ fn servo() -> Limits {
     }
 }
 
-/// Sets of limits in which `high` stands for one or more of those above the velocity, at each order.
+/// Sets of limits in which `high` is the value of one or more limits above the velocity, at each order.
 fn sets(high: f64) -> Vec<Limits> {
     let mut sets = Vec::new();
     for order in 2..=4 {
@@ -97,7 +96,7 @@ fn moves_and_ramps_do_not_jump_whatever_is_not_limited() {
     }
 }
 
-/// How far above it limits something a bound is makes no difference, and neither does a plan know: the order is the same.
+/// A bound that limits nothing acts alike, however high it is, and the plan has the same order.
 #[test]
 fn every_bound_that_limits_nothing_acts_alike() {
     for (one, other) in sets(1e20).iter().zip(sets(f64::MAX)) {
@@ -135,7 +134,7 @@ fn a_bound_acts_as_what_is_reached_in_a_1024th_of_a_scan() {
     );
 }
 
-/// Pieces keep their durations however late in a plan they are.
+/// Pieces keep their durations, however late in a plan they are.
 #[test]
 fn the_last_piece_of_a_long_ramp_is_as_long_as_the_first() {
     let limits = Limits {

@@ -9,8 +9,8 @@ fn close(one: f64, other: f64) -> bool {
     (one - other).abs() <= 1e-6 * other.abs().max(1e-3)
 }
 
-/// At order 2 a steady start at v reaches, over a way d and without turning, the speeds from the root of
-/// v^2 - 2 D d to that of v^2 + 2 A d: the wanted speed is brought between the two.
+/// At order 2 a steady start at v reaches, over a distance d and without turning, the speeds from the root of v^2 -
+/// 2 D d to that of v^2 + 2 A d. The wanted speed is brought between the two.
 #[test]
 fn order_2_reaches_what_the_closed_form_does() {
     let mut random = Random(71);
@@ -48,7 +48,7 @@ fn order_2_reaches_what_the_closed_form_does() {
     }
 }
 
-/// u^2 / 2D - e^2 / 2D + u Ts = L, and never more than half the way in a scan.
+/// u^2 / 2D - e^2 / 2D + u Ts = L, and never more than half the distance in a scan.
 #[test]
 fn order_2_is_entered_as_the_closed_form_says() {
     let mut random = Random(72);
@@ -73,8 +73,8 @@ fn order_2_is_entered_as_the_closed_form_says() {
     }
 }
 
-/// Anywhere on a move from rest to rest: the speed at the target is there exactly, no set-point turns back or
-/// lies beyond, and what was wanted is had or was out of reach.
+/// Anywhere on a move from rest to rest: the speed is exact at the target, and no set-point turns back or is beyond
+/// the target. The wanted speed is reached or was out of reach.
 #[test]
 fn a_move_can_be_blended_at_any_of_its_scans() {
     let mut random = Random(73);
@@ -157,8 +157,9 @@ fn a_larger_speed_is_reached_at_the_end() {
     }
 }
 
-/// A way of a few scans at the speed of the start is passed without turning: ramps so short are rounding beside the positions, the
-/// cruise is not. The move may have a lower velocity than it begins with, and the speed to pass with may be a little lower.
+/// A distance of a few scans at the speed of the start is passed without turning. Ramps so short are rounding
+/// errors beside the positions, the cruise is not. The move may have a lower velocity than it begins with, and the
+/// speed at the target may be a little lower.
 #[test]
 fn a_way_of_a_few_scans_is_passed() {
     let mut random = Random(73);

@@ -5,10 +5,10 @@ use standstill_planner::kernel::MAX_STEPS;
 use standstill_planner::online::MAX_SOLVES;
 use standstill_planner::{Limits, OnlinePlan, Order, Setpoint};
 
-/// What a run of chains saw at worst.
+/// The worst figures of a run of chains.
 #[derive(Debug, Default)]
 struct Worst {
-    /// Distance from the target where the integrated segments end, relative to the way.
+    /// Distance from the target where the integrated segments end, relative to the length of the move.
     miss: f64,
     /// Excess over any limit, relative to it.
     excess: f64,
@@ -69,7 +69,7 @@ fn chains(seed: u64, count: u32, equal: bool, change: impl Fn(&mut Random, &Limi
             assert_eq!(end, Setpoint::at_rest(target));
             assert!((f64::from(plan.scans()) - plan.duration() / cycle).abs() <= 1.0);
             let travelled = plan.peaks().velocity * plan.duration();
-            // What the positions themselves resolve is no miss.
+            // The resolution of the positions themselves is no miss.
             let resolved = 32.0 * f64::EPSILON * (start.position.abs() + target.abs());
             let distance = target - start.position;
             let miss =
@@ -120,7 +120,8 @@ fn chains_under_constant_limits_meet_every_target_within_the_limits() {
     assert_eq!(worst.outside, 0);
 }
 
-/// What an axis publishes, replans and all: each divided difference is inside the limit of its derivative.
+/// The published positions of an axis, with all replans: each divided difference is inside the limit of its
+/// derivative.
 #[test]
 fn published_positions_keep_the_limits() {
     let mut random = Random(5);
@@ -132,7 +133,7 @@ fn published_positions_keep_the_limits() {
         let cycle = time * random.log(0.01, 0.3);
         let way = limits.velocity * time;
         let mut start = Setpoint::at_rest(way * random.between(-1.0, 1.0));
-        // At rest for a while, or the first differences would look before the beginning.
+        // At rest for a while, so that the first differences do not go back before the beginning.
         let mut published = vec![start.position; 5];
         for _ in 0..20 {
             let target = way * random.between(-3.0, 3.0);

@@ -205,8 +205,8 @@ fn velocity_at(plan: &RampPlan, mut time: f64) -> f64 {
     plan.end_velocity()
 }
 
-/// Too fast to stay below the velocity limit, and too slow to stop without turning back: the excess is
-/// reported, and no simulation stays closer to the limit; nor, of those that turn back once, to zero.
+/// Too fast to stay below the velocity limit, or too slow to stop without turning back: the excess is reported, and
+/// no simulation stays closer to the limit. Of those that turn back once, none stays closer to zero.
 #[test]
 fn what_cannot_be_avoided_is_the_least_and_is_told() {
     let mut random = Random(41);
@@ -223,7 +223,7 @@ fn what_cannot_be_avoided_is_the_least_and_is_told() {
             snap: jerk * random.log(30.0, 1000.0),
         };
         let room = |bound: f64, a: f64| (2.0 * limits.snap * (bound - a)).sqrt().min(limits.jerk);
-        // In a stop the roles are: falling velocity, zero as the limit.
+        // In a stop the velocity falls, and zero is the limit.
         let stop = case % 2 == 1;
         let bound = if stop {
             limits.deceleration
@@ -263,7 +263,7 @@ fn what_cannot_be_avoided_is_the_least_and_is_told() {
         let seen = integrate(&start, &plan, Order::Four);
         let step = rise / a * 2e-4;
         let (least, ours) = if stop {
-            // Turned over: up is down, and what brakes the fall may use the lower of the two bounds.
+            // Mirrored: up is down, and the braking of the fall may use the lower of the two bounds.
             let lower = limits.acceleration.min(limits.deceleration);
             let over = Setpoint {
                 velocity: -start.velocity,
@@ -300,7 +300,7 @@ fn what_cannot_be_avoided_is_the_least_and_is_told() {
             "case {case}: {ours} {least} {start:?} {limits:?} {plan:?}"
         );
         if stop {
-            // What comes out of the dip by itself turns again.
+            // A motion that leaves the dip by itself turns again.
             let again = settled(start.velocity, start.acceleration, start.jerk, &limits) > 0.0;
             assert!(
                 turns(&plan, 1e-9 * velocity) <= 1 + usize::from(again),
@@ -318,8 +318,8 @@ fn what_cannot_be_avoided_is_the_least_and_is_told() {
     assert!(exceeding > 300 && turning > 300 && gentle_is_worse > 15);
 }
 
-/// In the middle of a ramp under the old limits, new ones come: until the state is inside, the larger of
-/// the two hold throughout, and no more.
+/// New limits in the middle of a ramp under the old ones: until the state is inside, the larger of the two hold
+/// throughout, and no more.
 #[test]
 fn under_lowered_limits_the_larger_ones_hold() {
     let mut random = Random(43);
@@ -357,7 +357,7 @@ fn under_lowered_limits_the_larger_ones_hold() {
         let seen = integrate(&start, &then, order);
         let context = || format!("case {case} {start:?} -> {goal} {new:?} {old:?}\n{seen:?}\n{then:?}");
         let within = |value: f64, a: f64, b: f64| value <= a.max(b) * (1.0 + 1e-9);
-        // A lower jerk may be too low to stop before the velocity turns back; nothing can be said then.
+        // A lower jerk may be too low to stop before the velocity turns back; then there is nothing to check.
         if seen.v_min < -1e-9 * old.velocity {
             reversed += 1;
             continue;
@@ -504,8 +504,8 @@ fn getting_inside_comes_first_and_is_fast() {
     }
 }
 
-/// Lower rates do not lead out of the old velocity limit where a stop under the old ones would not: plans to a velocity
-/// and to a place, from any state.
+/// Lower rates do not lead out of the old velocity limit where a stop under the old rates would not: plans to a
+/// velocity and to a position, from any state.
 #[test]
 fn lowered_limits_keep_the_old_velocity() {
     const CYCLE: f64 = 0.001;

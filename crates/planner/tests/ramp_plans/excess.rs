@@ -2,7 +2,7 @@
 
 use standstill_planner::{Limits, PlanError, RampPlan, Setpoint};
 
-/// Bounds so low that the times of a ramp are beyond numbers: refused, not left out.
+/// Bounds so low that the times of a ramp are too large for numbers: refused, not left out.
 #[test]
 fn a_ramp_that_never_arrives_is_too_long() {
     for (acceleration, jerk) in [
@@ -30,8 +30,8 @@ fn a_ramp_that_never_arrives_is_too_long() {
     }
 }
 
-/// A jerk that is built up in 1e-9 s, half a second after the start, where the clock's last place is more than a part in
-/// 1e-9 of that: the piece keeps its duration, so the jerk keeps its bound.
+/// A jerk that builds up in 1e-9 s, half a second after the start. The last place of the clock is more than 1e-9 of
+/// this duration there. The piece keeps its duration, so the jerk keeps its bound.
 #[test]
 fn a_piece_shorter_than_the_clock_resolves_keeps_its_bound() {
     let limits = Limits {
@@ -59,7 +59,7 @@ fn a_piece_shorter_than_the_clock_resolves_keeps_its_bound() {
     }
 }
 
-/// A start whose acceleration is fine while it brakes and too much behind zero velocity.
+/// A start whose acceleration is allowed while it brakes and too high after zero velocity.
 #[test]
 fn excess_over_higher_limits_looks_at_each_side_of_zero() {
     let limits = Limits {
