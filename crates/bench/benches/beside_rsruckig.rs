@@ -2,10 +2,9 @@
 //! same run. `cargo bench -p standstill-bench --bench beside_rsruckig [-- INPUTS]`, 100,000 for each set
 //! by default.
 //!
-//! Every input is planned once by each planner in every round. Its time is the least over the rounds, so
-//! that other load of the machine has no effect; median, 99.9th percentile and largest are over the
-//! inputs. Both check their inputs in the time measured, and rsruckig keeps its memory from plan to plan,
-//! as it is made for.
+//! Every input is planned once by each planner in every round. Its time is the least over the rounds, so that other
+//! load of the machine has no effect; median, 99.9th percentile and largest are over the inputs. The measured time
+//! includes the check of the inputs for both. rsruckig keeps its memory from plan to plan, as designed.
 
 use rsruckig::prelude::{DataArrayOrVec, InputParameter, Ruckig, ThrowErrorHandler, Trajectory};
 use standstill_bench::{CYCLE, Random, Replan, any_unit, ordinary};
@@ -26,7 +25,7 @@ const WARM_UP: usize = 100;
 /// Samples taken of each plan.
 const SAMPLES: u32 = 32;
 
-/// A name, and what makes an input of a seed.
+/// A name, and a function that makes an input from a seed.
 type Set = (&'static str, fn(u64) -> Replan);
 
 const SETS: [Set; 4] = [
@@ -136,7 +135,7 @@ fn report(name: &str, moves: &[Replan], clock: f64) {
     );
 }
 
-/// Nanoseconds of one call, and what it gives.
+/// Nanoseconds of one call, and its result.
 fn time<T>(run: impl FnOnce() -> T) -> (f64, T) {
     let start = Instant::now();
     let result = run();
@@ -144,7 +143,7 @@ fn time<T>(run: impl FnOnce() -> T) -> (f64, T) {
     (start.elapsed().as_nanos() as f64, result)
 }
 
-/// What [`time`] shows for nothing: the median of many.
+/// The time that [`time`] reports for an empty call: the median of many.
 fn clock() -> f64 {
     let times: Vec<f64> = (0..10_001).map(|_| time(|| ()).0).collect();
     sorted(&times)[times.len() / 2]

@@ -15,7 +15,7 @@ use std::time::Instant;
 const ROUNDS: usize = 4_000;
 const SCANS: i64 = 2_000;
 
-/// Key at 104, inputs at 112, outputs at 184; the target is beyond what the bench reaches.
+/// Key at 104, inputs at 112, outputs at 184; the bench does not reach the target.
 const GUEST: &str = r#"(module
   (import "standstill" "mc_move_absolute" (func $move (param i32 i32 i32) (result i32)))
   (memory (export "memory") 1)
@@ -111,7 +111,7 @@ impl<R: Programs<Standard, IdealDrive>> Bench<R> {
             self.now_ns += 1_000_000;
         }
         let time = begin.elapsed().as_secs_f64() / SCANS as f64;
-        // What else the machine does can only add to it.
+        // Other load of the machine can only add to it.
         self.best = self.best.min(time);
     }
 

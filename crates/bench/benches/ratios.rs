@@ -1,7 +1,7 @@
 //! Times of the scan path as multiples of one sample of a plain trapezoid, timed in the same run.
 //!
-//! Prints a table with the bars of docs/performance.md and marks values above their bar. The bars are
-//! multiples of a sample from its parameters; the multiples of one that was planned before are shown too.
+//! Prints a table with the bars of docs/performance.md and marks values above their bar. The bars are multiples of
+//! a sample computed from its parameters; the multiples of a sample planned before are shown too.
 
 use standstill_axis::ConfigError;
 use standstill_bench::{
@@ -90,7 +90,7 @@ fn main() {
             batch: Box::new(ramp_plan()),
         },
     ];
-    // What the mixture is made of.
+    // The parts of the mixture.
     measures.extend(WAYS.iter().enumerate().map(|(way, name)| Measure {
         name,
         bar: None,
@@ -101,7 +101,7 @@ fn main() {
     let mut planned_ratios = vec![Vec::new(); measures.len()];
     for _ in 0..ROUNDS {
         for (index, measure) in measures.iter_mut().enumerate() {
-            // Neighbours in time, so that a busy machine slows both.
+            // Close together in time, so that a busy machine slows both.
             let before = (planned(), yardstick());
             let took = (measure.batch)();
             let after = (yardstick(), planned());
@@ -134,10 +134,10 @@ fn main() {
     print_many("MC_Power and MC_MoveAbsolute", false, ManyAxes::scan);
 }
 
-/// Axes of the second table, the most one of them may cost alone, in those of a single one.
+/// Axes of the second table, and the most that one of them may cost, as a multiple of the cost of a single axis.
 const MANY: [(u16, Option<f64>); 4] = [(1, None), (64, None), (512, Some(1.3)), (4096, Some(1.6))];
 
-/// Prints what one of many axes in the same move costs, to what it costs in a scan of one axis.
+/// Prints the cost of one of many axes in the same move, relative to its cost in a scan of one axis.
 fn print_many(what: &str, is_barred: bool, scan: fn(&mut ManyAxes)) {
     let mut batches = MANY.map(|(count, _)| scan_of_alike(count, scan));
     let mut times = MANY.map(|_| Vec::new());
@@ -175,7 +175,7 @@ fn scan_of_alike(count: u16, scan: fn(&mut ManyAxes)) -> impl FnMut() -> f64 {
             left = IN_MOTION;
         }
         left -= scans + 1;
-        // Whatever was measured before has the caches.
+        // The measurement before has replaced the contents of the caches.
         scan(&mut axes);
         let took = time(scans * u64::from(count), || {
             for _ in 0..scans {
@@ -205,14 +205,14 @@ fn trapezoid_sample() -> impl FnMut() -> f64 {
     }
 }
 
-/// The same move without anything computed before.
+/// The same move with nothing computed before.
 fn trapezoid_from_parameters() -> impl FnMut() -> f64 {
     let scans = (Trapezoid::new(0.0, TARGET, LIMITS.velocity, 1.0).duration() / CYCLE) as u64;
     move || time_parameters(scans)
 }
 
-// One copy of the code, or the yardstick as a measure and as a yardstick would differ by where the compiler
-// puts them.
+// One copy of the code: otherwise the yardstick as a measure and as a yardstick could differ by where the compiler
+// places them.
 #[inline(never)]
 fn time_parameters(scans: u64) -> f64 {
     time(scans, || {
@@ -256,8 +256,8 @@ fn executor_scan_in_motion() -> impl FnMut() -> f64 {
     }
 }
 
-/// A few scans of all axes in every round, the whole motion over all rounds: longer batches would measure what
-/// else the machine does.
+/// A few scans of all axes in every round, the whole motion over all rounds: longer batches would measure other
+/// load of the machine.
 fn scan_of_many(started: Result<ManyAxes, ConfigError>) -> impl FnMut() -> f64 {
     const SCANS: u64 = 7;
     let started = started.expect("valid");
@@ -267,7 +267,7 @@ fn scan_of_many(started: Result<ManyAxes, ConfigError>) -> impl FnMut() -> f64 {
             (axes, left) = (started.clone(), IN_MOTION);
         }
         left -= SCANS + 1;
-        // Whatever was measured before has the caches.
+        // The measurement before has replaced the contents of the caches.
         axes.scan();
         let took = time(SCANS * u64::from(AXES), || {
             for _ in 0..SCANS {

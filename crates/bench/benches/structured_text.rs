@@ -1,7 +1,7 @@
 //! Programs in Structured Text beside the same in C through clang, as guests of the same runtime, in one
 //! run; and the cost of compiling.
 //!
-//! Without clang there is nothing to compare with: it says so and prints the rest.
+//! Without clang there is nothing to compare with: it reports that and prints the other figures.
 
 use standstill_axis::{AxisConfig, DrivePosition, IdealDrive, Limits, Standard, StartState};
 use standstill_export::{Dialect, Prefix, Target, export};
@@ -18,8 +18,8 @@ use std::time::Instant;
 const ROUNDS: usize = 300;
 const SCANS: i64 = 500;
 
-/// What is compared: its name, the program in Structured Text, the same in C. What a program keeps can be read from outside in
-/// both: variables that nobody can see clang leaves out.
+/// A comparison: its name, the program in Structured Text, the same in C. The variables of both can be read from
+/// outside, because clang leaves out variables that nobody can see.
 const PAIRS: [(&str, &str, &str); 3] = [
     ("state machine", STATES_ST, STATES_C),
     ("20 blocks", BLOCKS_ST, BLOCKS_C),
@@ -195,7 +195,7 @@ impl Bench {
             assert!(report.mode.fault().is_none(), "{:?}", report.mode);
             self.now_ns += 1_000_000;
         }
-        // What else the machine does can only add to it.
+        // Other load of the machine can only add to it.
         self.best = self.best.min(begin.elapsed().as_secs_f64() / SCANS as f64);
         Ok(())
     }
@@ -210,7 +210,7 @@ fn of_st(text: &str) -> Result<Vec<u8>, Box<dyn Error>> {
     Ok(compiled.wasm)
 }
 
-/// The module clang makes of a program; `None` where there is no clang.
+/// The module that clang compiles from a program; `None` without clang.
 fn of_c(text: &str, folder: &Path) -> Result<Option<Vec<u8>>, Box<dyn Error>> {
     let (source, module) = (folder.join("cell.c"), folder.join("cell.wasm"));
     std::fs::write(&source, text)?;

@@ -37,9 +37,9 @@ const ON_CAM: usize = SLAVE + 1;
 /// Up and back over 2 u of the master: within the limits of the slave for any motion of the master.
 const CAM: [(f64, f64); 3] = [(0.0, 0.0), (1.0, 0.1), (2.0, 0.0)];
 
-/// 64 axes with MC_Power and one to three motion blocks each, and drives that follow at once: moves on the grid and
-/// from motion, endless motions on linear and modulo axes, steps of a drive that counts, a superimposed distance, a
-/// blended chain, a jog, a move under an override.
+/// 64 axes with MC_Power and one to three motion blocks each, and drives that follow at once. Among them are moves
+/// on the grid and from motion, endless motions on linear and modulo axes, steps of a drive that counts, a
+/// superimposed distance, a blended chain, a jog, and a move under an override.
 #[derive(Clone, Debug)]
 pub struct ManyAxes {
     /// The axes.
@@ -61,7 +61,7 @@ impl ManyAxes {
         Self::with_ways(AXES, |number| only.unwrap_or(usize::from(number) % WAYS.len()))
     }
 
-    /// So many axes, all in motion by MC_MoveAbsolute.
+    /// This many axes, all in motion by MC_MoveAbsolute.
     ///
     /// # Errors
     /// None with these constants.
@@ -211,8 +211,8 @@ impl ManyAxes {
         Ok(Self::at_rest(only)?.set_off())
     }
 
-    /// The axes at rest, half of them to be slaves: of eight axes four move by MC_MoveAbsolute, and a chain of four by MC_GearIn
-    /// behind the last of these.
+    /// The axes at rest, half of them to become slaves: of eight axes four move by MC_MoveAbsolute, and a chain of
+    /// four follows the last of these by MC_GearIn.
     ///
     /// # Errors
     /// None with these constants.

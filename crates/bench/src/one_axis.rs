@@ -41,7 +41,7 @@ pub struct OneAxis {
 }
 
 impl OneAxis {
-    /// A powered axis that has stood at 0 for a scan.
+    /// A powered axis that has been at rest at 0 for a scan.
     ///
     /// # Errors
     /// None with these constants.
@@ -168,7 +168,7 @@ impl Executed {
     /// One scan.
     ///
     /// # Errors
-    /// None: time does not run backwards here.
+    /// None: time does not go backwards here.
     pub fn scan(&mut self) -> Result<ScanReport, TimeRanBackwards> {
         let report = self
             .executor

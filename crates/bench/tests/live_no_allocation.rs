@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// Writes down at every sleep what was taken so far.
+/// Records at every sleep the allocations so far.
 struct Watching {
     now_ns: u64,
     taken: Vec<u64>,
@@ -28,7 +28,7 @@ impl Clock for Watching {
     }
 }
 
-/// The scans in which a word stands in the trace for the first time.
+/// The scans in which a word appears in the trace for the first time.
 fn new_words(trace: &Trace) -> BTreeSet<usize> {
     let mut seen = BTreeSet::new();
     let mut scans = BTreeSet::new();

@@ -87,8 +87,8 @@ impl Rig {
     }
 }
 
-/// 1,000 moves 0 <-> 10.1 by MC_MoveAbsolute, a tenth of them in a plain test run, end on 0 to the bit, and so does every
-/// second one.
+/// 1,000 moves 0 <-> 10.1 by MC_MoveAbsolute, a twentieth of them in a plain test run: each ends at its target to
+/// the bit.
 #[test]
 fn a_thousand_moves_there_and_back_end_on_zero() {
     let mut rig = Rig::new(&[None]);
@@ -100,7 +100,7 @@ fn a_thousand_moves_there_and_back_end_on_zero() {
     }
 }
 
-/// After a move that ends between two increments an axis stands still: not a bit of any value changes.
+/// After a move that ends between two increments an axis does not move: not a bit of any value changes.
 #[test]
 fn nothing_creeps_at_standstill() {
     let scans = std::env::var("STANDSTILL_SOAK")
@@ -130,7 +130,7 @@ fn nothing_creeps_at_standstill() {
     let before = state(&rig);
     for scan in 0..scans {
         rig.scan();
-        // Looked at in full now and then, at the first and at the last scan.
+        // Compared in full every few scans, and at the first and the last scan.
         if scan % 1000 == 0 || scan + 1 == scans {
             assert_eq!(state(&rig), before, "scan {scan}");
         }

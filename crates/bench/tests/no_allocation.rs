@@ -24,7 +24,7 @@ struct Monkey {
     random: Random,
     /// Blocks of each axis, in call order.
     blocks: Vec<Vec<BlockInstance>>,
-    /// States seen, by their place in [`AxisState::ALL`].
+    /// States seen, by their index in [`AxisState::ALL`].
     seen: [bool; AxisState::ALL.len()],
 }
 
@@ -158,7 +158,7 @@ fn no_scan_uses_the_heap() {
         assert_eq!(allocations() - before, 0, "scan {scan}");
         assert!(report.is_ok());
     }
-    // What was counted was worth counting.
+    // The count covered what it is meant to.
     for (state, seen) in AxisState::ALL.iter().zip(monkey.seen) {
         let reachable = *state != AxisState::SynchronizedMotion;
         assert_eq!(seen, reachable, "{}", state.name());
@@ -182,7 +182,7 @@ fn no_scan_of_64_axes_in_mixed_motion_uses_the_heap() {
 #[test]
 fn no_scan_of_64_axes_of_which_32_follow_others_uses_the_heap() {
     let mut axes = ManyAxes::chains_at_rest().expect("valid");
-    // From rest over coming into gear, which is in `set_off`, to the end of the motions.
+    // From rest through getting into gear (in `set_off`) to the end of the motions.
     let before = allocations();
     axes = axes.set_off();
     for _ in 0..SCANS {
@@ -218,7 +218,8 @@ impl standstill::runtime::Program for CamShow {
     }
 }
 
-/// Selected, selected anew while it runs, engaged, switched over, shifted, refused, stopped at corners, let go: no call of it uses the
+/// No call of a cam uses the heap, with a table of 512 rows too: selected, selected anew while it runs, engaged,
+/// switched over, shifted, refused, stopped at corners, disengaged.
 /// heap, a table of 512 rows included.
 ///
 /// Covers: G79, G84
@@ -349,7 +350,7 @@ fn no_call_and_no_scan_with_cams_uses_the_heap() {
                     .into_iter()
                     .for_each(|id| edge(blocks, id, true));
             }
-            // Selected anew while it runs, with another table, and switched over to at the end of the period.
+            // Selected anew while it runs, with another table, and replaced at the end of the period.
             3000 => {
                 edge(blocks, select, false);
                 blocks.set(select, "CamTable", high).expect("a table");
@@ -363,7 +364,7 @@ fn no_call_and_no_scan_with_cams_uses_the_heap() {
             }
             12_000 => edge(blocks, shift, true),
             18_000 => {
-                // Onto the long one at once.
+                // Replaced by the long one at once.
                 wire(blocks, select_long, cam);
                 edge(blocks, cam, false);
             }
@@ -384,7 +385,7 @@ fn no_call_and_no_scan_with_cams_uses_the_heap() {
         0,
         "a call or a scan with cams used the heap"
     );
-    // What was counted was worth counting.
+    // The count covered what it is meant to.
     let blocks = runtime.blocks();
     assert_eq!(most_busy, 16);
     assert!(blocks.is(select_bad, "Error"));

@@ -10,7 +10,7 @@ use standstill::prelude::*;
 pub const SCANS: i64 = 5700;
 const CYCLE_NS: u64 = 1_000_000;
 
-/// What happens to the buttons: scan, whether it is Start or Stop, and how it is from then on.
+/// The changes of the buttons: scan, Start or Stop, and the new state.
 const PRESSES: [(i64, Button, bool); 16] = [
     (20, Button::Start, true),
     (40, Button::Start, false),
@@ -36,7 +36,7 @@ enum Button {
     Stop,
 }
 
-/// What a panel shows.
+/// The lamps and values of a panel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lamps {
     /// Number of the state.
@@ -54,11 +54,11 @@ pub struct Lamps {
 /// An axis after a scan.
 #[derive(Clone, Copy, Debug)]
 pub struct Shown {
-    /// Its state when the program has run.
+    /// Its state after the program has run.
     pub state: AxisState,
-    /// What it was told.
+    /// Its set-point.
     pub setpoint: Setpoint,
-    /// Where its drive was at the start of the scan (u).
+    /// The position of its drive at the start of the scan (u).
     pub actual_position: f64,
 }
 
@@ -80,7 +80,7 @@ struct FeedAndPlace {
     stop_placer: Instance<McStop>,
     feeder_status: Instance<McReadStatus>,
     placer_status: Instance<McReadStatus>,
-    /// The states of the axes when the program has run.
+    /// The states of the axes after the program has run.
     states: [Option<AxisState>; 2],
 }
 
@@ -193,7 +193,7 @@ impl Program for FeedAndPlace {
 /// Runs the cell and shows every scan: both axes, and the lamps.
 ///
 /// # Errors
-/// What a runtime cannot be built with, or a scan does not go on with.
+/// The reason for which a runtime cannot be built or a scan cannot run.
 pub fn run(mut show: impl FnMut(&[Shown], &Lamps)) -> Result<(), Box<dyn std::error::Error>> {
     let mut builder = Builder::new(CYCLE_NS);
     let mut axis = |name, velocity, acceleration, jerk, snap| {

@@ -15,7 +15,8 @@ fn run(script: &str) -> Trace {
     outcome.trace
 }
 
-/// What every script has of an axis. A script whose blocks couple axes has more columns of its slaves; its claims hold those.
+/// The columns of an axis that every script has. A script whose blocks couple axes has more columns of its slaves;
+/// its claims check those.
 const COLUMNS: [&str; 6] = ["State", "Position", "Velocity", "Acceleration", "Jerk", "Snap"];
 
 fn cells(trace: &Trace) -> Vec<String> {

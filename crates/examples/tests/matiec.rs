@@ -34,7 +34,7 @@ fn translated(name: &str) -> Option<(PathBuf, PathBuf)> {
     Some((out, matiec.join("C")))
 }
 
-/// What matiec's own text is compiled with: it has its own ideas of warnings.
+/// The options for matiec's own text: it does not compile without warnings.
 fn of_matiec(out: &Path, headers: &Path) -> Vec<String> {
     let shim = "standstill_shim.h";
     let options = ["-O2", "-w", "-DGLOBAL_CAST=", "-include", shim, "-I"];
@@ -77,7 +77,7 @@ fn prog_st_as_a_guest() {
         return;
     }
     let mut command = of_matiec(&out, &headers);
-    // Older headers of matiec want those of a C library. Nothing of it is called, so nothing of WASI is imported.
+    // Older headers of matiec need those of a C library. Nothing of it is called, so nothing of WASI is imported.
     let sysroot = env::var_os("WASI_SYSROOT").map(PathBuf::from);
     let sysroot = sysroot
         .or_else(|| Some(PathBuf::from("/usr")).filter(|usr| usr.join("include/wasm32-wasi").exists()));
@@ -110,7 +110,7 @@ fn freestanding() -> Vec<String> {
     options.map(str::to_owned).to_vec()
 }
 
-/// What the script of a guest of matiec reads and writes.
+/// The exports that the script of a guest of matiec reads and writes.
 fn exports() -> Vec<String> {
     let names = VARIABLES.iter().map(|(name, _)| *name).chain(["Start", "Stop"]);
     let exports = names.map(|name| format!("-Wl,--export=CONFIG0__{}", name.to_ascii_uppercase()));
@@ -125,7 +125,8 @@ fn guest(out: &Path) -> Trace {
     of_guest(&out.join("matiec.scan.json"), str::to_owned)
 }
 
-/// The blocks of the shim that `prog.st` uses, as matiec would have them in C: a structure and a body each.
+/// The blocks of the shim that `prog.st` uses, in the form that matiec gives them in C: a structure and a body
+/// each.
 fn blocks_of_the_shim(shim: &str) -> String {
     let mut out = String::new();
     for block in [
@@ -153,7 +154,7 @@ fn blocks_of_the_shim(shim: &str) -> String {
     out
 }
 
-/// matiec crashes over a declaration of several block instances.
+/// matiec crashes on a declaration of several block instances.
 #[test]
 fn prog_st_declares_each_block_instance_by_itself() {
     let program = fs::read_to_string(folder().join("prog.st")).unwrap();
@@ -163,7 +164,8 @@ fn prog_st_declares_each_block_instance_by_itself() {
     }
 }
 
-/// What CI has of the way through matiec: the shim and the file that runs a program, under a program in matiec's shape.
+/// The part of the path through matiec that CI tests: the shim and the file that runs a program, under a program in
+/// matiec's form.
 #[test]
 fn a_program_in_the_shape_of_matiec_linked_and_as_a_guest() {
     let out = scratch("feed-and-place-matiec-shape");

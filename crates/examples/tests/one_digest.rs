@@ -12,7 +12,7 @@ use standstill_trace::{Cell, Trace};
 use std::fs;
 use std::sync::OnceLock;
 
-/// The run of the host in Rust, which every machine that runs this has.
+/// The run of the host in Rust, which needs no other tool.
 fn rust() -> &'static Trace {
     static RUN: OnceLock<Trace> = OnceLock::new();
     RUN.get_or_init(|| {

@@ -17,8 +17,8 @@ fn text(path: &Path) -> String {
     path.to_str().unwrap().to_owned()
 }
 
-/// Translates `prog.st`, with the shim before it, into the folder, and says how C++ is compiled there; `None` without
-/// STruC++.
+/// Translates `prog.st`, with the shim before it, into the folder, and returns the options for C++ there; `None`
+/// without STruC++.
 fn translated(name: &str) -> Option<(PathBuf, Vec<String>)> {
     if Command::new("strucpp").arg("--version").output().is_err() {
         skip(
@@ -120,7 +120,8 @@ fn prog_st_as_a_guest() {
     hold("STruC++, as a guest", &trace, None);
 }
 
-/// What CI has of the way through STruC++ beside the shim: the file that runs a program, over what two releases make of it.
+/// The part of the path through STruC++ that CI tests besides the shim: the file that runs a program, with the
+/// output of two releases.
 #[test]
 fn the_file_that_runs_a_program_compiles_wherever_the_globals_are() {
     if !has("c++") {

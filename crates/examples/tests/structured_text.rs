@@ -12,7 +12,7 @@ use std::fs;
 fn prog_st_as_it_stands() {
     let text = fs::read(folder().join("prog.st")).unwrap();
     let one_a_line = String::from_utf8(text.clone()).unwrap();
-    // Several instances in one declaration, and one in each: the same program.
+    // The same program with its declaration split into several.
     let split = one_a_line.replace(
         "Feed, Place, BackFeeder, BackPlacer : MC_MoveAbsolute;",
         "Feed : MC_MoveAbsolute; Place : MC_MoveAbsolute; BackFeeder, BackPlacer : MC_MoveAbsolute;",

@@ -1,27 +1,27 @@
-//! Random numbers for tests: all follow from a seed, the same on every machine.
+//! Random numbers for tests: all come from a seed and are the same on every machine.
 
 #![no_std]
 
 #[cfg(not(target_os = "none"))]
 extern crate std;
 
-/// Whether `STANDSTILL_SEARCH` is in the environment, as `.ci/run` has it: then what takes long is done whole.
+/// Whether `STANDSTILL_SEARCH` is in the environment, as in `.ci/run`: then long tests run in full.
 #[cfg(not(target_os = "none"))]
 #[must_use]
 pub fn searches() -> bool {
     std::env::var_os("STANDSTILL_SEARCH").is_some()
 }
 
-/// How many of `whole` cases a long search at random tries: all of them if it [searches]; else a twentieth, so that `cargo test` is
-/// soon done.
+/// How many of `whole` cases a long random search tries: all of them if it [searches]; else a twentieth, to keep
+/// `cargo test` short.
 #[cfg(not(target_os = "none"))]
 #[must_use]
 pub fn cases(whole: u64) -> u64 {
     if searches() { whole } else { whole.div_ceil(20) }
 }
 
-/// How far apart the entries of a long list are that a search through it tries: every one if it [searches]; else every eleventh,
-/// which is a prime, so that no column of a table is left out.
+/// The step with which a search goes through a long list: 1 if it [searches]; else 11, a prime, so that no column
+/// of a table is left out.
 #[cfg(not(target_os = "none"))]
 #[must_use]
 pub fn stride() -> usize {
@@ -43,12 +43,12 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// One of the whole numbers from 0 to `count` - 1; 0 if there is none.
+    /// A whole number from 0 to `count` - 1; 0 if `count` is 0.
     pub fn below(&mut self, count: u64) -> u64 {
         self.bits().checked_rem(count).unwrap_or(0)
     }
 
-    /// A place in a list of `len` entries; 0 if it is empty.
+    /// An index into a list of `len` entries; 0 if it is empty.
     pub fn place(&mut self, len: usize) -> usize {
         self.below(len as u64) as usize
     }

@@ -11,7 +11,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
-/// A host in Rust that has its instances in a list, as one that reads its program from somewhere does.
+/// A host in Rust that has its instances in a list, like one that reads its program from a file.
 #[derive(Debug)]
 pub struct RustHost {
     axes: [Axis; 1],
@@ -47,7 +47,7 @@ impl RustHost {
         })
     }
 
-    /// What blocks are called with, and the instance at a place.
+    /// The instance at an index, and the context that blocks are called with.
     #[inline(always)]
     pub fn parts(&mut self, place: usize) -> (Option<&mut BlockInstance>, Context<'_>) {
         let context = Context {
@@ -66,7 +66,7 @@ impl RustHost {
     }
 }
 
-/// The host in C as it runs: `host.c`, compiled by `cc -O2` and linked with the static library.
+/// The running host in C: `host.c`, compiled by `cc -O2` and linked with the static library.
 #[derive(Debug)]
 pub struct CHost {
     child: Child,
@@ -78,7 +78,7 @@ impl CHost {
     /// Builds the library and the host and starts it.
     ///
     /// # Errors
-    /// What cannot be built or started, for people.
+    /// The part that cannot be built or started, as a text.
     pub fn start() -> Result<Self, String> {
         let here = Path::new(env!("CARGO_MANIFEST_DIR"));
         let capi = here.join("../capi");
@@ -120,7 +120,7 @@ impl CHost {
         })
     }
 
-    /// Nanoseconds a call of this measure took, of so many; none if the host has ended.
+    /// Nanoseconds of one of so many calls of this measure; none if the host has ended.
     pub fn time(&mut self, measure: &str, calls: u64) -> Option<f64> {
         writeln!(self.asked, "{measure} {calls}").ok()?;
         let mut line = String::new();

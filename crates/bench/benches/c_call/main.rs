@@ -32,7 +32,7 @@ fn median(values: &mut [f64]) -> f64 {
     values[values.len() / 2]
 }
 
-/// Takes both by turns, so that a busy machine slows both; none if the host in C has ended.
+/// Measures both in turn, so that a busy machine slows both; none if the host in C has ended.
 fn compare(name: &str, host: &mut CHost, measure: &str, mut rust: impl FnMut(u64)) -> Option<()> {
     let (mut in_rust, mut in_c, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
     let mut number = 0;
@@ -61,8 +61,8 @@ fn compare(name: &str, host: &mut CHost, measure: &str, mut rust: impl FnMut(u64
     Some(())
 }
 
-/// Compares calls of a block: the inputs that are always the same, the one that may change, and what the outputs are.
-/// By hosts that make all inputs anew in every scan, and by hosts that write what may change.
+/// Compares calls of a block: the inputs that are always the same, the one that may change, and the outputs. Both
+/// for hosts that write all inputs in every scan, and for hosts that write only those that may change.
 macro_rules! measure {
     (
         $host:ident, $what:literal, $name:literal, $measure:literal, $block:ident,

@@ -32,7 +32,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// An axis of any configuration with a block of any kind; none where either is not valid.
+    /// An axis of any configuration with a block of any kind; none if either is not valid.
     pub fn new() -> Option<Self> {
         let config = AxisConfig {
             position: any(0.0),

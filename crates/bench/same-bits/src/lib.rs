@@ -1,9 +1,8 @@
 //! Random machines with random programs, and a digest of every bit they publish.
 //!
-//! The number is the same on every processor: `.ci/deep` compares it. It changes with the behaviour of a
-//! block, the axis or the planner, so no file has it. The random draws need no heap and no operating
-//! system, so that a bare processor can do the same. `standstill soak blocks` checks the rules; this does
-//! not.
+//! The digest is the same on every processor: `.ci/deep` compares it. It changes with the behaviour of a block, the
+//! axis or the planner, so no file contains it. The random draws need no heap and no operating system, so that a
+//! bare processor can make the same ones. `standstill soak blocks` checks the rules; this program does not.
 #![no_std]
 #![forbid(unsafe_code)]
 

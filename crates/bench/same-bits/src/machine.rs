@@ -265,7 +265,7 @@ fn draw(random: &mut Random, block: &mut BlockInstance, config: &AxisConfig, cyc
         PinType::Lreal => number(random, pin, config, cycle),
         PinType::Axis(_) | PinType::Table(_) => return,
     };
-    // An output says no.
+    // An output cannot be written.
     let _refused = block.set(index, value);
 }
 

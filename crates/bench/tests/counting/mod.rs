@@ -37,7 +37,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// What this thread has taken from the heap so far, in times.
+/// The number of heap allocations of this thread so far.
 pub fn allocations() -> u64 {
     ALLOCATIONS.get()
 }

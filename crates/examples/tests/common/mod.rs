@@ -1,4 +1,4 @@
-//! The digested signals of feed and place, only here, and the builds of its hosts.
+//! The digested signals of feed and place, defined only here, and the builds of its hosts.
 
 use standstill_trace::{Axis, Cell, Header, Input, Trace, digest};
 use std::ffi::OsStr;
@@ -24,7 +24,7 @@ const STATES: [&str; 8] = [
     "ErrorStop",
 ];
 
-/// The variables that count, in this order, with the types of `prog.st`.
+/// The variables in the digest, in this order, with the types of `prog.st`.
 pub const VARIABLES: [(&str, &str); 9] = [
     ("State", "INT"),
     ("Parts", "INT"),
@@ -37,7 +37,8 @@ pub const VARIABLES: [(&str, &str); 9] = [
     ("PlaceAborted", "BOOL"),
 ];
 
-/// What counts of a run: all columns of both axes, then the variables. The digest is that of any trace.
+/// The columns in the digest of a run: all columns of both axes, then the variables. The digest is that of any
+/// trace.
 pub fn empty() -> Trace {
     let axis = |name: &str| Axis {
         name: name.to_owned(),
@@ -80,7 +81,7 @@ pub fn of_lines(text: &str) -> Trace {
     trace
 }
 
-/// The trace of a scan script: the columns of its axes, and what `variables` makes of a scan.
+/// The trace of a scan script: the columns of its axes, and the variables that `variables` computes from a scan.
 pub fn of_script(path: &Path, variables: impl Fn(&Trace, usize) -> Vec<Cell<'static>>) -> Trace {
     let (_, script) = standstill_script::suite::Texts::read(path, &Default::default()).unwrap();
     let outcome = standstill_script::run(&script).unwrap();
@@ -101,7 +102,7 @@ pub fn of_script(path: &Path, variables: impl Fn(&Trace, usize) -> Vec<Cell<'sta
     trace
 }
 
-/// The variables of a guest, which its script calls so.
+/// The variables of a guest, under the names in its script.
 pub fn of_guest(path: &Path, name: impl Fn(&str) -> String) -> Trace {
     of_script(path, |run, scan| {
         let at = |(variable, _)| run.column(&format!("cell.{}", name(variable))).unwrap();
@@ -114,7 +115,7 @@ pub fn of_guest(path: &Path, name: impl Fn(&str) -> String) -> Trace {
     })
 }
 
-/// Holds a trace against the digest, and says where it leaves another one that is known to be right.
+/// Compares a trace with the digest, and reports where it differs from another one that is known to be right.
 pub fn hold(host: &str, trace: &Trace, right: Option<&Trace>) {
     assert_eq!(trace.scans(), SCANS, "{host}");
     for scan in 0..SCANS {
@@ -139,10 +140,10 @@ pub fn scratch(name: &str) -> PathBuf {
     folder
 }
 
-/// Says that a test is skipped, and why: past the runner, which keeps what tests that pass print.
+/// Reports that a test is skipped, and why. It bypasses the runner, which hides the output of tests that pass.
 pub fn skip(why: &str) {
     let mut out = std::io::stderr();
-    // Without a place to say it there is nobody to be told.
+    // If nothing can be written, nobody can read the message.
     let _told = writeln!(out, "SKIP: {why}");
 }
 
