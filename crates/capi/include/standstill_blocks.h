@@ -82,7 +82,7 @@ enum standstill_mc_trigger_ref {
 typedef struct standstill_mc_camswitch_ref {
     int16_t track_number; /* TrackNumber: The track, from 1 to 32; the cams of one track are ORed. */
     uint8_t reserved_2[6];
-    double first_on; /* FirstOnPosition: Lower end of the cam, included. On a modulo axis it may be above the upper one: the cam then lies over the end of the turn. In time mode the position that switches on. (u) */
+    double first_on; /* FirstOnPosition: Lower end of the cam, included. On a modulo axis it may be above the upper end: the cam then passes the end of the modulo range. In time mode it is the position that switches on. (u) */
     double last_on; /* LastOnPosition: Upper end of the cam, included; not used in time mode. (u) */
     int16_t axis_direction; /* AxisDirection: Direction in which the cam works: 0 both, 1 positive, 2 negative. */
     int16_t mode; /* CamSwitchMode: 0: on between the positions. 1: on for Duration. */
@@ -95,22 +95,22 @@ STANDSTILL_ASSERT(mc_camswitch_ref, sizeof(standstill_mc_camswitch_ref) == 40);
 typedef struct standstill_mc_track_ref {
     int64_t on_compensation; /* OnCompensation: Time by which the track switches on later; negative: earlier. (ns) */
     int64_t off_compensation; /* OffCompensation: Time by which the track switches off later; negative: earlier. (ns) */
-    double hysteresis; /* Hysteresis: Distance from the last switching point below which the track does not switch again. (u) */
+    double hysteresis; /* Hysteresis: Distance from the last switching point within which the track does not switch again. (u) */
 } standstill_mc_track_ref;
 STANDSTILL_ASSERT(mc_track_ref, sizeof(standstill_mc_track_ref) == 24);
 
 /** A record of MC_TP_REF, of which a block takes at most 40. */
 typedef struct standstill_mc_tp_ref {
-    int64_t delta_time; /* DeltaTime: Time since the point before, above 0; of the first one since the start, which may be 0. (ns) */
+    int64_t delta_time; /* DeltaTime: Time since the point before, above 0; for the first point since the start, where 0 is allowed. (ns) */
     double position; /* Position: Position there. (u) */
-    uint8_t level; /* Level: The curve is level there: the axis stands, without acceleration and jerk. */
+    uint8_t level; /* Level: The curve is level there: the axis is at rest, without acceleration and jerk. */
     uint8_t reserved_17[7];
 } standstill_mc_tp_ref;
 STANDSTILL_ASSERT(mc_tp_ref, sizeof(standstill_mc_tp_ref) == 24);
 
 /** A record of MC_TV_REF, of which a block takes at most 40. */
 typedef struct standstill_mc_tv_ref {
-    int64_t delta_time; /* DeltaTime: Time since the point before, above 0; of the first one since the start, which may be 0. (ns) */
+    int64_t delta_time; /* DeltaTime: Time since the point before, above 0; for the first point since the start, where 0 is allowed. (ns) */
     double velocity; /* Velocity: Velocity there, signed. (u/s) */
     uint8_t level; /* Level: The curve is level there: no acceleration and no jerk. */
     uint8_t reserved_17[7];
@@ -119,7 +119,7 @@ STANDSTILL_ASSERT(mc_tv_ref, sizeof(standstill_mc_tv_ref) == 24);
 
 /** A record of MC_TA_REF, of which a block takes at most 40. */
 typedef struct standstill_mc_ta_ref {
-    int64_t delta_time; /* DeltaTime: Time since the point before, above 0; of the first one since the start, which may be 0. (ns) */
+    int64_t delta_time; /* DeltaTime: Time since the point before, above 0; for the first point since the start, where 0 is allowed. (ns) */
     double acceleration; /* Acceleration: Acceleration there, signed: above 0 towards larger positions. (u/s^2) */
     uint8_t level; /* Level: The curve is level there: no jerk. */
     uint8_t reserved_17[7];
@@ -128,12 +128,12 @@ STANDSTILL_ASSERT(mc_ta_ref, sizeof(standstill_mc_ta_ref) == 24);
 
 /** A record of MC_CAM_REF, of which a block takes at most 512. */
 typedef struct standstill_mc_cam_ref {
-    double master; /* Master: Place of the master, above that of the row before. (u of the master) */
-    double slave; /* Slave: Place of the slave. (u) */
+    double master; /* Master: Position of the master, above that of the row before. (u of the master) */
+    double slave; /* Slave: Position of the slave. (u) */
     double slope; /* Slope: First derivative there, for mcCamPoly7 and mcCamPoly5. */
     double curvature; /* Curvature: Second derivative there, for mcCamPoly7 and mcCamPoly5. */
     double third; /* Third: Third derivative there, for mcCamPoly7. */
-    int32_t law; /* Law: How the cam runs on to the next row. */
+    int32_t law; /* Law: Law of the cam from this row to the next. */
     uint8_t reserved_44[4];
 } standstill_mc_cam_ref;
 STANDSTILL_ASSERT(mc_cam_ref, sizeof(standstill_mc_cam_ref) == 48);
@@ -142,8 +142,8 @@ STANDSTILL_ASSERT(mc_cam_ref, sizeof(standstill_mc_cam_ref) == 48);
 typedef struct standstill_mc_power_in {
     uint32_t size; /* sizeof this structure */
     int32_t axis; /* Axis: The axis to switch. */
-    uint8_t enable; /* Enable: Power is wanted as long as TRUE. */
-    uint8_t enable_positive; /* EnablePositive: Motion in positive direction is permitted. With FALSE a command that needs it is refused, and a motion that needs it brakes with the stop dynamics, stays Busy and goes on when it is permitted again. */
+    uint8_t enable; /* Enable: Power is requested while TRUE. */
+    uint8_t enable_positive; /* EnablePositive: Motion in positive direction is permitted. With FALSE a command that needs it is refused. A motion that needs it brakes with the stop dynamics, stays Busy, and continues when it is permitted again. */
     uint8_t enable_negative; /* EnableNegative: The same for the negative direction. */
     uint8_t reserved_11[5];
 } standstill_mc_power_in;
@@ -153,7 +153,7 @@ typedef struct standstill_mc_power_out {
     uint32_t size; /* sizeof this structure */
     uint8_t status; /* Status: The power stage is really on. */
     uint8_t valid; /* Valid: Status can be relied on. */
-    uint8_t error; /* Error: The block cannot do what its inputs ask, or the drive has not done it in time; power is then not asked for. */
+    uint8_t error; /* Error: The block cannot do what its inputs ask, or the drive has not done it in time; power is then not requested. */
     uint8_t reserved_7[1];
     uint16_t error_id; /* ErrorID: Why; 0 without an error. */
     uint8_t reserved_10[6];
@@ -189,7 +189,7 @@ typedef struct standstill_mc_reset_out {
     uint32_t size; /* sizeof this structure */
     uint8_t done; /* Done: Standstill or Disabled is reached. */
     uint8_t busy; /* Busy: Not finished: the axis still brakes, or the drive has not answered. */
-    uint8_t error; /* Error: The cause is still there, or the block is not usable. */
+    uint8_t error; /* Error: The cause is still present, or the block is not usable. */
     uint8_t reserved_7[1];
     uint16_t error_id; /* ErrorID: Why; 0 without an error. */
     uint8_t reserved_10[6];
@@ -258,7 +258,7 @@ typedef struct standstill_mc_read_motion_state_in {
     int32_t axis; /* Axis: The axis to read. */
     uint8_t enable; /* Enable: Read in every call while TRUE. */
     uint8_t reserved_9[3];
-    int32_t source; /* Source: The values to judge by; may change while Enable is TRUE. */
+    int32_t source; /* Source: The values to evaluate; may change while Enable is TRUE. */
 } standstill_mc_read_motion_state_in;
 STANDSTILL_ASSERT(mc_read_motion_state_in, sizeof(standstill_mc_read_motion_state_in) == 16);
 
@@ -269,11 +269,11 @@ typedef struct standstill_mc_read_motion_state_out {
     uint8_t error; /* Error: The block cannot read. */
     uint8_t reserved_7[1];
     uint16_t error_id; /* ErrorID: Why; 0 without an error. */
-    uint8_t constant_velocity; /* ConstantVelocity: The velocity is constant, 0 too; commanded values change in jumps only; a window applies to actual ones. */
+    uint8_t constant_velocity; /* ConstantVelocity: The velocity is constant, 0 included. Set values may change only in steps; actual ones must stay within a window. */
     uint8_t accelerating; /* Accelerating: The magnitude of the velocity grows. */
     uint8_t decelerating; /* Decelerating: The magnitude of the velocity shrinks. */
-    uint8_t direction_positive; /* DirectionPositive: The position grows; for commanded values: shall grow. */
-    uint8_t direction_negative; /* DirectionNegative: The position shrinks; for commanded values: shall shrink. */
+    uint8_t direction_positive; /* DirectionPositive: The position increases. For set values: it is commanded to increase. */
+    uint8_t direction_negative; /* DirectionNegative: The position decreases. For set values: it is commanded to decrease. */
     uint8_t reserved_15[1];
 } standstill_mc_read_motion_state_out;
 STANDSTILL_ASSERT(mc_read_motion_state_out, sizeof(standstill_mc_read_motion_state_out) == 16);
@@ -482,7 +482,7 @@ typedef struct standstill_mc_set_position_in {
     int32_t axis; /* Axis: The axis. */
     uint8_t execute; /* Execute: A rising edge moves the coordinates with the values of that call. */
     uint8_t reserved_9[7];
-    double position; /* Position: New actual position, or with Relative what it grows by; finite. (u) */
+    double position; /* Position: New actual position, or with Relative the increase; finite. (u) */
     uint8_t relative; /* Relative: TRUE: Position is added to the actual position found when the command executes. */
     uint8_t reserved_25[3];
     int32_t execution_mode; /* ExecutionMode: At once, or like a buffered motion. */
@@ -518,9 +518,9 @@ static inline standstill_mc_set_position_out standstill_mc_set_position_out_defa
 typedef struct standstill_mc_set_override_in {
     uint32_t size; /* sizeof this structure */
     int32_t axis; /* Axis: The axis to slow down or speed up. */
-    uint8_t enable; /* Enable: The factors are written in every call while TRUE; what was written last stays. */
+    uint8_t enable; /* Enable: The factors are written in every call while TRUE; the last written ones stay. */
     uint8_t reserved_9[7];
-    double vel_factor; /* VelFactor: Factor of velocities, from 0 to 1 or the `override_max` of the axis; 0 brings it to rest and leaves the state as it is. */
+    double vel_factor; /* VelFactor: Factor of velocities, from 0 to 1 or the `override_max` of the axis; 0 brings it to rest and keeps its state. */
     double acc_factor; /* AccFactor: Factor of accelerations and decelerations, above 0. */
     double jerk_factor; /* JerkFactor: Factor of jerks, above 0. */
 } standstill_mc_set_override_in;
@@ -530,7 +530,7 @@ typedef struct standstill_mc_set_override_out {
     uint32_t size; /* sizeof this structure */
     uint8_t enabled; /* Enabled: The factors are in force. */
     uint8_t busy; /* Busy: Enabled, and not ended by an error. */
-    uint8_t error; /* Error: The factors at the pins are not taken; those before them stay in force. */
+    uint8_t error; /* Error: The factors at the pins are refused; the previous ones stay in force. */
     uint8_t reserved_7[1];
     uint16_t error_id; /* ErrorID: Why; 0 without an error. */
     uint8_t reserved_10[6];
@@ -761,7 +761,7 @@ typedef struct standstill_mc_read_digital_output_out {
     uint8_t error; /* Error: The block cannot read. */
     uint8_t reserved_7[1];
     uint16_t error_id; /* ErrorID: Why; 0 without an error. */
-    uint8_t value; /* Value: What the drive shows there, as latched in this scan: what was written in the scan before. */
+    uint8_t value; /* Value: The level that the drive shows, as latched in this scan: it was written in the scan before. */
     uint8_t reserved_11[5];
 } standstill_mc_read_digital_output_out;
 STANDSTILL_ASSERT(mc_read_digital_output_out, sizeof(standstill_mc_read_digital_output_out) == 16);
@@ -824,11 +824,11 @@ typedef struct standstill_mc_touch_probe_in {
     uint32_t size; /* sizeof this structure */
     int32_t axis; /* Axis: The axis. */
     int32_t trigger_input; /* TriggerInput: The probe of its drive, and the edge; mcProbe1Rising if it is left out. */
-    uint8_t execute; /* Execute: A rising edge arms the probe for one event, anew if it waits. */
+    uint8_t execute; /* Execute: A rising edge arms the probe for one event; it arms a waiting probe anew. */
     uint8_t window_only; /* WindowOnly: TRUE: only an event inside the window counts. */
     uint8_t reserved_14[2];
     double first_position; /* FirstPosition: Start of the window in positive direction, included. (u) */
-    double last_position; /* LastPosition: End of the window, included; on a modulo axis it may lie behind the end of the turn. (u) */
+    double last_position; /* LastPosition: End of the window, included; on a modulo axis the window may pass the end of the modulo range. (u) */
 } standstill_mc_touch_probe_in;
 STANDSTILL_ASSERT(mc_touch_probe_in, sizeof(standstill_mc_touch_probe_in) == 32);
 
@@ -840,7 +840,7 @@ typedef struct standstill_mc_touch_probe_out {
     uint8_t error; /* Error: Refused. */
     uint16_t error_id; /* ErrorID: Why; 0 without an error. */
     uint8_t reserved_10[6];
-    double recorded_position; /* RecordedPosition: Position at the event, in the coordinates in force then; it stays until the next one is recorded. (u) */
+    double recorded_position; /* RecordedPosition: Position at the event, in the coordinates in force then; it stays until the next event is recorded. (u) */
 } standstill_mc_touch_probe_out;
 STANDSTILL_ASSERT(mc_touch_probe_out, sizeof(standstill_mc_touch_probe_out) == 24);
 
@@ -862,7 +862,7 @@ static inline standstill_mc_touch_probe_out standstill_mc_touch_probe_out_defaul
 typedef struct standstill_mc_abort_trigger_in {
     uint32_t size; /* sizeof this structure */
     int32_t axis; /* Axis: The axis. */
-    int32_t trigger_input; /* TriggerInput: The probe of its drive, whichever the edge; mcProbe1Rising if it is left out. */
+    int32_t trigger_input; /* TriggerInput: The probe of its drive, for either edge; mcProbe1Rising if it is left out. */
     uint8_t execute; /* Execute: A rising edge aborts. */
     uint8_t reserved_13[3];
 } standstill_mc_abort_trigger_in;
@@ -870,7 +870,7 @@ STANDSTILL_ASSERT(mc_abort_trigger_in, sizeof(standstill_mc_abort_trigger_in) ==
 
 typedef struct standstill_mc_abort_trigger_out {
     uint32_t size; /* sizeof this structure */
-    uint8_t done; /* Done: Nobody waits for the probe any more. */
+    uint8_t done; /* Done: No block waits for the probe any more. */
     uint8_t busy; /* Busy: Never TRUE: it is done in the call. */
     uint8_t error; /* Error: Refused. */
     uint8_t reserved_7[1];
@@ -901,23 +901,23 @@ typedef struct standstill_mc_digital_cam_switch_in {
     const struct standstill_mc_camswitch_ref *switches; /* Switches: The cams; none if it is left out. */
     uint32_t switches_count; /* records of it */
     int32_t outputs; /* Outputs: The axis whose drive has the outputs: track 1 is output 0, track 32 output 31. */
-    const struct standstill_mc_track_ref *track_options; /* TrackOptions: Compensation and hysteresis of track 1, of track 2 and so on; of those left out 0. */
+    const struct standstill_mc_track_ref *track_options; /* TrackOptions: Compensation and hysteresis of track 1, of track 2 and so on; 0 for those left out. */
     uint32_t track_options_count; /* records of it */
-    uint8_t enable; /* Enable: The tracks switch while TRUE; when it falls they are off. */
+    uint8_t enable; /* Enable: The tracks switch while TRUE; they are off when it falls. */
     uint8_t reserved_37[3];
-    uint32_t enable_mask; /* EnableMask: A bit for each track, the least significant one for track 1; other outputs are left alone. */
-    int32_t value_source; /* ValueSource: mcSetValue or mcActualValue, as they stand at the beginning of the scan. */
+    uint32_t enable_mask; /* EnableMask: A bit for each track, the least significant one for track 1; other outputs are not changed. */
+    int32_t value_source; /* ValueSource: mcSetValue or mcActualValue, as of the beginning of the scan. */
 #else
     int32_t axis; /* Axis: The axis whose position switches. */
     const struct standstill_mc_camswitch_ref *switches; /* Switches: The cams; none if it is left out. */
     uint32_t switches_count; /* records of it */
     int32_t outputs; /* Outputs: The axis whose drive has the outputs: track 1 is output 0, track 32 output 31. */
-    const struct standstill_mc_track_ref *track_options; /* TrackOptions: Compensation and hysteresis of track 1, of track 2 and so on; of those left out 0. */
+    const struct standstill_mc_track_ref *track_options; /* TrackOptions: Compensation and hysteresis of track 1, of track 2 and so on; 0 for those left out. */
     uint32_t track_options_count; /* records of it */
-    uint8_t enable; /* Enable: The tracks switch while TRUE; when it falls they are off. */
+    uint8_t enable; /* Enable: The tracks switch while TRUE; they are off when it falls. */
     uint8_t reserved_29[3];
-    uint32_t enable_mask; /* EnableMask: A bit for each track, the least significant one for track 1; other outputs are left alone. */
-    int32_t value_source; /* ValueSource: mcSetValue or mcActualValue, as they stand at the beginning of the scan. */
+    uint32_t enable_mask; /* EnableMask: A bit for each track, the least significant one for track 1; other outputs are not changed. */
+    int32_t value_source; /* ValueSource: mcSetValue or mcActualValue, as of the beginning of the scan. */
 #endif
 } standstill_mc_digital_cam_switch_in;
 STANDSTILL_ASSERT(mc_digital_cam_switch_in, sizeof(standstill_mc_digital_cam_switch_in) == (sizeof(void *) == 8 ? 48 : 40));
@@ -926,7 +926,7 @@ typedef struct standstill_mc_digital_cam_switch_out {
     uint32_t size; /* sizeof this structure */
     uint8_t in_operation; /* InOperation: The tracks of the mask are working. */
     uint8_t busy; /* Busy: Enabled, and not ended by an error. */
-    uint8_t error; /* Error: A value at a pin or in a table is no good; the tracks are off. */
+    uint8_t error; /* Error: A value at a pin or in a table is invalid; the tracks are off. */
     uint8_t reserved_7[1];
     uint16_t error_id; /* ErrorID: Why; 0 without an error. */
     uint8_t reserved_10[6];
@@ -962,7 +962,7 @@ STANDSTILL_ASSERT(mc_home_in, sizeof(standstill_mc_home_in) == 32);
 
 typedef struct standstill_mc_home_out {
     uint32_t size; /* sizeof this structure */
-    uint8_t done; /* Done: The reference is known and named, and the axis stands. */
+    uint8_t done; /* Done: The reference is found, its position is set, and the axis is at rest. */
     uint8_t busy; /* Busy: Not finished. */
     uint8_t active; /* Active: The block controls the axis. */
     uint8_t command_aborted; /* CommandAborted: Interrupted by another command. */
@@ -1040,7 +1040,7 @@ STANDSTILL_ASSERT(mc_halt_in, sizeof(standstill_mc_halt_in) == 48);
 
 typedef struct standstill_mc_halt_out {
     uint32_t size; /* sizeof this structure */
-    uint8_t done; /* Done: The axis stands. */
+    uint8_t done; /* Done: The axis is at rest. */
     uint8_t busy; /* Busy: Not finished. */
     uint8_t active; /* Active: The block controls the axis. */
     uint8_t command_aborted; /* CommandAborted: Interrupted by another command. */
@@ -1077,7 +1077,7 @@ typedef struct standstill_mc_move_absolute_in {
     double acceleration; /* Acceleration: Rate while the speed grows; 0 takes the axis default. (u/s^2) */
     double deceleration; /* Deceleration: Rate while the speed falls; 0 takes the axis default. (u/s^2) */
     double jerk; /* Jerk: Jerk; 0 takes the axis default, and no limit if there is none. (u/s^3) */
-    int32_t direction; /* Direction: Way round on a modulo axis; ignored on a linear one. */
+    int32_t direction; /* Direction: Direction of travel on a modulo axis; ignored on a linear one. */
     int32_t buffer_mode; /* BufferMode: How the command follows the one before it. */
     double snap; /* Snap: Snap; 0 takes the axis default, and no limit if there is none. (u/s^4) */
 } standstill_mc_move_absolute_in;
@@ -1162,7 +1162,7 @@ typedef struct standstill_mc_move_additive_in {
     uint8_t execute; /* Execute: A rising edge starts the move with the values of that call. */
     uint8_t continuous_update; /* ContinuousUpdate: Changed inputs hold for the motion in progress while TRUE, if it was TRUE at the rising edge. */
     uint8_t reserved_10[6];
-    double distance; /* Distance: Signed distance from the last commanded target; finite. From the set position at the start where there is no such target: in Standstill and behind or during an endless motion. (u) */
+    double distance; /* Distance: Signed distance from the last commanded target; finite. Without such a target, from the set position at the start: in Standstill, and behind or during an endless motion. (u) */
     double velocity; /* Velocity: Largest velocity, above 0; not necessarily reached. (u/s) */
     double acceleration; /* Acceleration: Rate while the speed grows; 0 takes the axis default. (u/s^2) */
     double deceleration; /* Deceleration: Rate while the speed falls; 0 takes the axis default. (u/s^2) */
@@ -1257,7 +1257,7 @@ typedef struct standstill_mc_move_continuous_absolute_in {
     double acceleration; /* Acceleration: Rate while the speed grows; 0 takes the axis default. (u/s^2) */
     double deceleration; /* Deceleration: Rate while the speed falls; 0 takes the axis default. (u/s^2) */
     double jerk; /* Jerk: Jerk; 0 takes the axis default, and no limit if there is none. (u/s^3) */
-    int32_t direction; /* Direction: Way round on a modulo axis; ignored on a linear one. */
+    int32_t direction; /* Direction: Direction of travel on a modulo axis; ignored on a linear one. */
     int32_t buffer_mode; /* BufferMode: How the command follows the one before it. */
     double snap; /* Snap: Snap; 0 takes the axis default, and no limit if there is none. (u/s^4) */
 } standstill_mc_move_continuous_absolute_in;
@@ -1344,7 +1344,7 @@ typedef struct standstill_mc_torque_control_in {
     uint8_t continuous_update; /* ContinuousUpdate: Changed inputs hold for the motion in progress while TRUE, if it was TRUE at the rising edge. */
     uint8_t reserved_10[6];
     double torque; /* Torque: Torque or force to hold, in the unit of the drive; signed, positive towards larger positions. (torque) */
-    double torque_ramp; /* TorqueRamp: Largest change of the torque ordered; 0 for none. (torque/s) */
+    double torque_ramp; /* TorqueRamp: Largest rate of change of the torque ordered; 0 for no ramp. (torque/s) */
     double velocity; /* Velocity: Largest speed, above 0; 0 takes the axis limit. (u/s) */
     double acceleration; /* Acceleration: Rate at which the velocity limit moves away from 0; 0 takes the axis default. (u/s^2) */
     double deceleration; /* Deceleration: Rate at which the velocity limit moves towards 0; 0 takes the axis default. (u/s^2) */
@@ -1395,7 +1395,7 @@ typedef struct standstill_mc_position_profile_in {
     double time_scale; /* TimeScale: Factor of all times, above 0. */
     double position_scale; /* PositionScale: Factor of all positions. */
     double offset; /* Offset: Added to all positions. (u) */
-    int32_t buffer_mode; /* BufferMode: How the command follows the one before it; it starts at rest or with what the one before leaves it. */
+    int32_t buffer_mode; /* BufferMode: How the command follows the one before it. It starts at rest or in the state in which the one before ends. */
     uint8_t reserved_52[4];
 #else
     int32_t axis; /* Axis: The axis to move. */
@@ -1407,7 +1407,7 @@ typedef struct standstill_mc_position_profile_in {
     double time_scale; /* TimeScale: Factor of all times, above 0. */
     double position_scale; /* PositionScale: Factor of all positions. */
     double offset; /* Offset: Added to all positions. (u) */
-    int32_t buffer_mode; /* BufferMode: How the command follows the one before it; it starts at rest or with what the one before leaves it. */
+    int32_t buffer_mode; /* BufferMode: How the command follows the one before it. It starts at rest or in the state in which the one before ends. */
     uint8_t reserved_52[4];
 #endif
 } standstill_mc_position_profile_in;
@@ -1455,7 +1455,7 @@ typedef struct standstill_mc_velocity_profile_in {
     double time_scale; /* TimeScale: Factor of all times, above 0. */
     double velocity_scale; /* VelocityScale: Factor of all velocities. */
     double offset; /* Offset: Added to all velocities. (u/s) */
-    int32_t buffer_mode; /* BufferMode: How the command follows the one before it; it starts at rest or with what the one before leaves it. */
+    int32_t buffer_mode; /* BufferMode: How the command follows the one before it. It starts at rest or in the state in which the one before ends. */
     uint8_t reserved_52[4];
 #else
     int32_t axis; /* Axis: The axis to move. */
@@ -1467,7 +1467,7 @@ typedef struct standstill_mc_velocity_profile_in {
     double time_scale; /* TimeScale: Factor of all times, above 0. */
     double velocity_scale; /* VelocityScale: Factor of all velocities. */
     double offset; /* Offset: Added to all velocities. (u/s) */
-    int32_t buffer_mode; /* BufferMode: How the command follows the one before it; it starts at rest or with what the one before leaves it. */
+    int32_t buffer_mode; /* BufferMode: How the command follows the one before it. It starts at rest or in the state in which the one before ends. */
     uint8_t reserved_52[4];
 #endif
 } standstill_mc_velocity_profile_in;
@@ -1475,7 +1475,7 @@ STANDSTILL_ASSERT(mc_velocity_profile_in, sizeof(standstill_mc_velocity_profile_
 
 typedef struct standstill_mc_velocity_profile_out {
     uint32_t size; /* sizeof this structure */
-    uint8_t profile_completed; /* ProfileCompleted: The last point has been reached; the axis keeps its velocity. */
+    uint8_t profile_completed; /* ProfileCompleted: The last point is reached; the axis keeps its velocity. */
     uint8_t busy; /* Busy: Not finished. */
     uint8_t active; /* Active: The block controls the axis. */
     uint8_t command_aborted; /* CommandAborted: Interrupted by another command. */
@@ -1515,7 +1515,7 @@ typedef struct standstill_mc_acceleration_profile_in {
     double time_scale; /* TimeScale: Factor of all times, above 0. */
     double acceleration_scale; /* AccelerationScale: Factor of all accelerations. */
     double offset; /* Offset: Added to all accelerations. (u/s^2) */
-    int32_t buffer_mode; /* BufferMode: How the command follows the one before it; it starts at rest or with what the one before leaves it. */
+    int32_t buffer_mode; /* BufferMode: How the command follows the one before it. It starts at rest or in the state in which the one before ends. */
     uint8_t reserved_52[4];
 #else
     int32_t axis; /* Axis: The axis to move. */
@@ -1527,7 +1527,7 @@ typedef struct standstill_mc_acceleration_profile_in {
     double time_scale; /* TimeScale: Factor of all times, above 0. */
     double acceleration_scale; /* AccelerationScale: Factor of all accelerations. */
     double offset; /* Offset: Added to all accelerations. (u/s^2) */
-    int32_t buffer_mode; /* BufferMode: How the command follows the one before it; it starts at rest or with what the one before leaves it. */
+    int32_t buffer_mode; /* BufferMode: How the command follows the one before it. It starts at rest or in the state in which the one before ends. */
     uint8_t reserved_52[4];
 #endif
 } standstill_mc_acceleration_profile_in;
@@ -1535,7 +1535,7 @@ STANDSTILL_ASSERT(mc_acceleration_profile_in, sizeof(standstill_mc_acceleration_
 
 typedef struct standstill_mc_acceleration_profile_out {
     uint32_t size; /* sizeof this structure */
-    uint8_t profile_completed; /* ProfileCompleted: The last point has been reached and the acceleration has faded out; the axis keeps its velocity. */
+    uint8_t profile_completed; /* ProfileCompleted: The last point is reached and the acceleration has faded out; the axis keeps its velocity. */
     uint8_t busy; /* Busy: Not finished. */
     uint8_t active; /* Active: The block controls the axis. */
     uint8_t command_aborted; /* CommandAborted: Interrupted by another command. */
@@ -1586,7 +1586,7 @@ typedef struct standstill_mc_move_superimposed_out {
     uint8_t error; /* Error: Refused, or ended by an error. */
     uint16_t error_id; /* ErrorID: Why; 0 without an error. */
     uint8_t reserved_10[6];
-    double covered_distance; /* CoveredDistance: What was added since the rising edge; kept until the next one. (u) */
+    double covered_distance; /* CoveredDistance: Distance added since the rising edge; kept until the next one. (u) */
     uint8_t active; /* Active: The added motion is the block's; FALSE while it waits for room below the axis limits. */
     uint8_t reserved_25[7];
 } standstill_mc_move_superimposed_out;
@@ -1620,7 +1620,7 @@ STANDSTILL_ASSERT(mc_halt_superimposed_in, sizeof(standstill_mc_halt_superimpose
 
 typedef struct standstill_mc_halt_superimposed_out {
     uint32_t size; /* sizeof this structure */
-    uint8_t done; /* Done: Nothing superimposed is in motion. */
+    uint8_t done; /* Done: No superimposed motion is in progress. */
     uint8_t busy; /* Busy: Not finished. */
     uint8_t command_aborted; /* CommandAborted: Interrupted by another command. */
     uint8_t error; /* Error: Refused, or ended by an error. */
@@ -1651,7 +1651,7 @@ typedef struct standstill_mc_jog_in {
     uint8_t jog_forward; /* JogForward: TRUE moves towards larger positions, with the values of the call in which it rises. FALSE, or both TRUE, stops. */
     uint8_t jog_backward; /* JogBackward: The same towards smaller positions. */
     uint8_t reserved_10[6];
-    double distance; /* Distance: Length of a step, after which the axis stands though the button is held; 0 goes on while it is held. (u) */
+    double distance; /* Distance: Length of a step, after which the axis stops even if the button is held; 0 moves while it is held. (u) */
     double velocity; /* Velocity: Largest velocity; above 0, the buttons give the direction. (u/s) */
     double acceleration; /* Acceleration: Rate while the speed grows; 0 takes the axis default. (u/s^2) */
     double deceleration; /* Deceleration: Rate while the speed falls, at the release too; 0 takes the axis default. (u/s^2) */
@@ -1662,7 +1662,7 @@ STANDSTILL_ASSERT(mc_jog_in, sizeof(standstill_mc_jog_in) == 64);
 
 typedef struct standstill_mc_jog_out {
     uint32_t size; /* sizeof this structure */
-    uint8_t done; /* Done: The axis stands after the release or the step. */
+    uint8_t done; /* Done: The axis is at rest after the release or the step. */
     uint8_t busy; /* Busy: Moving, or braking after the release. */
     uint8_t active; /* Active: The block controls the axis. */
     uint8_t command_aborted; /* CommandAborted: Interrupted by another command; the button has to be released before the next try. */
@@ -1691,27 +1691,27 @@ static inline standstill_mc_jog_out standstill_mc_jog_out_default(void) {
 typedef struct standstill_mc_cam_table_select_in {
     uint32_t size; /* sizeof this structure */
 #if UINTPTR_MAX > 0xFFFFFFFFu
-    int32_t master; /* Master: The master, whose velocity limit the cam is held against. */
-    int32_t slave; /* Slave: The slave, whose limits the cam is held against. */
+    int32_t master; /* Master: The master; the cam is checked against its velocity limit. */
+    int32_t slave; /* Slave: The slave; the cam is checked against its limits. */
     uint8_t reserved_12[4];
     const struct standstill_mc_cam_ref *cam_table; /* CamTable: The rows, 2 to 512; they are copied, and must not change while the block is Busy. */
     uint32_t cam_table_count; /* records of it */
     uint8_t execute; /* Execute: A rising edge selects the table with the values of that call. */
-    uint8_t periodic; /* Periodic: Behind its last row the cam goes on as at its first. */
-    uint8_t master_absolute; /* MasterAbsolute: Places of the master are those of the axis; else the first row lies where the master is when MC_CamIn begins. */
-    uint8_t slave_absolute; /* SlaveAbsolute: Places of the slave are those of the axis; else the cam passes through where the slave is when MC_CamIn begins. */
-    int32_t execution_mode; /* ExecutionMode: mcImmediately, or mcQueued for the end of what the slave has been commanded before. */
+    uint8_t periodic; /* Periodic: TRUE: the cam continues with its first row after its last one. */
+    uint8_t master_absolute; /* MasterAbsolute: TRUE: positions of the master are those of the axis. FALSE: the first row is at the position of the master when MC_CamIn begins. */
+    uint8_t slave_absolute; /* SlaveAbsolute: TRUE: positions of the slave are those of the axis. FALSE: the cam passes through the position of the slave when MC_CamIn begins. */
+    int32_t execution_mode; /* ExecutionMode: mcImmediately, or mcQueued for the end of the commands that the slave has received before. */
     uint8_t reserved_36[4];
 #else
-    int32_t master; /* Master: The master, whose velocity limit the cam is held against. */
-    int32_t slave; /* Slave: The slave, whose limits the cam is held against. */
+    int32_t master; /* Master: The master; the cam is checked against its velocity limit. */
+    int32_t slave; /* Slave: The slave; the cam is checked against its limits. */
     const struct standstill_mc_cam_ref *cam_table; /* CamTable: The rows, 2 to 512; they are copied, and must not change while the block is Busy. */
     uint32_t cam_table_count; /* records of it */
     uint8_t execute; /* Execute: A rising edge selects the table with the values of that call. */
-    uint8_t periodic; /* Periodic: Behind its last row the cam goes on as at its first. */
-    uint8_t master_absolute; /* MasterAbsolute: Places of the master are those of the axis; else the first row lies where the master is when MC_CamIn begins. */
-    uint8_t slave_absolute; /* SlaveAbsolute: Places of the slave are those of the axis; else the cam passes through where the slave is when MC_CamIn begins. */
-    int32_t execution_mode; /* ExecutionMode: mcImmediately, or mcQueued for the end of what the slave has been commanded before. */
+    uint8_t periodic; /* Periodic: TRUE: the cam continues with its first row after its last one. */
+    uint8_t master_absolute; /* MasterAbsolute: TRUE: positions of the master are those of the axis. FALSE: the first row is at the position of the master when MC_CamIn begins. */
+    uint8_t slave_absolute; /* SlaveAbsolute: TRUE: positions of the slave are those of the axis. FALSE: the cam passes through the position of the slave when MC_CamIn begins. */
+    int32_t execution_mode; /* ExecutionMode: mcImmediately, or mcQueued for the end of the commands that the slave has received before. */
     uint8_t reserved_28[4];
 #endif
 } standstill_mc_cam_table_select_in;
@@ -1720,14 +1720,14 @@ STANDSTILL_ASSERT(mc_cam_table_select_in, sizeof(standstill_mc_cam_table_select_
 typedef struct standstill_mc_cam_table_select_out {
     uint32_t size; /* sizeof this structure */
     uint8_t done; /* Done: The cam is selected, and CamTableID valid. */
-    uint8_t busy; /* Busy: Not finished: 32 rows are looked at in each call. */
+    uint8_t busy; /* Busy: Not finished: each call checks 32 rows. */
     uint8_t error; /* Error: Refused. */
     uint8_t reserved_7[1];
     uint16_t error_id; /* ErrorID: Why; 0 without an error. */
     uint8_t reserved_10[2];
     uint32_t cam_table_id; /* CamTableID: The cam, for MC_CamIn; 0 before the first, and while the block is Busy. */
-    double max_master_velocity; /* MaxMasterVelocity: The highest constant velocity of the master with which the slave can follow the cam. (u/s of the master) */
-    int16_t continuity; /* Continuity: How many derivatives of the cam are continuous, at most 3. */
+    double max_master_velocity; /* MaxMasterVelocity: The highest constant velocity of the master at which the slave can follow the cam. (u/s of the master) */
+    int16_t continuity; /* Continuity: Number of continuous derivatives of the cam, at most 3. */
     uint8_t reserved_26[6];
 } standstill_mc_cam_table_select_out;
 STANDSTILL_ASSERT(mc_cam_table_select_out, sizeof(standstill_mc_cam_table_select_out) == 32);
@@ -1754,33 +1754,33 @@ typedef struct standstill_mc_cam_in_in {
     uint8_t execute; /* Execute: A rising edge couples the axes with the values of that call. */
     uint8_t continuous_update; /* ContinuousUpdate: Changed inputs hold for the cam in progress while TRUE, if it was TRUE at the rising edge. */
     uint8_t reserved_14[2];
-    double master_offset; /* MasterOffset: Where place 0 of the cam lies at the master. (u of the master) */
-    double slave_offset; /* SlaveOffset: Where place 0 of the cam lies at the slave. (u) */
-    double master_scaling; /* MasterScaling: The master's side of the cam is so many times as long: above 1 it takes the master longer. */
-    double slave_scaling; /* SlaveScaling: The slave's side of the cam is so many times as long; negative mirrors it. */
-    double master_start_distance; /* MasterStartDistance: How far before MasterSyncPosition the master is, on its side of the cam, where the slave sets off; above 0 for a cam that runs forwards, below 0 for one that runs backwards. 0 sets off at once. (u of the master) */
-    double master_sync_position; /* MasterSyncPosition: Place of the cam's master side at which the slave is in sync first with a MasterStartDistance; without, it joins there, and 0 is the first row that it can reach in time. (u of the master) */
-    int32_t start_mode; /* StartMode: mcAbsolute as selected, mcRelative so that the cam passes through where the slave is, mcRampIn as mcAbsolute. */
-    int32_t master_value_source; /* MasterValueSource: mcSetValue, or mcActualValue for what the drive of the master tells, filtered. */
+    double master_offset; /* MasterOffset: Position of the master at position 0 of the cam. (u of the master) */
+    double slave_offset; /* SlaveOffset: Position of the slave at position 0 of the cam. (u) */
+    double master_scaling; /* MasterScaling: Factor of the master's side of the cam: above 1 the master needs a longer travel. */
+    double slave_scaling; /* SlaveScaling: Factor of the slave's side of the cam; negative mirrors it. */
+    double master_start_distance; /* MasterStartDistance: Distance of the master before MasterSyncPosition, on its side of the cam, at which the slave starts. Above 0 for a cam that runs forwards, below 0 for one that runs backwards. 0 starts at once. (u of the master) */
+    double master_sync_position; /* MasterSyncPosition: With a MasterStartDistance, the position on the cam's master side at which the slave is in sync first. Without one, the slave joins there; 0 is then the first row that it can reach in time. (u of the master) */
+    int32_t start_mode; /* StartMode: mcAbsolute as selected, mcRelative so that the cam passes through the position of the slave, mcRampIn as mcAbsolute. */
+    int32_t master_value_source; /* MasterValueSource: mcSetValue, or mcActualValue for the filtered feedback of the master's drive. */
     uint32_t cam_table_id; /* CamTableID: The cam, from MC_CamTableSelect. */
     int32_t buffer_mode; /* BufferMode: How the command follows the one before it. */
-    double switch_at; /* SwitchAt: With BufferMode mcBuffered behind another cam: the place of that cam's master side at which this one takes over; 0 for its end. (u of the master) */
+    double switch_at; /* SwitchAt: With BufferMode mcBuffered behind another cam: the position on that cam's master side at which this one takes over; 0 for its end. (u of the master) */
 } standstill_mc_cam_in_in;
 STANDSTILL_ASSERT(mc_cam_in_in, sizeof(standstill_mc_cam_in_in) == 88);
 
 typedef struct standstill_mc_cam_in_out {
     uint32_t size; /* sizeof this structure */
-    uint8_t in_sync; /* InSync: The set position of the slave is the one the cam asks for. */
+    uint8_t in_sync; /* InSync: The set position of the slave is on the cam. */
     uint8_t busy; /* Busy: Not finished. */
     uint8_t active; /* Active: The block controls the slave. */
     uint8_t command_aborted; /* CommandAborted: Interrupted by another command. */
     uint8_t error; /* Error: Refused, or ended by an error. */
     uint8_t reserved_9[1];
     uint16_t error_id; /* ErrorID: Why; 0 without an error. */
-    uint8_t end_of_profile; /* EndOfProfile: TRUE for one call each time the end of the cam is reached; running backwards at its first row. */
+    uint8_t end_of_profile; /* EndOfProfile: TRUE for one call each time the end of the cam is reached; running backwards, its first row. */
     uint8_t reserved_13[3];
-    double deviation; /* Deviation: How far the slave is from where the cam is at its master's place; 0 in sync. (u) */
-    uint8_t master_lost; /* MasterLost: The master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost). */
+    double deviation; /* Deviation: Distance of the slave from its position on the cam; 0 in sync. (u) */
+    uint8_t master_lost; /* MasterLost: The master went out of operation; the slave is at rest until it is coupled again (axis key coupling.on_master_lost). */
     uint8_t reserved_25[7];
 } standstill_mc_cam_in_out;
 STANDSTILL_ASSERT(mc_cam_in_out, sizeof(standstill_mc_cam_in_out) == 32);
@@ -1805,7 +1805,7 @@ static inline standstill_mc_cam_in_out standstill_mc_cam_in_out_default(void) {
 /** MC_CamOut: Ends MC_CamIn; the slave keeps its velocity. */
 typedef struct standstill_mc_cam_out_in {
     uint32_t size; /* sizeof this structure */
-    int32_t slave; /* Slave: The axis that follows another on a cam by MC_CamIn. */
+    int32_t slave; /* Slave: The axis that MC_CamIn has coupled to a master. */
     uint8_t execute; /* Execute: A rising edge ends the coupling. */
     uint8_t reserved_9[7];
 } standstill_mc_cam_out_in;
@@ -1843,10 +1843,10 @@ typedef struct standstill_mc_gear_in_in {
     int32_t slave; /* Slave: The axis that follows. */
     uint8_t execute; /* Execute: A rising edge couples the axes with the values of that call. */
     uint8_t continuous_update; /* ContinuousUpdate: Changed inputs hold for the coupling in progress while TRUE, if it was TRUE at the rising edge. */
-    int16_t ratio_numerator; /* RatioNumerator: Way of the slave for one of the master, as a ratio: numerator, signed; 0 brings the slave to rest. */
+    int16_t ratio_numerator; /* RatioNumerator: Travel of the slave for that of the master, as a ratio: numerator, signed; 0 brings the slave to rest. */
     uint16_t ratio_denominator; /* RatioDenominator: Denominator of the ratio, above 0. */
     uint8_t reserved_18[2];
-    int32_t master_value_source; /* MasterValueSource: mcSetValue, or mcActualValue for what the drive of the master tells, filtered. */
+    int32_t master_value_source; /* MasterValueSource: mcSetValue, or mcActualValue for the filtered feedback of the master's drive. */
     double acceleration; /* Acceleration: Rate while the speed grows, until in gear; 0 takes the axis default. (u/s^2) */
     double deceleration; /* Deceleration: Rate while the speed falls, until in gear; 0 takes the axis default. (u/s^2) */
     double jerk; /* Jerk: Jerk until in gear; 0 takes the axis default, and no limit if there is none. (u/s^3) */
@@ -1858,7 +1858,7 @@ STANDSTILL_ASSERT(mc_gear_in_in, sizeof(standstill_mc_gear_in_in) == 64);
 
 typedef struct standstill_mc_gear_in_out {
     uint32_t size; /* sizeof this structure */
-    uint8_t in_gear; /* InGear: The set position of the slave is the one the ratio asks for. */
+    uint8_t in_gear; /* InGear: The set position of the slave is the one that the ratio demands. */
     uint8_t busy; /* Busy: Not finished. */
     uint8_t active; /* Active: The block controls the slave. */
     uint8_t command_aborted; /* CommandAborted: Interrupted by another command. */
@@ -1866,8 +1866,8 @@ typedef struct standstill_mc_gear_in_out {
     uint8_t reserved_9[1];
     uint16_t error_id; /* ErrorID: Why; 0 without an error. */
     uint8_t reserved_12[4];
-    double deviation; /* Deviation: How far the slave is from where the ratio asks it to be, once it was in gear; 0 in gear. (u) */
-    uint8_t master_lost; /* MasterLost: The master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost). */
+    double deviation; /* Deviation: Distance of the slave from its position in gear, once it was in gear; 0 in gear. (u) */
+    uint8_t master_lost; /* MasterLost: The master went out of operation; the slave is at rest until it is coupled again (axis key coupling.on_master_lost). */
     uint8_t reserved_25[7];
 } standstill_mc_gear_in_out;
 STANDSTILL_ASSERT(mc_gear_in_out, sizeof(standstill_mc_gear_in_out) == 32);
@@ -1890,7 +1890,7 @@ static inline standstill_mc_gear_in_out standstill_mc_gear_in_out_default(void) 
 /** MC_GearOut: Ends MC_GearIn and MC_GearInPos; the slave keeps its velocity. */
 typedef struct standstill_mc_gear_out_in {
     uint32_t size; /* sizeof this structure */
-    int32_t slave; /* Slave: The axis that follows another by MC_GearIn or MC_GearInPos. */
+    int32_t slave; /* Slave: The axis that MC_GearIn or MC_GearInPos has coupled to a master. */
     uint8_t execute; /* Execute: A rising edge ends the coupling. */
     uint8_t reserved_9[7];
 } standstill_mc_gear_out_in;
@@ -1928,16 +1928,16 @@ typedef struct standstill_mc_gear_in_pos_in {
     int32_t slave; /* Slave: The axis that follows. */
     uint8_t execute; /* Execute: A rising edge couples the axes with the values of that call. */
     uint8_t reserved_13[1];
-    int16_t ratio_numerator; /* RatioNumerator: Way of the slave for one of the master, as a ratio: numerator, signed; 0 brings the slave to rest. */
+    int16_t ratio_numerator; /* RatioNumerator: Travel of the slave for that of the master, as a ratio: numerator, signed; 0 brings the slave to rest. */
     uint16_t ratio_denominator; /* RatioDenominator: Denominator of the ratio, above 0. */
     uint8_t reserved_18[2];
-    int32_t master_value_source; /* MasterValueSource: mcSetValue, or mcActualValue for what the drive of the master tells, filtered. */
-    double master_sync_position; /* MasterSyncPosition: Place of the master at the sync point. (u) */
-    double slave_sync_position; /* SlaveSyncPosition: Place of the slave at the sync point. (u) */
-    int32_t sync_mode; /* SyncMode: Which of the places that mean the same on a modulo slave; with mcSlowDown the slave is never faster than in sync. */
+    int32_t master_value_source; /* MasterValueSource: mcSetValue, or mcActualValue for the filtered feedback of the master's drive. */
+    double master_sync_position; /* MasterSyncPosition: Position of the master at the sync point. (u) */
+    double slave_sync_position; /* SlaveSyncPosition: Position of the slave at the sync point. (u) */
+    int32_t sync_mode; /* SyncMode: On a modulo slave, selects one of the equivalent positions; with mcSlowDown the slave is never faster than in sync. */
     uint8_t reserved_44[4];
-    double master_start_distance; /* MasterStartDistance: How far before its sync point the master is where the slave sets off; above 0 for a master that moves forwards, below 0 for one that moves backwards. 0 sets off at once. (u) */
-    double velocity; /* Velocity: Most speed from StartSync until InSync; 0 takes the axis limit. (u/s) */
+    double master_start_distance; /* MasterStartDistance: Distance of the master before its sync point at which the slave starts. Above 0 for a master that moves forwards, below 0 for one that moves backwards. 0 starts at once. (u) */
+    double velocity; /* Velocity: Largest speed from StartSync until InSync; 0 takes the axis limit. (u/s) */
     double acceleration; /* Acceleration: Rate while the speed grows, until in sync; 0 takes the axis default. (u/s^2) */
     double deceleration; /* Deceleration: Rate while the speed falls, until in sync; 0 takes the axis default. (u/s^2) */
     double jerk; /* Jerk: Jerk until in sync; 0 takes the axis default, and no limit if there is none. (u/s^3) */
@@ -1949,16 +1949,16 @@ STANDSTILL_ASSERT(mc_gear_in_pos_in, sizeof(standstill_mc_gear_in_pos_in) == 104
 
 typedef struct standstill_mc_gear_in_pos_out {
     uint32_t size; /* sizeof this structure */
-    uint8_t start_sync; /* StartSync: The slave is on its way to the sync point; FALSE from InSync on. */
-    uint8_t in_sync; /* InSync: The set position of the slave is the one the ratio asks for. */
+    uint8_t start_sync; /* StartSync: The slave approaches the sync point; FALSE from InSync on. */
+    uint8_t in_sync; /* InSync: The set position of the slave is the one that the ratio demands. */
     uint8_t busy; /* Busy: Not finished. */
     uint8_t active; /* Active: The block controls the slave. */
     uint8_t command_aborted; /* CommandAborted: Interrupted by another command. */
     uint8_t error; /* Error: Refused, or ended by an error. */
     uint16_t error_id; /* ErrorID: Why; 0 without an error. */
     uint8_t reserved_12[4];
-    double deviation; /* Deviation: How far the slave is from where the ratio asks it to be; 0 in sync. (u) */
-    uint8_t master_lost; /* MasterLost: The master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost). */
+    double deviation; /* Deviation: Distance of the slave from its position in sync; 0 in sync. (u) */
+    uint8_t master_lost; /* MasterLost: The master went out of operation; the slave is at rest until it is coupled again (axis key coupling.on_master_lost). */
     uint8_t reserved_25[7];
 } standstill_mc_gear_in_pos_out;
 STANDSTILL_ASSERT(mc_gear_in_pos_out, sizeof(standstill_mc_gear_in_pos_out) == 32);
@@ -1985,10 +1985,10 @@ typedef struct standstill_mc_phasing_absolute_in {
     int32_t slave; /* Slave: The axis that follows it. */
     uint8_t execute; /* Execute: A rising edge shifts the master as the slave sees it. */
     uint8_t reserved_13[3];
-    double phase_shift; /* PhaseShift: How far ahead of its place the master is to be seen; below 0 behind. (u) */
-    double velocity; /* Velocity: Most speed of the shift; 0 takes what the slave's limits leave. (u/s) */
+    double phase_shift; /* PhaseShift: Distance by which the slave sees the master ahead of its position; below 0 behind. (u) */
+    double velocity; /* Velocity: Largest speed of the shift; 0 takes what the slave's limits leave. (u/s) */
     double acceleration; /* Acceleration: Rate while that speed grows; 0 takes what the slave's limits leave. (u/s^2) */
-    double deceleration; /* Deceleration: Rate while it falls; the lower of both holds. 0 takes what the slave's limits leave. (u/s^2) */
+    double deceleration; /* Deceleration: Rate while that speed falls; the lower of the two rates holds. 0 takes what the slave's limits leave. (u/s^2) */
     double jerk; /* Jerk: Jerk of the shift; 0 takes what the slave's limits leave. (u/s^3) */
     int32_t buffer_mode; /* BufferMode: How the shift follows one in progress: mcAborting takes over, the other modes wait for its end. */
     uint8_t reserved_60[4];
@@ -2006,7 +2006,7 @@ typedef struct standstill_mc_phasing_absolute_out {
     uint8_t reserved_9[1];
     uint16_t error_id; /* ErrorID: Why; 0 without an error. */
     uint8_t reserved_12[4];
-    double absolute_phase_shift; /* AbsolutePhaseShift: The shift there is, updated while Busy. (u) */
+    double absolute_phase_shift; /* AbsolutePhaseShift: The present shift, updated while Busy. (u) */
 } standstill_mc_phasing_absolute_out;
 STANDSTILL_ASSERT(mc_phasing_absolute_out, sizeof(standstill_mc_phasing_absolute_out) == 24);
 
@@ -2031,10 +2031,10 @@ typedef struct standstill_mc_phasing_relative_in {
     int32_t slave; /* Slave: The axis that follows it. */
     uint8_t execute; /* Execute: A rising edge shifts the master as the slave sees it. */
     uint8_t reserved_13[3];
-    double phase_shift; /* PhaseShift: By how much further ahead of its place the master is to be seen; below 0 further behind. (u) */
-    double velocity; /* Velocity: Most speed of the shift; 0 takes what the slave's limits leave. (u/s) */
+    double phase_shift; /* PhaseShift: Distance by which the slave sees the master further ahead than before; below 0 further behind. (u) */
+    double velocity; /* Velocity: Largest speed of the shift; 0 takes what the slave's limits leave. (u/s) */
     double acceleration; /* Acceleration: Rate while that speed grows; 0 takes what the slave's limits leave. (u/s^2) */
-    double deceleration; /* Deceleration: Rate while it falls; the lower of both holds. 0 takes what the slave's limits leave. (u/s^2) */
+    double deceleration; /* Deceleration: Rate while that speed falls; the lower of the two rates holds. 0 takes what the slave's limits leave. (u/s^2) */
     double jerk; /* Jerk: Jerk of the shift; 0 takes what the slave's limits leave. (u/s^3) */
     int32_t buffer_mode; /* BufferMode: How the shift follows one in progress: mcAborting takes over, the other modes wait for its end. */
     uint8_t reserved_60[4];
@@ -2052,7 +2052,7 @@ typedef struct standstill_mc_phasing_relative_out {
     uint8_t reserved_9[1];
     uint16_t error_id; /* ErrorID: Why; 0 without an error. */
     uint8_t reserved_12[4];
-    double covered_phase_shift; /* CoveredPhaseShift: How far the shift has changed since the rising edge, updated while Busy. (u) */
+    double covered_phase_shift; /* CoveredPhaseShift: Change of the shift since the rising edge, updated while Busy. (u) */
 } standstill_mc_phasing_relative_out;
 STANDSTILL_ASSERT(mc_phasing_relative_out, sizeof(standstill_mc_phasing_relative_out) == 24);
 
@@ -2079,10 +2079,10 @@ typedef struct standstill_mc_combine_axes_in {
     uint8_t execute; /* Execute: A rising edge couples the axes with the values of that call. */
     uint8_t continuous_update; /* ContinuousUpdate: Changed inputs hold for the coupling in progress while TRUE, if it was TRUE at the rising edge. */
     uint8_t reserved_18[2];
-    int32_t combine_mode; /* CombineMode: mcAddAxes: the ways of both masters are added; mcSubAxes: that of the second is taken away. */
-    int16_t gear_ratio_numerator_m1; /* GearRatioNumeratorM1: Way of the slave for one of the first master, as a ratio: numerator, signed, 0 allowed. */
+    int32_t combine_mode; /* CombineMode: mcAddAxes: the travels of both masters are added; mcSubAxes: that of the second is subtracted. */
+    int16_t gear_ratio_numerator_m1; /* GearRatioNumeratorM1: Travel of the slave for that of the first master, as a ratio: numerator, signed, 0 allowed. */
     int16_t gear_ratio_denominator_m1; /* GearRatioDenominatorM1: Denominator of that ratio, above 0. */
-    int16_t gear_ratio_numerator_m2; /* GearRatioNumeratorM2: Way of the slave for one of the second master: numerator, signed, 0 allowed. */
+    int16_t gear_ratio_numerator_m2; /* GearRatioNumeratorM2: Travel of the slave for that of the second master: numerator, signed, 0 allowed. */
     int16_t gear_ratio_denominator_m2; /* GearRatioDenominatorM2: Denominator of that ratio, above 0. */
     int32_t master_value_source_m1; /* MasterValueSourceM1: Which values of the first master are followed. */
     int32_t master_value_source_m2; /* MasterValueSourceM2: Which values of the second master are followed. */
@@ -2093,7 +2093,7 @@ STANDSTILL_ASSERT(mc_combine_axes_in, sizeof(standstill_mc_combine_axes_in) == 4
 
 typedef struct standstill_mc_combine_axes_out {
     uint32_t size; /* sizeof this structure */
-    uint8_t in_sync; /* InSync: The set position of the slave is the one the masters ask for. */
+    uint8_t in_sync; /* InSync: The set position of the slave is the one that the masters demand. */
     uint8_t busy; /* Busy: Not finished. */
     uint8_t active; /* Active: The block controls the slave. */
     uint8_t command_aborted; /* CommandAborted: Interrupted by another command. */
@@ -2101,8 +2101,8 @@ typedef struct standstill_mc_combine_axes_out {
     uint8_t reserved_9[1];
     uint16_t error_id; /* ErrorID: Why; 0 without an error. */
     uint8_t reserved_12[4];
-    double deviation; /* Deviation: How far the slave is from where the masters ask it to be, once it was in sync; 0 in sync. (u) */
-    uint8_t master_lost; /* MasterLost: A master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost). */
+    double deviation; /* Deviation: Distance of the slave from its position in sync, once it was in sync; 0 in sync. (u) */
+    uint8_t master_lost; /* MasterLost: A master went out of operation; the slave is at rest until it is coupled again (axis key coupling.on_master_lost). */
     uint8_t reserved_25[7];
 } standstill_mc_combine_axes_out;
 STANDSTILL_ASSERT(mc_combine_axes_out, sizeof(standstill_mc_combine_axes_out) == 32);
@@ -2249,7 +2249,7 @@ static inline standstill_rs_out standstill_rs_out_default(void) {
 typedef struct standstill_ctu_in {
     uint32_t size; /* sizeof this structure */
     uint8_t cu; /* CU: Counts up at a rising edge. */
-    uint8_t r; /* R: Sets CV to 0; wins over an edge, which is then spent. */
+    uint8_t r; /* R: Sets CV to 0; has priority over an edge, which is then consumed. */
     int16_t pv; /* PV: The count at which Q becomes TRUE. */
 } standstill_ctu_in;
 STANDSTILL_ASSERT(ctu_in, sizeof(standstill_ctu_in) == 8);
@@ -2258,7 +2258,7 @@ typedef struct standstill_ctu_out {
     uint32_t size; /* sizeof this structure */
     uint8_t q; /* Q: CV has reached PV. */
     uint8_t reserved_5[1];
-    int16_t cv; /* CV: The count; it goes on past PV and stops at 32767. */
+    int16_t cv; /* CV: The count; it continues past PV and stops at 32767. */
 } standstill_ctu_out;
 STANDSTILL_ASSERT(ctu_out, sizeof(standstill_ctu_out) == 8);
 
@@ -2280,8 +2280,8 @@ static inline standstill_ctu_out standstill_ctu_out_default(void) {
 typedef struct standstill_ctd_in {
     uint32_t size; /* sizeof this structure */
     uint8_t cd; /* CD: Counts down at a rising edge. */
-    uint8_t ld; /* LD: Sets CV to PV; wins over an edge, which is then spent. */
-    int16_t pv; /* PV: What LD sets CV to. */
+    uint8_t ld; /* LD: Sets CV to PV; has priority over an edge, which is then consumed. */
+    int16_t pv; /* PV: The value for LD. */
 } standstill_ctd_in;
 STANDSTILL_ASSERT(ctd_in, sizeof(standstill_ctd_in) == 8);
 
@@ -2289,7 +2289,7 @@ typedef struct standstill_ctd_out {
     uint32_t size; /* sizeof this structure */
     uint8_t q; /* Q: CV is 0 or less. */
     uint8_t reserved_5[1];
-    int16_t cv; /* CV: The count; it goes on below 0 and stops at -32768. */
+    int16_t cv; /* CV: The count; it continues below 0 and stops at -32768. */
 } standstill_ctd_out;
 STANDSTILL_ASSERT(ctd_out, sizeof(standstill_ctd_out) == 8);
 
@@ -2312,9 +2312,9 @@ typedef struct standstill_ctud_in {
     uint32_t size; /* sizeof this structure */
     uint8_t cu; /* CU: Counts up at a rising edge. */
     uint8_t cd; /* CD: Counts down at a rising edge; edges of both in one call cancel. */
-    uint8_t r; /* R: Sets CV to 0; wins over LD and edges, which are then spent. */
-    uint8_t ld; /* LD: Sets CV to PV; wins over edges, which are then spent. */
-    int16_t pv; /* PV: The count at which QU becomes TRUE, and what LD sets CV to. */
+    uint8_t r; /* R: Sets CV to 0; has priority over LD and edges, which are then consumed. */
+    uint8_t ld; /* LD: Sets CV to PV; has priority over edges, which are then consumed. */
+    int16_t pv; /* PV: The count at which QU becomes TRUE, and the value for LD. */
     uint8_t reserved_10[6];
 } standstill_ctud_in;
 STANDSTILL_ASSERT(ctud_in, sizeof(standstill_ctud_in) == 16);
