@@ -15,9 +15,10 @@
 //! refused as [`LoadError::NotBuilt`]. The code that reads and runs scan scripts is the same with and
 //! without it.
 //!
-//! A build profile with `opt-level` 2 or 3 *and* `debug-assertions` needs `[profile.<name>.package] wasmi = {
-//! opt-level = 1 }`. With those checks the interpreter's stack grows with every instruction of a guest, and the
-//! process ends when it is full. The `dev` and `release` profiles of Cargo work unchanged.
+//! A build profile with `opt-level` 2 or 3 *and* `debug-assertions` needs
+//! `[profile.<name>.package] wasmi = { opt-level = 1 }`. With those checks the interpreter's stack grows with every
+//! instruction of a guest, and the process ends when it is full. The `dev` and `release` profiles of Cargo work
+//! unchanged.
 //!
 //! A [`Program`] is a compiled guest and a [`Guest`] a running one. Files, names of variables and tasks
 //! belong to `standstill-script`.
