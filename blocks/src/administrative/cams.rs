@@ -157,6 +157,8 @@ pub struct Cams {
     before: Option<Sample>,
     /// Whether the last motion was in positive direction; `None` before the first motion.
     forward: Option<bool>,
+    /// Whether the coordinates were moved since the scan before.
+    is_renamed: bool,
 }
 
 impl Cams {
@@ -176,7 +178,9 @@ impl Cams {
         let comparable = before.filter(|before| before.coordinates == now.coordinates);
         let way = comparable.map_or(0.0, |before| now.way_since(&before));
         let heading = if now.velocity != 0.0 { now.velocity } else { way };
-        if heading != 0.0 {
+        // The scan after a new name differs from it by rounding, which is no motion.
+        let was_renamed = core::mem::replace(&mut self.is_renamed, before.is_some() && comparable.is_none());
+        if heading != 0.0 && !(was_renamed || self.is_renamed) {
             self.forward = Some(heading > 0.0);
         }
         let motion = Motion {
