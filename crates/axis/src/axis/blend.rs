@@ -58,7 +58,9 @@ impl<P: Planner> Axis<P> {
         let Some(was) = self.owner else { return };
         let mut owner = was;
         self.look_through(&mut owner, self.mover.setpoint().position, 0);
-        let changed = (owner.passage, owner.run) != (was.passage, was.run);
+        // What the next command can begin with at most matters only to a new plan.
+        let asked = |entry: &Entry| (entry.passage.wanted, entry.passage.brake, entry.run);
+        let changed = asked(&owner) != asked(&was);
         if !changed
             || owner.end.is_none()
             || self.is_held_up()
@@ -137,7 +139,7 @@ impl<P: Planner> Axis<P> {
             .filter(|plan| passage.wanted <= 0.0 || self.beyond_bound(plan).is_none())
             .filter(|plan| {
                 let end = plan.at(u64::from(plan.scans())).velocity.abs();
-                let most = self.slowed(&self.config.limits).velocity * (1.0 + ROUNDING);
+                let most = self.fastest() * (1.0 + ROUNDING);
                 end <= if passage.wanted > 0.0 { most } else { 0.0 }
             });
         if passage.wanted <= 0.0 {
@@ -318,7 +320,7 @@ impl<P: Planner> Axis<P> {
     /// it; `skip` of that have had their turn. From the last to the first, because no command may begin faster than it can end.
     /// While something is superimposed all ends are passed at rest: where the axis is then, is not where they are.
     ///
-    /// Cost: at most one ramp or root of ramps for each command that waits.
+    /// Cost: at most two ramps or roots of ramps for each command that waits.
     pub(super) fn look_through(&self, entry: &mut Entry, start: f64, skip: usize) {
         (entry.passage, entry.run) = self.chain(entry, start, skip, 0.0);
     }
@@ -421,16 +423,17 @@ impl<P: Planner> Axis<P> {
             _ => return REST,
         };
         let limits = &next.entry.limits;
-        // What is commanded next, and the speed it passes its end with; None if it has no end to overshoot.
+        // What is commanded next, and the speeds it passes its end with as asked and at most; None if it has no end to overshoot.
         let (towards, velocity, exit) = match next.entry.work {
             Work::Position(_) | Work::Distance(_) => match next.way {
-                Some(way) => (way, limits.velocity, Some(after.wanted)),
+                Some(way) => (way, limits.velocity, Some((after.wanted, after.most))),
                 None => return REST,
             },
             Work::Through { end_velocity, .. } => match next.way {
                 Some(way) => {
                     let onwards = end_velocity * way >= 0.0;
-                    (way, limits.velocity, onwards.then_some(end_velocity.abs()))
+                    let exit = end_velocity.abs();
+                    (way, limits.velocity, onwards.then_some((exit, exit)))
                 }
                 None => return REST,
             },
@@ -454,15 +457,22 @@ impl<P: Planner> Axis<P> {
         let first = entry.limits.velocity;
         let wanted = mode.speed_between(first, velocity);
         let passage = match exit {
-            Some(exit) => {
-                let entry_speed = |wanted| self.planner.entry_speed(wanted, 0.0, towards.abs(), exit, limits);
-                let most = entry_speed(wanted);
+            Some((exit, most_exit)) => {
+                let down_to =
+                    |exit, wanted| self.planner.entry_speed(wanted, 0.0, towards.abs(), exit, limits);
+                let alone = down_to(exit, wanted);
+                // What is too short for the speed asked for is too short for more.
+                let most = if alone < wanted {
+                    alone
+                } else {
+                    down_to(most_exit, self.fastest()).max(alone)
+                };
                 // The next command may have to take over the velocity of what is added, too.
                 let added = self.superimposed_speed();
                 let wanted = if added > 0.0 {
-                    most.min((entry_speed(wanted + added) - added).max(AT_LEAST * most))
+                    alone.min((down_to(exit, wanted + added) - added).max(AT_LEAST * alone))
                 } else {
-                    most
+                    alone
                 };
                 Passage {
                     wanted,
@@ -491,12 +501,17 @@ impl<P: Planner> Axis<P> {
         }
         // Both together have to stop.
         let added = self.superimposed_speed();
-        let most = self.stoppable_speed(passage.wanted + added, room) - added;
+        let stoppable = |speed| (self.stoppable_speed(speed + added, room) - added).max(0.0);
         Passage {
-            wanted: most.max(0.0),
-            most: passage.most.min(most).max(0.0),
+            wanted: stoppable(passage.wanted),
+            most: stoppable(passage.most.min(self.fastest())),
             ..passage
         }
+    }
+
+    /// The velocity (u/s) that the axis may have at most, whatever a command asks for.
+    fn fastest(&self) -> f64 {
+        self.slowed(&self.config.limits).velocity
     }
 
     /// The largest speed (u/s), at most `wanted`, from which the stop dynamics come to rest within `room` (u).

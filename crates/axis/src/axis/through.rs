@@ -50,7 +50,8 @@ impl<P: Planner> Axis<P> {
             .as_ref()
             .map_or(0.0, |plan| plan.at(u64::from(plan.scans())).velocity.abs());
         let is_wanted = speed >= passage.wanted * (1.0 - ROUNDING);
-        let ramps = if is_wanted {
+        let is_faster = speed > passage.wanted * (1.0 + ROUNDING);
+        let ramps = if is_wanted && !is_faster {
             [self.braking_through(entry, start, passage, before, behind), None]
         } else {
             [
@@ -58,7 +59,7 @@ impl<P: Planner> Axis<P> {
                 if start.acceleration == 0.0 {
                     self.pushing_through(entry, start, passage.wanted, before, behind)
                 } else {
-                    self.letting_go(entry, start, passage.most, before, behind)
+                    self.letting_go(entry, start, passage.wanted, before, behind)
                 },
             ]
         };
@@ -82,7 +83,10 @@ impl<P: Planner> Axis<P> {
         // What is too late for anything passes as it can; nothing else has to.
         let ramps = ramps.into_iter().flatten().map(counted);
         let ramps = ramps.filter(|(_, scans)| *scans < u64::MAX);
-        let plans = passing.map(counted).into_iter().chain(ramps);
+        let on_a_ramp = ramps.min_by_key(|(_, scans)| *scans);
+        // A ramp to the speed asked for comes nearer to it than what is faster.
+        let passing = passing.filter(|_| !is_faster || on_a_ramp.is_none());
+        let plans = passing.map(counted).into_iter().chain(on_a_ramp);
         let (plan, scans) = plans.min_by_key(|(_, scans)| *scans)?;
         let goes_on = || {
             let with_rest = with_rest();
@@ -372,7 +376,7 @@ impl<P: Planner> Axis<P> {
             ..*behind.next
         };
         let after = self.behind_at(behind.number + 1, &entry, behind.target, behind.forward)?;
-        let plan = self.letting_go(&entry, from, behind.exit.most, &entry.limits, &after)?;
+        let plan = self.letting_go(&entry, from, behind.exit.wanted, &entry.limits, &after)?;
         let goal = goal_past(&plan, 0, behind.target, behind.forward);
         let at_end = plan.at(goal);
         let is_speeding = at_end.velocity * at_end.acceleration > 0.0;

@@ -136,7 +136,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Whether `owner`, planned anew along `motion`, would come to its end only by way of going back, or pass it faster than as planned and
-    /// than what comes next can begin, and passes it or turns there as planned, or goes on as one motion: it is too late for anything else, so it goes on
+    /// than asked, and passes it or turns there as planned, or goes on as one motion: it is too late for anything else, so it goes on
     /// as planned.
     pub(super) fn is_too_late(&self, owner: &Entry, motion: &Motion<P::Plan>, goes_on: bool) -> bool {
         let (Motion::Run { plan, scans, .. }, Some(end)) = (motion, owner.end) else {
@@ -149,7 +149,7 @@ impl<P: Planner> Axis<P> {
         let is_faster = speed > as_planned.velocity.abs() || slowing(&at_end) < slowing(&as_planned);
         // What passes it on a ramp was found with what comes next, which begins braking or lets go.
         let is_on_a_ramp = motion.goes_on();
-        let is_too_fast = speed > owner.passage.most * (1.0 + ROUNDING) && is_faster && !is_on_a_ramp;
+        let is_too_fast = speed > owner.passage.wanted * (1.0 + ROUNDING) && is_faster && !is_on_a_ramp;
         (self.is_to_turn() || self.is_to_pass(owner) || (goes_on && owner.run.count == 0))
             && self.is_on_its_way(owner)
             && plan.turn().is_none()

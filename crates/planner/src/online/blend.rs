@@ -75,13 +75,14 @@ impl OnlinePlan {
         }
         let side = if distance < 0.0 { -1.0 } else { 1.0 };
         // One velocity bound for all tried speeds. Otherwise a start faster than the limit would be brought inside
-        // first for one speed and not for another; the push goes for the limit anyway. A start faster than the
-        // previous limit does not come from inside.
+        // first for one speed and not for another; the push goes for the limit anyway. The speed that the acceleration
+        // at the start adds beyond the previous limit does not come from inside.
         let directed = &(*limits).into();
         let ramps = Ramps::new(directed, directed);
         let arrested = side * ramps.arrested(&ramps.state_inward(start)) / ramps.inward(1.0, 1);
+        let held = before.velocity.max(side * start.velocity);
         let raised = Limits {
-            velocity: limits.velocity.max(wanted).max(arrested.min(before.velocity)),
+            velocity: limits.velocity.max(wanted).max(arrested.min(held)),
             ..*limits
         };
         let wider = raised.or_larger(before).acting(cycle);

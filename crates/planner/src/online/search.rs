@@ -138,7 +138,7 @@ impl<'a> Search<'a> {
         if self.end_velocity != 0.0 {
             return None;
         }
-        let profile = self.ramps.position_profile(start, self.target)?;
+        let profile = self.ramps.position_profile(start, self.target, self.top)?;
         self.solves.set(self.solves.get() + 1);
         self.steps.set(self.steps.get().max(profile.steps));
         Some(profile.spans)

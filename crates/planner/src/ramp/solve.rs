@@ -276,9 +276,9 @@ impl Ramps {
         }
     }
 
-    /// The whole move from `start` to rest at `target`, if the kernel can solve it: at order 3 with the same bound
-    /// on acceleration and deceleration, from a viable state inside the limits (O3).
-    pub(crate) fn position_profile(&self, start: &Setpoint, target: f64) -> Option<Profile> {
+    /// The whole move from `start` to rest at `target` with the velocity `top`, if the kernel can solve it: at order 3
+    /// with the same bound on acceleration and deceleration, from a viable state that is no faster (O3).
+    pub(crate) fn position_profile(&self, start: &Setpoint, target: f64, top: Sides) -> Option<Profile> {
         let &Setpoint {
             position: p,
             velocity: v,
@@ -286,10 +286,10 @@ impl Ramps {
             ..
         } = start;
         let bounds = Bounds {
-            v: self.velocity,
+            v: top,
             a: Sides::both(self.acceleration),
         };
-        let coming = |v: f64| v.abs() <= self.velocity(v) * (1.0 + ON_LIMIT);
+        let coming = |v: f64| v.abs() <= (if v < 0.0 { top.minus } else { top.plus }) * (1.0 + ON_LIMIT);
         let fits = self.order == Order::Three
             && self.acceleration == self.deceleration
             && a.abs() <= self.acceleration * (1.0 + ON_LIMIT)
