@@ -57,6 +57,9 @@ impl<P: Planner> Axis<P> {
 
     /// The same for one that may be paused, and goes on with this.
     pub(super) fn plan_anew(&mut self, mut owner: Entry, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
+        if let Some(error) = self.barred_from_there_on(&owner) {
+            return Err(error);
+        }
         let here = self.mover.base();
         let start = self
             .in_frame_of(&owner, &here)

@@ -36,6 +36,8 @@ impl<P: Planner> Axis<P> {
     pub fn replaced(&mut self, id: CommandId, waited: bool, new: Option<CommandId>, scope: &mut Scope<'_>) {
         if waited {
             self.arm_anew(scope);
+            // A move that is barred behind its end waits for what has gone.
+            self.resume(scope);
         } else if self.profile_is_due(id) {
             return self.pass_over_due_profile(id, scope);
         }

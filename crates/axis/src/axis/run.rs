@@ -12,7 +12,7 @@ use super::mover::scans_to_goal;
 use super::supervision::Arrival;
 use super::through::is_braking;
 use super::{Axis, Motion};
-use crate::{CommandId, Fate, Scope};
+use crate::{CommandId, ErrorId, Fate, Scope};
 use standstill_planner::{Limits, MoveProfile, Plan, Planner, Setpoint};
 
 /// Halvings that find any scan of a plan, whose scans are a number of 32 bits.
@@ -218,15 +218,29 @@ impl<P: Planner> Axis<P> {
 
     /// Whether a command that was to pass its end in motion and has been held up is behind it now: it need not go back there.
     pub(super) fn is_past_its_end(&self, owner: &Entry) -> bool {
-        let (Some(end), Some(next)) = (owner.end, self.queue.first()) else {
-            return false;
-        };
-        let beyond = self.mover.setpoint().position - end;
-        let target = self.end_of_leg(next, end, self.mover.last_velocity() > 0.0);
-        let is_onward = target.is_some_and(|target| (target - end) * beyond > 0.0);
+        self.way_on(owner, self.mover.setpoint().position).is_some()
+    }
+
+    /// The way (u) of the next command from `place` on (u), if that is behind the end of `owner`, which was to be passed in motion.
+    fn way_on(&self, owner: &Entry, place: f64) -> Option<f64> {
+        let (end, next) = (owner.end?, self.queue.first()?);
+        let target = self.end_of_leg(next, end, self.mover.last_velocity() > 0.0)?;
+        let is_onward = (target - end) * (place - end) > 0.0;
         // What is paused was to come to rest wherever it is.
-        let was_to_pass = owner.passage.wanted > 0.0 || owner.paused;
-        self.mover.layer().is_none() && was_to_pass && next.mode.blends() && is_onward
+        let was_to_pass = owner.passage.wanted > 0.0 || owner.paused || owner.is_behind;
+        let goes_on = self.mover.layer().is_none() && was_to_pass && next.mode.blends() && is_onward;
+        goes_on.then_some(target - place)
+    }
+
+    /// Why `owner`, held up so far, has to wait where it comes to rest behind its end: the next move leads on from there, and that way is
+    /// barred.
+    pub(super) fn barred_from_there_on(&self, owner: &Entry) -> Option<ErrorId> {
+        let next = self.queue.first()?;
+        if owner.halted || !self.is_held_up() || !is_move(next) {
+            return None;
+        }
+        let way = self.way_on(owner, self.mover.end_of_plan())?;
+        self.way_barred(way)
     }
 
     /// Hands over to the next command if `owner`, the present one as it is to go on, has been held up behind its end and is no one motion
@@ -237,10 +251,9 @@ impl<P: Planner> Axis<P> {
             return false;
         };
         let here = self.mover.base().position;
-        let is_move = matches!(next.work, Work::Position(_) | Work::Distance(_));
         let target = self.end_of_leg(next, end, here > end);
         self.look_through(&mut owner, here, 0);
-        if !is_move
+        if !is_move(next)
             || owner.run.count > 0
             || target.is_none_or(|target| self.way_barred(target - here).is_some())
         {
@@ -260,6 +273,11 @@ impl<P: Planner> Axis<P> {
             same.then(|| self.end_of_leg(next, from, forward))?
         })
     }
+}
+
+/// Whether a command is a move that ends.
+fn is_move(entry: &Entry) -> bool {
+    matches!(entry.work, Work::Position(_) | Work::Distance(_))
 }
 
 /// Whether a motion that leads `forward`, or back, begins the other way.

@@ -77,6 +77,7 @@ impl<P: Planner> Axis<P> {
             *slot = entry;
         }
         self.arm_anew(scope);
+        self.resume(scope);
         Ok(())
     }
 
