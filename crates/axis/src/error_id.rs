@@ -209,7 +209,7 @@ error_ids! {
     MasterTooFast = 218, "The slave of MC_GearInPos is behind a master that is at least as fast as its Velocity, so it can't catch up.",
         "Raise Velocity, or slow the master down until InSync.";
     SyncNotReachable = 219, "On the present plan of its master the slave can't be in sync when the master reaches MasterSyncPosition, or passes the last row of a cam without periods.",
-        "Give a longer MasterStartDistance or higher dynamics, or move the slave nearer to its sync position first.";
+        "Give a longer MasterStartDistance or higher dynamics, or move the slave nearer to its sync position first. If the record names SyncMode, no distance is enough: use mcShortest, with which the slave may go back, or move it back first.";
     CamBeyondLimits = 220, "The slave can't follow the cam at the velocity limit of its master, and its on_limit is error.",
         "Lower the velocity limit of the master to MaxMasterVelocity, raise the limits of the slave, or make the cam wider.";
     BufferModeNotHere = 221, "MC_GearInPos or MC_CamIn with a MasterStartDistance has a BufferMode other than mcAborting, but the position of its start point at the end of the motion before is not known. Or MC_CamIn with SwitchAt has mcAborting.",

@@ -114,6 +114,8 @@ pub(super) struct Follower<Plan> {
     cam_ends: u32,
     /// In its last step it was on its law, and the law stood.
     stands: bool,
+    /// In its last step it was on its law, behind masters that tremble.
+    trembles: bool,
     /// The phase shift between it and its master.
     phasing: Phasing<Plan>,
     /// The command that waits for a place of a master.
@@ -131,6 +133,7 @@ impl<P: Plan> Default for Follower<P> {
             on_cam: None,
             cam_ends: 0,
             stands: false,
+            trembles: false,
             phasing: Phasing::default(),
             awaited: None,
             bound: Bound::default(),
@@ -187,6 +190,8 @@ struct Coupling {
     was_in_gear: bool,
     /// It was in gear when the same gear was commanded again, and no motion step has followed yet.
     is_kept: bool,
+    /// It is in time for its sync point only if it goes back to meet the law.
+    goes_back: bool,
     rung: Rung,
     /// The masters at the end of the scan before, in their coordinates of now.
     was: SeenBoth,
@@ -276,12 +281,18 @@ impl Coupling {
         self.gearing.sync.is_some() && !self.was_in_gear
     }
 
+    /// Whether it waits for the law where it is ahead of it, and does not go to meet it.
+    fn waits_ahead(&self) -> bool {
+        self.is_syncing() && !self.goes_back
+    }
+
     fn new(gearing: Gearing, limits: Limits, moves: u32) -> Self {
         Self {
             gearing,
             anchor: None,
             was_in_gear: false,
             is_kept: false,
+            goes_back: false,
             rung: Rung::Due,
             was: SeenBoth::default(),
             known: view::Known::default(),
@@ -606,6 +617,7 @@ impl<P: Planner> Axis<P> {
             coupling.anchor = None;
             coupling.was_in_gear = false;
             coupling.is_kept = false;
+            coupling.goes_back = false;
             coupling.deviation = 0.0;
         }
         // After the master was lost, another ratio must not start a motion.

@@ -6,7 +6,7 @@
 //! | in gear | on the law | at once, if it is on the law and the law keeps its limits as far as is known |
 //! | beside the law | on the law plus a plan that takes its difference to 0; the sum keeps the limits | at the end of the plan |
 //! | onto a stretch | to the velocity of the law in its next stretch of constant velocity | at the end of the plan, or where the stretch begins |
-//! | pace | as fast as it may, the way the law leads | not yet |
+//! | pace | as fast as it may, the way the law leads; along the law as long as that is slower | not yet |
 //!
 //! Of the first three, the one that is in gear soonest is taken. The last two always exist, so a slave is
 //! never without a plan. Before the slave was in gear, only the velocity counts and the lost way is not
@@ -18,7 +18,7 @@ use super::super::supervision::Arrival;
 use super::super::{Axis, Motion};
 use super::follow::{Beyond, off};
 use super::needs::RESOLVED;
-use super::view::{Kind, UNKNOWN, View, anchor_at};
+use super::view::{Kind, UNKNOWN, View, anchor_at, way_to_rest};
 use super::{Coupling, Rung};
 use crate::{Approach, ErrorId, Event, Fate, Scope};
 use standstill_planner::{
@@ -27,6 +27,12 @@ use standstill_planner::{
 
 /// A velocity that is left beside that of a line must be at least this part of the limit.
 const LEAST: f64 = 1e-6;
+
+/// The share of its velocity limit up to which a slave comes near to a law that will be too fast.
+const SLOW: f64 = 0.9;
+
+/// Places on a way back at which it is looked how fast it is.
+const LOOKS: u64 = 16;
 
 /// The law's next stretch of constant velocity.
 #[derive(Clone, Copy)]
@@ -105,6 +111,10 @@ impl<P: Planner> Axis<P> {
         let before = self.limits_before(&self.limits_of_approach(&owner));
         match self.way_onto(&owner, view, anchor, &difference) {
             Ok(mut way) => {
+                if way.name == Approach::Pace {
+                    let near = self.near_law(&owner, view, anchor, &difference, may_lock);
+                    way = near.unwrap_or(way);
+                }
                 if view.future.is_late() {
                     way.left = 0;
                 }
@@ -113,10 +123,11 @@ impl<P: Planner> Axis<P> {
                     .coupling
                     .as_mut()
                     .and_then(|coupling| coupling.told.as_mut());
-                if let (Some((name, velocity)), Some(_)) = (told, view.future.measured())
+                // A way that is searched again in some scans differs each time.
+                let is_passing = view.future.unforeseen().is_some() || way.left == UNKNOWN;
+                if let (Some((name, velocity)), true) = (told, is_passing)
                     && *name == way.name
                 {
-                    // The plan differs each time.
                     *velocity = way.velocity;
                 }
                 self.take_way(way, before, scope);
@@ -126,7 +137,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// How exactly (u) the slave can be told to be on its law, which is at `law` now.
-    fn resolved_of(&self, coupling: &Coupling, law: Place) -> f64 {
+    pub(super) fn resolved_of(&self, coupling: &Coupling, law: Place) -> f64 {
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
         let masters = coupling.size_of_masters(&coupling.was);
         RESOLVED * 4.0 * (self.place().position.abs() + law.position.abs() + masters + length)
@@ -190,7 +201,8 @@ impl<P: Planner> Axis<P> {
             // law itself may jitter.
             (way.lock, way.left) = (way.motion.scans(), scans);
             let near = 2 * scans;
-            let waits = coupling.is_syncing() && difference.position * velocity > 0.0 && way.lock > near;
+            let is_ahead = difference.position * velocity > 0.0;
+            let waits = coupling.waits_ahead() && is_ahead && way.lock > near;
             // A law that is even now may be the line itself. Measured values are never quite even.
             let is_even = law_now.acceleration == 0.0 && law_now.jerk == 0.0;
             let is_line = is_even && view.future.measured().is_none();
@@ -203,6 +215,13 @@ impl<P: Planner> Axis<P> {
         let beside = self
             .beside_law(view, anchor, difference, velocity, &limits)
             .filter(|way| way.lock < soonest);
+        if beside.is_none() && self.lets_law_come(view, difference, velocity) {
+            let waits = self.to_pace(owner, 0.0)?;
+            return Ok(Way {
+                left: UNKNOWN,
+                ..waits
+            });
+        }
         match beside.or(onto) {
             Some(way) => Ok(way),
             None => self.at_pace(owner, view, limits.velocity, velocity),
@@ -405,23 +424,32 @@ impl<P: Planner> Axis<P> {
                 && self
                     .stop_ahead(&start, stretch.velocity, limits)
                     .is_some_and(|ahead| ahead > 0.0);
-            // A slave ahead of the line waits for it. On the way to a sync point it does not go to meet
-            // the line. Later it does, and then it may be faster against the line than with it.
-            let waits = is_syncing && is_ahead;
-            let along = |limits: &Limits| if waits { line } else { limits.velocity - line };
-            if along(limits) <= LEAST * limits.velocity {
-                return None;
-            }
-            let meets = is_ahead && !is_syncing;
-            let room = |limits: &Limits| Room {
-                along: along(limits),
-                against: if meets {
-                    limits.velocity + line
-                } else {
-                    along(limits)
-                },
+            let track = self.line(stretch.velocity)?;
+            // A slave ahead of the line waits for it, or goes to meet it. Then it may be faster against the
+            // line than with it.
+            let attempt = |waits: bool| {
+                let along = |limits: &Limits| if waits { line } else { limits.velocity - line };
+                if along(limits) <= LEAST * limits.velocity {
+                    return None;
+                }
+                let room = |limits: &Limits| Room {
+                    along: along(limits),
+                    against: if is_ahead && !waits {
+                        limits.velocity + line
+                    } else {
+                        along(limits)
+                    },
+                };
+                self.beside_line(&start, (&track, stretch.velocity), room, limits, before)
             };
-            let (plan, limits) = self.beside_line(&start, stretch.velocity, room, limits, before)?;
+            let met = (is_ahead && is_syncing && coupling.goes_back)
+                .then(|| attempt(false))
+                .flatten()
+                .filter(|(plan, _)| self.may_go_back(stretch.velocity, plan));
+            let (plan, limits) = match met {
+                Some(met) => met,
+                None => attempt(is_ahead && is_syncing)?,
+            };
             let rung = Rung::BesideLine {
                 start: here,
                 velocity: stretch.velocity,
@@ -442,14 +470,50 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// A plan onto a line of this `velocity` (u/s) from the state `start` beside it, within the speeds of
+    /// A motion at this constant `velocity` (u/s) from 0.
+    fn line(&self, velocity: f64) -> Option<P::Plan> {
+        let axis = &self.slowed(&self.config.limits);
+        let steady = Setpoint {
+            velocity,
+            ..Setpoint::at_rest(0.0)
+        };
+        self.planner.ramp_to(&steady, velocity, axis, axis).ok()
+    }
+
+    /// Whether a motion `beside` a line of this `velocity` (u/s) may go against it: nothing bars the slave, and it turns inside its
+    /// software limits.
+    fn may_go_back(&self, velocity: f64, beside: &P::Plan) -> bool {
+        let heading = 1.0_f64.copysign(velocity);
+        let cycle = self.planner.cycle();
+        let speed = |scan: u64| heading * (velocity + beside.at(scan).velocity);
+        let scans = u64::from(beside.scans());
+        let looks = (0..=LOOKS).map(|look| scans * look / LOOKS);
+        let back = looks.min_by(|one, other| speed(*one).total_cmp(&speed(*other)));
+        // From there on it comes back to the velocity of the line.
+        let (mut low, mut high) = (back.unwrap_or(0), scans);
+        while high - low > 1 {
+            let middle = low + (high - low) / 2;
+            if speed(middle) < 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let way = velocity * (low as f64 * cycle) + beside.at(low).position;
+        // What it may still go back within a scan.
+        let in_scan = heading * self.parameters.limits.lower_acceleration() * cycle * cycle;
+        let place = self.mover.setpoint().position + way - in_scan;
+        self.allowed(place).is_ok() && self.way_barred(-velocity).is_none()
+    }
+
+    /// A plan onto a `line` of this `velocity` (u/s) from the state `start` beside it, within the speeds of
     /// `room`. Returns the plan with its limits: those of the command, or higher ones if the axis could
     /// not stay inside its own with them; none if these do not suffice either. Positions are relative to
     /// a line through the slave's place, because far from 0 numbers are coarse.
     fn beside_line(
         &self,
         start: &Setpoint,
-        velocity: f64,
+        (line, velocity): (&P::Plan, f64),
         room: impl Fn(&Limits) -> Room,
         limits: &Limits,
         before: &Limits,
@@ -470,14 +534,9 @@ impl<P: Planner> Axis<P> {
             ..*start
         };
         let axis = &self.slowed(&self.config.limits);
-        let steady = Setpoint {
-            velocity,
-            ..Setpoint::at_rest(0.0)
-        };
-        let line = self.planner.ramp_to(&steady, velocity, axis, axis).ok()?;
         let line = [
             Some(Lead {
-                plan: &line,
+                plan: line,
                 elapsed: 0,
                 factor: 1.0,
             }),
@@ -540,12 +599,17 @@ impl<P: Planner> Axis<P> {
         let leads = coupling.leads(&view.future).filter(|_| !view.future.is_late())?;
         let to_place = coupling.anchor.is_some();
         let is_syncing = coupling.is_syncing();
-        // On its way to a sync point the slave moves no faster against the line than it already does.
+        // On its way to a sync point the slave moves no faster against the law than it already does.
+        let heading = heading(&leads, line);
+        let may_turn = !is_syncing
+            || (coupling.goes_back
+                && self.parameters.software_limits.is_none()
+                && self.way_barred(-heading).is_none());
         let turns = |beside: &P::Plan| {
             let found = self.planner.velocities_behind(&leads, (beside, 0));
             let (against, start) = match found {
-                Some((lowest, _)) if line > 0.0 => (-lowest, -self.mover.setpoint().velocity),
-                Some((_, highest)) if line < 0.0 => (highest, self.mover.setpoint().velocity),
+                Some((lowest, _)) if heading > 0.0 => (-lowest, -self.mover.setpoint().velocity),
+                Some((_, highest)) if heading < 0.0 => (highest, self.mover.setpoint().velocity),
                 _ => return found.is_none(),
             };
             against > start.max(0.0) + ROUNDING * limits.velocity
@@ -562,7 +626,7 @@ impl<P: Planner> Axis<P> {
                 self.planner
                     .fits_behind(&leads, self.mover.setpoint(), beside, limits)
             });
-            planned.filter(|beside| !(is_syncing && turns(beside)))
+            planned.filter(|beside| may_turn || !turns(beside))
         };
         let asked = attempt(limits);
         let planned = match asked {
@@ -597,7 +661,7 @@ impl<P: Planner> Axis<P> {
         }
         let mut room = self.room_now(view, limits)?;
         // A slave that is ahead on its way to a sync point waits, and does not go to meet the law.
-        if coupling.is_syncing() && difference.position * line > 0.0 {
+        if coupling.waits_ahead() && difference.position * line > 0.0 {
             room.velocity = room.velocity.min(line.abs());
         }
         let planned = self.within_room(difference, &room, coupling.anchor.is_some())?;
@@ -609,6 +673,73 @@ impl<P: Planner> Axis<P> {
             name: Approach::Difference,
             velocity: difference.velocity,
             limits: *limits,
+        })
+    }
+
+    /// A way that does not get ahead of a law that will be too fast, while that is still well within the limits:
+    /// along the law if it `may_follow` that in this step, else with its velocity or, from behind, faster.
+    fn near_law(
+        &self,
+        owner: &Entry,
+        view: &View<'_, P::Plan>,
+        anchor: Anchor,
+        difference: &Setpoint,
+        may_follow: bool,
+    ) -> Option<Way<P::Plan>> {
+        let coupling = self.follower.coupling.as_ref()?;
+        if coupling.anchor.is_none() || coupling.is_syncing() || view.future.kind() != Kind::Plan {
+            return None;
+        }
+        let (place, _) = coupling.law(&anchor, &coupling.was);
+        let is_there =
+            difference.is_at_rest() && difference.position.abs() <= self.resolved_of(coupling, place);
+        if may_follow && is_there {
+            return self.along_law(anchor, &Setpoint::default(), coupling.limits, None);
+        }
+        let limits = self.limits_of_approach(owner);
+        let (_, law) = coupling.law(&anchor, &view.seen());
+        let velocity = self.planner.coasting(&law, &limits);
+        let is_slow = velocity.abs() < SLOW * limits.velocity
+            && law.acceleration.abs() < 0.5 * limits.lower_acceleration();
+        if !is_slow {
+            return None;
+        }
+        let room = may_follow.then(|| half_left(&law, &limits)).flatten();
+        let along = room.and_then(|room| self.along_law(anchor, difference, limits, Some(room)));
+        if along.is_some() {
+            return along;
+        }
+        let is_behind = difference.position * velocity < 0.0;
+        let goal = if is_behind {
+            limits.velocity.copysign(velocity)
+        } else {
+            velocity
+        };
+        let way = self.to_pace(owner, goal).ok()?;
+        Some(Way { left: UNKNOWN, ..way })
+    }
+
+    /// Along a law that will be too fast in time, and from beside it within this `room`; on it without any.
+    /// Each step is checked before it is made.
+    fn along_law(
+        &self,
+        anchor: Anchor,
+        difference: &Setpoint,
+        limits: Limits,
+        room: Option<Limits>,
+    ) -> Option<Way<P::Plan>> {
+        let plan = self.within_room(difference, &room.unwrap_or(limits), true)?;
+        Some(Way {
+            motion: Motion::closing(plan),
+            rung: Rung::BesideMeasured {
+                anchor,
+                room: room.unwrap_or(limits.times(0.0)),
+            },
+            lock: u64::MAX,
+            left: u64::MAX,
+            name: Approach::Difference,
+            velocity: difference.velocity,
+            limits,
         })
     }
 
@@ -654,6 +785,42 @@ impl<P: Planner> Axis<P> {
         (least > 0.0 && leads.iter().any(Option::is_some)).then_some(room)
     }
 
+    /// Whether a slave that is ahead of a law without an even stretch but its rest, which is further on, lets it come.
+    fn lets_law_come(&self, view: &View<'_, P::Plan>, difference: &Setpoint, line: f64) -> bool {
+        let Some(coupling) = &self.follower.coupling else {
+            return false;
+        };
+        // A start that waits for a place of the master is in time where the slave goes ahead to the rest.
+        let is_timed = coupling
+            .gearing
+            .sync
+            .is_some_and(|sync| sync.start_distance != 0.0);
+        if !coupling.is_syncing() || is_timed || line != 0.0 {
+            return false;
+        }
+        let left = coupling
+            .leads(&view.future)
+            .and_then(|leads| way_to_rest(&leads, 0));
+        left.is_some_and(|left| difference.position * left > 0.0 && left.abs() > difference.position.abs())
+    }
+
+    /// A velocity (u/s) of its own, which does not lead onto the law.
+    ///
+    /// # Errors
+    /// The reason why it may not move.
+    fn to_pace(&self, owner: &Entry, velocity: f64) -> Result<Way<P::Plan>, ErrorId> {
+        let (motion, limits) = self.to_velocity(owner, velocity)?;
+        Ok(Way {
+            motion,
+            rung: Rung::Own,
+            lock: u64::MAX,
+            left: u64::MAX,
+            name: Approach::Pace,
+            velocity,
+            limits,
+        })
+    }
+
     /// Moves as fast as it may, in the direction of the law, which has this `velocity` (u/s).
     ///
     /// # Errors
@@ -666,7 +833,7 @@ impl<P: Planner> Axis<P> {
         velocity: f64,
     ) -> Result<Way<P::Plan>, ErrorId> {
         let goal = if velocity < 0.0 { -most } else { most };
-        let (motion, limits) = self.to_velocity(owner, goal)?;
+        let way = self.to_pace(owner, goal)?;
         let coupling = self.follower.coupling.as_ref();
         let left = match coupling.and_then(|coupling| coupling.leads(&view.future)) {
             Some(leads) => {
@@ -680,15 +847,7 @@ impl<P: Planner> Axis<P> {
             }
             None => UNKNOWN,
         };
-        Ok(Way {
-            motion,
-            rung: Rung::Own,
-            lock: u64::MAX,
-            left,
-            name: Approach::Pace,
-            velocity: goal,
-            limits,
-        })
+        Ok(Way { left, ..way })
     }
 
     /// A ramp in the slave's own coordinates, planned like MC_MoveVelocity's, and its limits.
@@ -829,6 +988,15 @@ impl<P: Planner> Axis<P> {
         let told = told.map(|(what, peak, beside, limit)| (what, peak + beside, limit));
         told.into_iter()
             .find(|(_, value, limit)| *value > limit * (1.0 + ROUNDING))
+    }
+}
+
+/// The way the law leads (u, or u/s): along its next even stretch `line`, or to its rest if it has no other stretch.
+fn heading<Q: Plan>(leads: &Leads<'_, Q>, line: f64) -> f64 {
+    if line == 0.0 {
+        way_to_rest(leads, 0).unwrap_or(0.0)
+    } else {
+        line
     }
 }
 

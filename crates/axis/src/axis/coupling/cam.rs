@@ -40,7 +40,9 @@ use super::super::Axis;
 use super::super::commands::{Camming, Entry};
 use super::view::{Known, Seen};
 use super::{Coupled, FURTHEST, Values};
-use crate::{AxisId, CamId, CamIn, CamSelection, ErrorId, Event, OnLimit, Scope, StartMode, ValueSource};
+use crate::{
+    Approach, AxisId, CamId, CamIn, CamSelection, ErrorId, Event, OnLimit, Scope, StartMode, ValueSource,
+};
 use ends::Ends;
 pub use laid::CamLaid;
 use standstill_planner::{
@@ -145,6 +147,8 @@ pub(in crate::axis) struct OnCam {
     known: Known,
     /// Scans until the way is looked for again; the largest number for never.
     left: u64,
+    /// The kind of way recorded last.
+    told: Option<Approach>,
     /// The limits it was last held against.
     limits: Limits,
     /// How often the slave's own coordinates had moved.
@@ -226,6 +230,7 @@ impl OnCam {
             was: Seen::default(),
             known: Known::default(),
             left: u64::MAX,
+            told: None,
             limits,
             moves,
             deviation: 0.0,

@@ -285,10 +285,11 @@ impl<P: Planner> Axis<P> {
             && both.all(|(was, now)| was.place == now.place && was.at.is_at_rest())
     }
 
-    /// After a step: its slaves see whether it stands as long as its law does.
+    /// After a step: its slaves see whether it stands as long as its law does, and whether it only trembles with its masters.
     pub(super) fn note_whether_law_stands(&mut self, view: &View<'_, P::Plan>) {
         self.follower.stands =
             self.is_on_law() && self.mover.setpoint().is_at_rest() && self.law_stands(view);
+        self.follower.trembles = self.is_on_law() && view.trembles() && !self.adds_motion();
     }
 
     /// The plans ahead, as the law of a gear has them, or unchanged for a cam; `None` while the law is
@@ -360,7 +361,8 @@ impl<P: Planner> Axis<P> {
             let law = |seen| coupling.law(&anchor, seen).1;
             let ends = [law(&coupling.was), law(&view.seen())];
             let speeds = [self.mover.setpoint().velocity, next.velocity];
-            let leaves_room = leaves_room(&ends, &room, speeds, in_force, cycle);
+            // On the law it needs no room.
+            let leaves_room = room.velocity == 0.0 || leaves_room(&ends, &room, speeds, in_force, cycle);
             if !leaves_room || self.beyond(Some(place), &next, in_force, Some(false)).is_some() {
                 self.approach(view, false, scope);
                 if self.is_coupled() {
@@ -406,12 +408,15 @@ impl<P: Planner> Axis<P> {
     /// Whether a frame at the end of a plan is the law except for rounding. If not, the way is searched
     /// again.
     fn is_on(&mut self, frame: &Setpoint, frame_place: Place, law: &Setpoint, law_place: Place) -> bool {
+        let Some(coupling) = &self.follower.coupling else {
+            return false;
+        };
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
         let place = Place {
             position: frame.position,
             ..frame_place
         };
-        let resolved = RESOLVED * 4.0 * (frame.position.abs() + law_place.position.abs() + length);
+        let resolved = self.resolved_of(coupling, law_place);
         let is_on = off(place, law_place, length).abs() <= resolved && self.law_is_near(frame, law);
         if let (false, Some(coupling)) = (is_on, &mut self.follower.coupling) {
             coupling.left = 0;

@@ -16,13 +16,16 @@ use crate::{
     ValueSource,
 };
 use standstill_planner::turns::split;
-use standstill_planner::{Anchor, CamLaw, Limits, Place, Plan, Planner};
+use standstill_planner::{Anchor, CamLaw, Limits, Place, Plan, Planner, Setpoint};
 
 /// The largest rounding error of a master's place, relative to the numbers it is made of.
 const ROUNDING: f64 = 1e-9;
 
 /// Most halvings of a span of scans, of which a plan has at most 2^31.
 const HALVINGS: u32 = 32;
+
+/// Most start distances that are tried for the record of a start that is too late.
+const TRIALS: u32 = 4;
 
 /// The reason why a slave can't be in sync in time: the pin, its value and the limit.
 pub(super) type NotInTime = (&'static str, f64, f64, ErrorId);
@@ -331,7 +334,8 @@ impl<P: Planner> Axis<P> {
     /// The master is at the start point of a waiting command. The command takes over, or it fails and the
     /// owner of the axis continues.
     ///
-    /// Cost: that of the plans tried in the search for a way onto a law.
+    /// Cost: that of the plans tried in the search for a way onto a law, and for a start that is too late up
+    /// to 18 times that.
     pub(crate) fn start_at_point(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let Some(Awaited { entry, was, laid, .. }) = self.follower.awaited else {
             return;
@@ -344,12 +348,17 @@ impl<P: Planner> Axis<P> {
         };
         let found = match entry.work {
             Work::Gear(gearing) => self.gear_starts(&entry, gearing, seen, view),
-            Work::Cam(camming) => self.cam_starts(&entry, camming, (seen, laid), view, scope),
+            Work::Cam(camming) => self
+                .cam_starts(&entry, camming, (seen, laid), view, scope)
+                .map(|()| false),
             _ => return,
         };
-        if let Err((pin, value, limit, error)) = found {
-            return self.fail_awaited((pin, value, limit), error, scope);
-        }
+        let goes_back = match found {
+            Ok(goes_back) => goes_back,
+            Err((pin, value, limit, error)) => {
+                return self.fail_awaited((pin, value, limit), error, scope);
+            }
+        };
         self.follower.awaited = None;
         let before = self.limits_before(&entry.limits);
         let phasing = self.lend_phasing(&entry);
@@ -357,25 +366,28 @@ impl<P: Planner> Axis<P> {
         self.follower.phasing = phasing;
         self.begin(entry, Motion::Geared, before, scope);
         self.note_start_on_cam(laid);
+        if let Some(coupling) = &mut self.follower.coupling {
+            coupling.goes_back = goes_back;
+        }
         self.note_masters([was, Seen::default()]);
     }
 
-    /// Whether a gear that starts now is in sync in time.
+    /// Checks that a gear that starts now is in sync in time. Returns whether it goes back for that.
     fn gear_starts(
         &mut self,
         entry: &Entry,
         gearing: Gearing,
         seen: Seen,
         view: &View<'_, P::Plan>,
-    ) -> Result<(), NotInTime> {
+    ) -> Result<bool, NotInTime> {
         let coupling = Coupling {
             was: [seen, Seen::default()],
             ..Coupling::new(gearing, self.slowed(&self.parameters.limits), self.frame.moves())
         };
         let own = self.follower.coupling.replace(coupling);
         let found = self.way_at_start(entry, view);
-        self.follower.coupling = own;
-        found
+        let lent = core::mem::replace(&mut self.follower.coupling, own);
+        found.map(|()| lent.is_some_and(|coupling| coupling.goes_back))
     }
 
     /// The command that waits for a place of its master can't follow it: it fails, and the owner of the
@@ -399,12 +411,95 @@ impl<P: Planner> Axis<P> {
     /// Whether `entry` is in sync in time; its coupling is lent for this check. If not: the pin, its
     /// value and limit, and the reason.
     fn way_at_start(&mut self, entry: &Entry, view: &View<'_, P::Plan>) -> Result<(), NotInTime> {
-        self.lay_law(view);
-        let Some(coupling) = &self.follower.coupling else {
+        let late = self.late_at_start(entry, view)?;
+        let Some(coupling) = self.follower.coupling else {
             return Ok(());
         };
         let (Some(anchor), Some(sync)) = (coupling.anchor, coupling.gearing.sync) else {
             return Ok(());
+        };
+        let distance = sync.start_distance;
+        let exact = ROUNDING * (distance.abs() + anchor.master.position.abs());
+        if late <= exact {
+            return Ok(());
+        }
+        let left = 1.0_f64.copysign(distance) * self.way_to_sync(view, &anchor);
+        // The master may reach its start point anywhere in a scan.
+        let in_scan = (view.now.at.velocity * self.planner.cycle()).abs();
+        let mut enough = distance.abs() + late;
+        for _ in 0..TRIALS {
+            // A master that turns is at its sync point again after that way.
+            let exists = enough.is_finite() && view.turn.is_none_or(|length| enough < length);
+            if !exists {
+                break;
+            }
+            let late = self.late_from(coupling, enough - left, entry, view)? + in_scan;
+            if late <= exact {
+                let enough = enough.copysign(distance);
+                return Err(("MasterStartDistance", distance, enough, ErrorId::SyncNotReachable));
+            }
+            // From further away the slave may have a longer way, which takes less time than that of the master.
+            enough += 2.0 * late;
+        }
+        let (pin, value) = match sync.mode {
+            SyncMode::Shortest => ("MasterStartDistance", distance),
+            mode => ("SyncMode", f64::from(mode as i32)),
+        };
+        Err((pin, value, f64::NAN, ErrorId::SyncNotReachable))
+    }
+
+    /// By how much (u of the master) `entry` would be late if its master were `further` (u) from its sync
+    /// point; `coupling` is lent for this check.
+    fn late_from(
+        &mut self,
+        coupling: Coupling,
+        further: f64,
+        entry: &Entry,
+        view: &View<'_, P::Plan>,
+    ) -> Result<f64, NotInTime> {
+        let distance = coupling.gearing.sync.map_or(0.0, |sync| sync.start_distance);
+        let shift = Setpoint::at_rest(-further * 1.0_f64.copysign(distance));
+        let shifted = View {
+            now: view.now.shifted(&shift),
+            ..*view
+        };
+        self.follower.coupling = Some(Coupling {
+            was: coupling.was.map(|seen| seen.shifted(&shift)),
+            anchor: None,
+            goes_back: false,
+            ..coupling
+        });
+        self.late_at_start(entry, &shifted)
+    }
+
+    /// By how much (u of the master) `entry` is late at its sync point; without end if no way leads onto
+    /// the law. A slave that would be late because it waits goes back, where its mode permits that.
+    fn late_at_start(&mut self, entry: &Entry, view: &View<'_, P::Plan>) -> Result<f64, NotInTime> {
+        self.lay_law(view);
+        let late = self.late_on_way(entry, view)?;
+        let Some(coupling) = &mut self.follower.coupling else {
+            return Ok(late);
+        };
+        let may_go_back = |sync: Sync| sync.mode == SyncMode::Shortest;
+        if !(late > 0.0 && coupling.gearing.sync.is_some_and(may_go_back)) {
+            return Ok(late);
+        }
+        coupling.goes_back = true;
+        let late_by_going_back = self.late_on_way(entry, view)?;
+        if let Some(coupling) = &mut self.follower.coupling {
+            coupling.goes_back = late_by_going_back < late;
+        }
+        Ok(late.min(late_by_going_back))
+    }
+
+    /// The same for the way that is found.
+    fn late_on_way(&self, entry: &Entry, view: &View<'_, P::Plan>) -> Result<f64, NotInTime> {
+        let in_time = Ok(f64::NEG_INFINITY);
+        let Some(coupling) = &self.follower.coupling else {
+            return in_time;
+        };
+        let (Some(anchor), Some(sync)) = (coupling.anchor, coupling.gearing.sync) else {
+            return in_time;
         };
         let master = f64::from(coupling.gearing.first.master.number());
         let not_at_all = |error| ("Master", master, f64::NAN, error);
@@ -412,7 +507,7 @@ impl<P: Planner> Axis<P> {
             .map_err(not_at_all)?;
         let difference = self.difference(coupling, &anchor);
         if difference.is_at_rest() && difference.position == 0.0 {
-            return Ok(());
+            return in_time;
         }
         let speed = self.law_speed(view);
         let asked = self.limits_of_approach(entry).velocity;
@@ -425,15 +520,11 @@ impl<P: Planner> Axis<P> {
             ErrorId::MasterTooFast => ("Velocity", asked, speed, error),
             other => not_at_all(other),
         })?;
-        let distance = sync.start_distance;
-        let too_short = |least| ("MasterStartDistance", distance, least, ErrorId::SyncNotReachable);
-        let lock = way.scans_to_lock().ok_or(too_short(f64::NAN))?;
-        let heading = 1.0_f64.copysign(distance);
-        let late = heading * (self.way_of_master(view, lock) - self.way_to_sync(view, &anchor));
-        if late > ROUNDING * (distance.abs() + anchor.master.position.abs()) {
-            return Err(too_short(distance + heading * late));
-        }
-        Ok(())
+        let Some(lock) = way.scans_to_lock() else {
+            return Ok(f64::INFINITY);
+        };
+        let heading = 1.0_f64.copysign(sync.start_distance);
+        Ok(heading * (self.way_of_master(view, lock) - self.way_to_sync(view, &anchor)))
     }
 
     /// The distance (u) of the master from its sync point at the end of the last scan.

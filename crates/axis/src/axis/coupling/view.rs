@@ -133,6 +133,13 @@ pub(super) struct KnownPart {
     end: (f64, f64),
 }
 
+impl KnownPart {
+    /// Whether the motion ahead was known.
+    pub(super) const fn is_foreseen(&self) -> bool {
+        matches!(self.kind, Kind::Still | Kind::Plan)
+    }
+}
+
 impl<'a, P: Plan> Part<'a, P> {
     /// The known motion now, and whether it continues the motion `known` in the last scan.
     fn compare(&self, known: &KnownPart) -> (KnownPart, bool) {
@@ -313,6 +320,11 @@ impl<Plan> View<'_, Plan> {
         self.now.keeps_bound && self.second.is_none_or(|seen| seen.keeps_bound)
     }
 
+    /// Whether all masters may be at rest behind encoders that tremble.
+    pub(super) fn trembles(&self) -> bool {
+        self.now.trembles && self.second.is_none_or(|seen| seen.trembles)
+    }
+
     /// The smoothness of the masters' motions: 2, 3 or 4.
     pub(super) fn degree(&self) -> usize {
         let second = self.second.map_or(usize::MAX, |seen| seen.degree);
@@ -369,6 +381,7 @@ impl<P: Planner> Axis<P> {
             is_operating: self.is_operating(),
             degree: self.slowed(&self.config.limits).order().degree(),
             keeps_bound: self.keeps_bound(),
+            trembles: self.follower.trembles && matches!(self.mover.motion(), Motion::Geared),
             ..self.seen_before(scan)
         }
     }

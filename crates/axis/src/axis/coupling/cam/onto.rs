@@ -282,7 +282,7 @@ impl<P: Planner> Axis<P> {
         let is_there = difference.position == 0.0 && difference.is_at_rest();
         // Where the curve is level the slave rests, however its master moves.
         let is_there = is_there
-            || (meet(shadow.place, was.place, turn) && {
+            || ((meet(shadow.place, was.place, turn) || curve.bounds().is_level()) && {
                 let at = curve.at(was.place, &was.at, on_cam.at.piece);
                 goes_on(self.mover.setpoint(), &at.state, &on_cam.limits)
             });
@@ -358,12 +358,12 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A move onto the curve: to the master's place where that rests, else to one it comes to.
+    /// A move onto the curve: to the master's place where that rests or the curve is level, else to one it comes to.
     fn onto_curve(&self, curve: &Curve<'_>, owner: &Entry, stretch: &Stretch) -> Choice<P::Plan> {
         let Some(on_cam) = &self.follower.on_cam else {
             return Choice::Wait(u64::MAX);
         };
-        if stretch.velocity == 0.0 {
+        if stretch.velocity == 0.0 || curve.bounds().is_level() {
             return match self.move_onto(curve, owner, stretch.now) {
                 Ok(way) => Choice::Take(way),
                 Err(error) => Choice::Fail(error),
@@ -566,7 +566,16 @@ impl<P: Planner> Axis<P> {
         let from = matches!(way.rung, Rung::Moving { .. }).then_some(0.0);
         let may_leave = self.may_leave_on_way(from);
         self.mover.watch(may_leave);
+        let mut is_told = false;
         if let Some(on_cam) = &mut self.follower.on_cam {
+            // Behind a master whose motion is not known the same way along the curve is found again and again.
+            let is_along = |rung: Rung| {
+                let beside = matches!(rung, Rung::BesideLine { .. } | Rung::BesideMaster);
+                beside || matches!(rung, Rung::BesideMeasured { .. })
+            };
+            let goes_on = is_along(on_cam.rung) && is_along(way.rung) && on_cam.told == Some(way.name);
+            is_told = goes_on && !on_cam.known[0].is_foreseen();
+            on_cam.told = Some(way.name);
             on_cam.rung = way.rung;
             on_cam.is_timed = false;
             on_cam.left = way.left;
@@ -577,12 +586,14 @@ impl<P: Planner> Axis<P> {
             }
         }
         self.stir();
-        let event = Event::OntoCam {
-            way: way.name,
-            value: way.velocity,
-            scans: u32::try_from(scans).unwrap_or(u32::MAX),
-        };
-        self.record(event, &mut self.owner_scope(scope));
+        if !is_told {
+            let event = Event::OntoCam {
+                way: way.name,
+                value: way.velocity,
+                scans: u32::try_from(scans).unwrap_or(u32::MAX),
+            };
+            self.record(event, &mut self.owner_scope(scope));
+        }
     }
 
     /// To rest, within the limits of the slave; the way onto the curve is looked for again after so many scans, or there.
