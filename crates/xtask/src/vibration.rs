@@ -382,4 +382,5 @@ Lines of `standstill plan`: the move before it is shaped, and through three shap
   sized for that.
 - A period has 4 to 4096 cycles. In each scan a shaped axis computes one set-point for each part of its shapers: 2 or
   4, and for `period` as many as the period has scans ([how it works](planner.md#15-moves-without-swing), [why
-  so](decisions/0018-a-filter-behind-the-motion.md)). ";
+  so](decisions/0018-a-filter-behind-the-motion.md)).
+";
