@@ -8,8 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 #[derive(Debug, Default)]
 pub(super) struct BodyState {
-    /// Control variables of running loops, with their units.
-    pub controls: Vec<(UnitId, usize)>,
+    /// Control variables of running loops: those of a unit, or global ones.
+    pub controls: Vec<(Option<UnitId>, usize)>,
     /// Number of enclosing loops.
     pub loops: usize,
     /// In_outs that a call of this instance binds, by the text of the instance.

@@ -224,10 +224,22 @@ impl<'a> Checker<'a> {
 
     pub(super) fn global_place(&mut self, place: usize) -> (Place, Option<String>) {
         let member = &self.globals[place].member;
-        let fixed = member
-            .constant
-            .then(|| format!("`{}` is a CONSTANT", member.name));
+        let fixed = self.fixed(None, place, member);
         (plain(Base::Memory, member.offset, member.ty), fixed)
+    }
+
+    /// Why a variable of a unit, or a global one, must not be written.
+    fn fixed(&self, unit: Option<UnitId>, place: usize, member: &Member) -> Option<String> {
+        let name = &member.name;
+        if member.constant {
+            Some(format!("`{name}` is a CONSTANT"))
+        } else if self.body.controls.contains(&(unit, place)) {
+            Some(format!(
+                "`{name}` is the control variable of a FOR that is running"
+            ))
+        } else {
+            None
+        }
     }
 
     /// A variable of the unit whose statements these are.
@@ -240,16 +252,7 @@ impl<'a> Checker<'a> {
             return self.global_place(global);
         }
         let function = info.kind.has_frame();
-        let fixed = if member.constant {
-            Some(format!("`{}` is a CONSTANT", member.name))
-        } else if self.body.controls.contains(&(unit, place)) {
-            Some(format!(
-                "`{}` is the control variable of a FOR that is running",
-                member.name
-            ))
-        } else {
-            None
-        };
+        let fixed = self.fixed(Some(unit), place, member);
         let (frame, offset, ty) = (info.frame, member.offset, member.ty);
         let place = match (member.kind, function) {
             (MemberKind::InOut, true) => plain(Base::MemoryPointer(frame.saturating_add(offset)), 0, ty),

@@ -6,7 +6,7 @@ use crate::error::{Code, Diagnostic};
 use crate::source::Span;
 use crate::syntax::{Case, Expression, For, Path, Statement, StatementKind};
 use crate::typed::{Branch, Expr, Kind, Place, Stmt, StmtKind};
-use crate::types::{BOOL, Constant, Elementary, Type, TypeId, Types};
+use crate::types::{BOOL, Constant, Elementary, MemberKind, Type, TypeId, Types};
 
 impl<'a> Checker<'a> {
     pub(super) fn statements(&mut self, list: &'a [Statement]) -> Vec<Stmt> {
@@ -267,16 +267,23 @@ impl<'a> Checker<'a> {
 
     fn for_(&mut self, each: &'a For) -> Option<StmtKind> {
         let key = each.variable.key();
-        let member = self.local(&key);
         let path_span = each.variable.span;
-        let found = match member {
+        let mut control = None;
+        let found = match self.local(&key) {
             Some((unit, place)) => {
                 self.look_at_member(path_span, unit, place);
+                control = Some(
+                    match self.unit(unit).members.list.get(place).map(|member| member.kind) {
+                        Some(MemberKind::External(global)) => (None, global),
+                        _ => (Some(unit), place),
+                    },
+                );
                 Some(self.member_place(unit, place))
             }
             None => match self.global_names.get(&key).copied() {
                 Some(place) => {
                     self.look_at_global(path_span, place);
+                    control = Some((None, place));
                     Some(self.global_place(place))
                 }
                 None => {
@@ -329,11 +336,10 @@ impl<'a> Checker<'a> {
                 span: each.from.span,
             },
         };
-        self.body.controls.extend(member);
+        let around = self.body.controls.len();
+        self.body.controls.extend(control);
         let body = self.looped(&each.body);
-        if member.is_some() {
-            self.body.controls.pop();
-        }
+        self.body.controls.truncate(around);
         let (variable, of) = (found?, of?);
         if from.is_wrong() || to.is_wrong() || by.is_wrong() {
             return None;
