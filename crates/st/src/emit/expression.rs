@@ -15,7 +15,8 @@ use wasm_encoder::{BlockType, ValType};
 pub(super) struct Loop {
     pub exit: Label,
     pub again: Label,
-    pub site: i32,
+    /// Absent for a loop of the library, which ends.
+    pub site: Option<i32>,
 }
 
 /// Writes one function.

@@ -22,8 +22,9 @@ enum Stride {
 }
 
 impl Emitter<'_, '_, '_> {
-    /// Records the running loop, which is reported if the fuel is used up.
-    fn note_loop(&mut self, site: i32) {
+    /// Notes the running loop, which is reported if the fuel is used up.
+    fn note_loop(&mut self, site: Option<i32>) {
+        let Some(site) = site else { return };
         self.function
             .sink()
             .i32_const(0)
@@ -31,25 +32,25 @@ impl Emitter<'_, '_, '_> {
             .i32_store(at(layout::LOOP_SITE, 2));
     }
 
-    fn begin_loop(&mut self, span: Span) -> (i32, Label) {
+    fn begin_loop(&mut self, span: Span) -> (Option<i32>, Label) {
         let keyword = Span {
             start: span.start,
             end: (span.start + 6).min(span.end),
         };
-        let site = self.site(keyword, FaultKind::Loop);
+        let library = span.start >= self.context.library;
+        let site = (!library).then(|| self.site(keyword, FaultKind::Loop));
         self.note_loop(site);
         (site, self.function.block())
     }
 
     fn end_loop(&mut self) {
         self.function.end();
-        if let Some(site) = self.loops.last().map(|around| around.site) {
-            self.note_loop(site);
-        }
+        let around = self.loops.last().and_then(|around| around.site);
+        self.note_loop(around);
     }
 
     /// The statements of a loop, within a block that CONTINUE leaves.
-    fn turn(&mut self, exit: Label, site: i32, body: &[Stmt]) {
+    fn turn(&mut self, exit: Label, site: Option<i32>, body: &[Stmt]) {
         let again = self.function.block();
         self.loops.push(Loop { exit, again, site });
         self.statements(body);

@@ -114,6 +114,8 @@ struct Context<'p, 'a> {
     /// Initial values of variables that are created at every call, behind everything else.
     templates: Vec<u8>,
     templates_at: u32,
+    /// Where the library's own text begins.
+    library: u32,
 }
 
 impl Context<'_, '_> {
@@ -139,8 +141,14 @@ pub(crate) struct Emitted {
     pub sites: Vec<Site>,
 }
 
-/// Writes the module; `image` is the memory before the first scan.
-pub(crate) fn emit(program: &Program<'_>, image: &[u8], counters: &Counters) -> Result<Emitted, Diagnostic> {
+/// Writes the module; `image` is the memory before the first scan, and `library` the place where the library's own text
+/// begins.
+pub(crate) fn emit(
+    program: &Program<'_>,
+    image: &[u8],
+    counters: &Counters,
+    library: u32,
+) -> Result<Emitted, Diagnostic> {
     let mut context = Context {
         program,
         bodies: program.bodies.iter().map(|body| (body.unit, body)).collect(),
@@ -150,6 +158,7 @@ pub(crate) fn emit(program: &Program<'_>, image: &[u8], counters: &Counters) -> 
         counters,
         templates: Vec::new(),
         templates_at: program.layout.end.next_multiple_of(8),
+        library,
     };
     context.want(Target::Fault);
     let mut exported = vec![("plc_scan".to_owned(), statement::scan(&mut context, None))];
