@@ -7,7 +7,7 @@ use crate::library::{Function, blocks, conversion};
 use crate::source::Span;
 use crate::syntax::{self, Call, Expression, ExpressionKind, Path, Selector, Way};
 use crate::typed::{Argument, Base, BlockCall, Expr, FunctionCall, Kind, Place, StmtKind};
-use crate::types::{Member, MemberKind, Type, TypeId, UnitId, WRONG};
+use crate::types::{Constant, Member, MemberKind, Start, Type, TypeId, UnitId, WRONG};
 
 /// Largest number of pins that a message lists.
 const PINS_SHOWN: usize = 10;
@@ -95,7 +95,6 @@ impl<'a> Checker<'a> {
         &mut self,
         unit: UnitId,
         arguments: &'a [syntax::Argument],
-        span: Span,
     ) -> Vec<(usize, &'a syntax::Argument)> {
         let mut matched: Vec<(usize, &'a syntax::Argument)> = Vec::new();
         let takes = |kind: MemberKind| matches!(kind, MemberKind::Input | MemberKind::InOut);
@@ -116,7 +115,7 @@ impl<'a> Checker<'a> {
                 }
             };
             let Some(place) = place else {
-                self.no_such_argument(unit, argument, span);
+                self.no_such_argument(unit, argument);
                 continue;
             };
             let member = info.members.list[place].clone();
@@ -170,12 +169,61 @@ impl<'a> Checker<'a> {
         matched
     }
 
-    fn no_such_argument(&mut self, unit: UnitId, argument: &syntax::Argument, span: Span) {
+    /// A call by place gives a function all of its inputs; a call by name may leave out what is no in_out. Whether the
+    /// call is reported.
+    fn lacks_inputs(
+        &mut self,
+        unit: UnitId,
+        arguments: &[syntax::Argument],
+        matched: &[(usize, &syntax::Argument)],
+        span: Span,
+    ) -> bool {
+        let by_place = arguments.iter().any(|argument| argument.name.is_none());
+        let info = self.unit(unit);
+        let (mut count, mut missing) = (0, Vec::new());
+        for (place, member) in info.members.list.iter().enumerate() {
+            let input = member.kind == MemberKind::Input;
+            if !input && member.kind != MemberKind::InOut {
+                continue;
+            }
+            count += 1;
+            let given = matched.iter().any(|(it, _)| *it == place);
+            if !given && (by_place || input && matches!(member.start, Start::Default)) {
+                missing.push(quoted(&member.name));
+            }
+        }
+        // What is matched to nothing has been reported.
+        if missing.is_empty() || matched.len() < arguments.len() {
+            return false;
+        }
+        let are = if missing.len() == 1 { "is" } else { "are" };
+        let missing = missing.join(", ");
+        if by_place {
+            let message = format!(
+                "{} takes {}, and {missing} {are} missing",
+                info.name,
+                inputs(count)
+            );
+            let help =
+                "a call by place gives all inputs; a call by their names, `a := 1`, may leave some out";
+            self.error(Code::MissingArgument, span, message, help);
+        } else {
+            let message = format!("the call of {} does not give {missing}", info.name);
+            let doubt = Diagnostic::warning(Code::Portability, span, message);
+            self.tell(
+                doubt.help("CODESYS and TwinCAT want all inputs that are declared without a first value"),
+            );
+        }
+        by_place
+    }
+
+    fn no_such_argument(&mut self, unit: UnitId, argument: &syntax::Argument) {
         let info = self.unit(unit);
         match &argument.name {
             None => {
-                let message = format!("{} takes fewer arguments", info.name);
-                let _ = span;
+                let takes = |member: &&Member| matches!(member.kind, MemberKind::Input | MemberKind::InOut);
+                let count = info.members.list.iter().filter(takes).count();
+                let message = format!("{} takes {}", info.name, inputs(count));
                 self.error(Code::BadArgument, argument.span, message, "");
             }
             Some(name) => {
@@ -338,7 +386,8 @@ impl<'a> Checker<'a> {
     pub(super) fn function(&mut self, unit: UnitId, instance: Option<Place>, call: &'a Call) -> Expr {
         self.resolve_unit(unit, call.span);
         self.note_call(unit, call.span);
-        let matched = self.matched(unit, &call.arguments, call.span);
+        let matched = self.matched(unit, &call.arguments);
+        let reported = self.lacks_inputs(unit, &call.arguments, &matched, call.span);
         let info = self.unit(unit);
         let (name, frame) = (info.name.clone(), info.frame);
         let result = info
@@ -375,7 +424,9 @@ impl<'a> Checker<'a> {
                         None => wrong = true,
                     },
                     None => {
-                        self.missing(&member.name, &name, call.span);
+                        if !reported {
+                            self.missing(&member.name, &name, call.span);
+                        }
                         wrong = true;
                     }
                 },
@@ -425,7 +476,6 @@ impl<'a> Checker<'a> {
 
     /// The default of an input of a function that a call leaves out.
     fn default_value(&mut self, member: &Member, span: Span) -> Option<Expr> {
-        use crate::types::{Constant, Start};
         if self.is_text(member.ty) {
             let bytes = match &member.start {
                 Start::Text(bytes) => bytes.clone(),
@@ -517,7 +567,7 @@ impl<'a> Checker<'a> {
         callee: Span,
     ) -> Option<StmtKind> {
         self.note_call(unit, span);
-        let matched = self.matched(unit, arguments, span);
+        let matched = self.matched(unit, arguments);
         let members = self.unit(unit).members.list.clone();
         let mut made = BlockCall {
             instance,
@@ -560,6 +610,15 @@ impl<'a> Checker<'a> {
             unit,
         );
         (!wrong).then(|| StmtKind::Block(Box::new(made)))
+    }
+}
+
+/// How many inputs something takes, in a message.
+pub(super) fn inputs(count: usize) -> String {
+    match count {
+        0 => "no inputs".to_owned(),
+        1 => "1 input".to_owned(),
+        _ => format!("{count} inputs"),
     }
 }
 
