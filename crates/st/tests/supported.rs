@@ -177,6 +177,14 @@ const REFUSED: &[(&str, &str)] = &[
         "VAR_INST",
         "FUNCTION_BLOCK B METHOD M VAR_INST a : INT; END_VAR END_METHOD END_FUNCTION_BLOCK",
     ),
+    (
+        "METHOD FB_Init",
+        "FUNCTION_BLOCK B METHOD FB_Init : BOOL END_METHOD END_FUNCTION_BLOCK",
+    ),
+    (
+        "METHOD FB_Exit, FB_Reinit",
+        "FUNCTION_BLOCK B METHOD FB_Exit : BOOL END_METHOD END_FUNCTION_BLOCK",
+    ),
     ("JMP and labels", "PROGRAM P JMP a; END_PROGRAM"),
     (
         "EN and ENO",

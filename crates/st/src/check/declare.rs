@@ -156,6 +156,11 @@ impl<'a> Checker<'a> {
         for method in &unit.methods {
             let own = self.add_unit(method, Some(id));
             self.check_name(&method.name);
+            if let Some((name, instead)) = of_the_runtime(&method.name.key()) {
+                let message =
+                    format!("METHOD {name}, which other systems call by themselves, is not supported");
+                self.error(Code::Unsupported, method.name.span, message, instead);
+            }
             if let Some(other) = self.methods.insert((id, method.name.key()), own) {
                 let other = self.unit(other).span;
                 self.twice(&method.name, other);
@@ -308,4 +313,17 @@ impl<'a> Checker<'a> {
             );
         }
     }
+}
+
+/// The remedy for a method that the runtime of other systems calls.
+fn of_the_runtime(key: &str) -> Option<(&'static str, &'static str)> {
+    Some(match key {
+        "FB_INIT" => (
+            "FB_Init",
+            "give variables their first values where they are declared, `n : INT := 100;`, and instances theirs, `C : Counter := (n := 5);`",
+        ),
+        "FB_EXIT" => ("FB_Exit", "omit it: instances exist as long as the program"),
+        "FB_REINIT" => ("FB_Reinit", "omit it: a program does not change while it runs"),
+        _ => return None,
+    })
 }
