@@ -1,5 +1,6 @@
 //! From the syntax tree to the checked program: names, types, constants, calls.
 
+mod address;
 mod body;
 mod call;
 mod chain;
@@ -274,6 +275,7 @@ fn checked<'a>(
     let bodies = checker.bodies();
     checker.run(&mut tasks, &instances);
     checker.check_calls();
+    checker.check_addresses();
     (checker, tasks, instances, bodies)
 }
 
