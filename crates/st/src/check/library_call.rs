@@ -1,7 +1,8 @@
 //! Calls of the functions of the library.
 
 use super::Checker;
-use crate::error::{Code, Diagnostic};
+use super::call::inputs;
+use crate::error::{Code, Diagnostic, quoted};
 use crate::library::{Function, OPERATORS, conversion};
 use crate::source::Span;
 use crate::syntax::{Call, Expression, Operator, Way};
@@ -10,6 +11,12 @@ use crate::types::{ANY_INTEGER, ANY_REAL, BOOL, Class, Elementary, TypeId, Types
 
 /// The remedy for a number without a conversion to or from STRING.
 pub(super) const TO_TEXT: &str = "whole numbers, BOOL and TIME have one; make a whole number first: LINT_TO_STRING(LREAL_TO_LINT(x * 1000.0))";
+
+/// What a STRING is while it is chosen.
+const ADDRESS: Elementary = Elementary::Udint;
+
+/// The remedy for a number that is not read from a STRING.
+const OF_TEXT: &str = "STRING_TO_LINT reads a whole number, up to the first character that is no digit; of 12.5 read both sides of the point, which FIND(s, '.') finds";
 
 impl<'a> Checker<'a> {
     /// A call of a function of the library; `None` if there is none of that name.
@@ -48,10 +55,14 @@ impl<'a> Checker<'a> {
             let fits = place
                 .filter(|place| argument.way == Way::In && (open || *place < names.len()) && *place < 10_000);
             let Some(place) = fits else {
-                let message = format!("{function} has no such input");
+                let message = match &argument.name {
+                    Some(name) => format!("{function} has no input {}", quoted(&name.text)),
+                    None => format!("{function} takes {}", inputs(names.len())),
+                };
+                let more = if open { ", .." } else { "" };
                 let help = match names {
-                    [] => "it takes none".to_owned(),
-                    _ => format!("it takes {}", names.join(", ")),
+                    [] => String::new(),
+                    _ => format!("it takes {}{more}", names.join(", ")),
                 };
                 self.error(Code::BadArgument, argument.span, message, &help);
                 return Vec::new();
@@ -66,17 +77,10 @@ impl<'a> Checker<'a> {
         }
         let least = if open { names.len().max(2) } else { names.len() };
         if list.len() < least || list.iter().any(Option::is_none) {
-            let message = format!(
-                "{function} takes {}{} inputs",
-                if open { "at least " } else { "" },
-                least
-            );
-            self.error(
-                Code::MissingArgument,
-                call.span,
-                message,
-                &format!("they are {}", names.join(", ")),
-            );
+            let (at_least, more) = if open { ("at least ", ", ..") } else { ("", "") };
+            let message = format!("{function} takes {at_least}{}", inputs(least));
+            let help = format!("it takes {}{more}", names.join(", "));
+            self.error(Code::MissingArgument, call.span, message, &help);
             return Vec::new();
         }
         list.into_iter().flatten().collect()
@@ -187,7 +191,21 @@ impl<'a> Checker<'a> {
             return Some(Expr::wrong(call.span));
         };
         let value = match from {
-            Some(from) => self.value(argument, from),
+            Some(from) => {
+                let value = self.expression(argument, Some(from));
+                match self.other_conversion(&value, from, to) {
+                    Some(help) => {
+                        let message = format!(
+                            "{key} takes {}, not {}",
+                            self.type_name(from),
+                            self.type_name(value.ty)
+                        );
+                        self.error(Code::Conversion, value.span, message, &help);
+                        Expr::wrong(value.span)
+                    }
+                    None => self.convert(value, from),
+                }
+            }
             None => {
                 let value = self.expression(argument, Some(to));
                 self.settle(value)
@@ -197,6 +215,16 @@ impl<'a> Checker<'a> {
             return Some(Expr::wrong(call.span));
         }
         let (Some(one), Some(other)) = (self.types.elementary(value.ty), self.types.elementary(to)) else {
+            if self.is_text(value.ty) {
+                let name = self.type_name(to);
+                let message = format!("there is no conversion from STRING to {name}");
+                let help = match self.types.elementary(to).map(Elementary::class) {
+                    Some(Class::Real | Class::Time) => OF_TEXT.to_owned(),
+                    _ => format!("write STRING_TO_{name}(..)"),
+                };
+                self.error(Code::UnknownName, call.callee.root.span, message, &help);
+                return Some(Expr::wrong(call.span));
+            }
             let message = format!("{} is not converted", self.type_name(value.ty));
             self.error(Code::WrongType, value.span, message, "convert its members");
             return Some(Expr::wrong(call.span));
@@ -213,6 +241,28 @@ impl<'a> Checker<'a> {
             kind,
             ty: to,
             span: call.span,
+        })
+    }
+
+    /// What to write where X_TO_Y is given a value of a third type that does not become an X.
+    fn other_conversion(&self, value: &Expr, from: TypeId, to: TypeId) -> Option<String> {
+        let plain = |ty: TypeId| {
+            self.types
+                .elementary(ty)
+                .filter(|_| !self.types.is_enumeration(ty))
+        };
+        let (given, wanted, target) = (plain(value.ty)?, plain(from)?, self.types.elementary(to)?);
+        if given.widens_to(wanted) {
+            return None;
+        }
+        Some(if value.ty == to {
+            format!("it is {} already: omit the conversion", given.name())
+        } else {
+            format!(
+                "write {}_TO_{}(..)",
+                given.name(),
+                self.conversion_name(to, target)
+            )
         })
     }
 
@@ -379,14 +429,22 @@ impl<'a> Checker<'a> {
         expected: Option<TypeId>,
     ) -> Option<(Vec<Expr>, TypeId)> {
         let values: Vec<Expr> = arguments.iter().map(|it| self.expression(it, expected)).collect();
+        if values.iter().any(Expr::is_wrong) {
+            return None;
+        }
+        if let Some(text) = self.longest_text(&values) {
+            let other = values.iter().find(|value| !self.is_text(value.ty));
+            if let Some(other) = other.cloned() {
+                self.refuse(&other, text);
+                return None;
+            }
+            return Some((values, text));
+        }
         let mut ty: Option<TypeId> = None;
         for value in values
             .iter()
             .filter(|value| value.ty != ANY_INTEGER && value.ty != ANY_REAL)
         {
-            if value.is_wrong() {
-                return None;
-            }
             ty = match ty {
                 None => Some(value.ty),
                 Some(ty) if ty == value.ty => Some(ty),
@@ -450,6 +508,9 @@ impl<'a> Checker<'a> {
         let Some((values, ty)) = self.unified(function, arguments, expected) else {
             return Expr::wrong(span);
         };
+        if self.is_text(ty) && function != Function::Atan2 {
+            return made(function, ADDRESS, values, ty, span);
+        }
         let of = self
             .types
             .elementary(ty)
@@ -505,7 +566,7 @@ impl<'a> Checker<'a> {
         let Some((values, ty)) = self.unified(function, rest, expected) else {
             return Expr::wrong(span);
         };
-        let of = self.types.elementary(ty).unwrap_or(Elementary::Lint);
+        let of = self.types.elementary(ty).unwrap_or(ADDRESS);
         let mut all = vec![decider];
         all.extend(values);
         made(function, of, all, ty, span)

@@ -28,6 +28,16 @@ impl<'a> Checker<'a> {
         matches!(self.types.get(ty), Type::Text(_))
     }
 
+    /// The type of the longest string among these; `None` if there is none.
+    pub(super) fn longest_text(&mut self, values: &[Expr]) -> Option<TypeId> {
+        let lengths = values.iter().filter_map(|value| match self.types.get(value.ty) {
+            Type::Text(capacity) => Some(*capacity),
+            _ => None,
+        });
+        let longest = lengths.max()?;
+        Some(self.types.text(longest))
+    }
+
     /// A string as one of another length. A longer value is cut when it is assigned; for a literal this
     /// is reported.
     pub(super) fn text_value(&mut self, value: Expr, capacity: u8) -> Expr {

@@ -8,7 +8,7 @@ use crate::layout;
 use crate::library::Function;
 use crate::source::Span;
 use crate::typed::Expr;
-use crate::types::Elementary;
+use crate::types::{Elementary, Type};
 use wasm_encoder::{BlockType, ValType};
 
 impl Emitter<'_, '_, '_> {
@@ -28,6 +28,9 @@ impl Emitter<'_, '_, '_> {
             Function::Find => {
                 values.iter().for_each(|value| self.expression(value));
                 self.helper(Helper::Find);
+            }
+            Function::Min | Function::Max | Function::Limit if self.is_text(values) => {
+                self.extreme_text(function, values);
             }
             Function::Min | Function::Max => self.extreme(function, of, values),
             // As MIN(MAX(IN, MN), MX).
@@ -115,6 +118,50 @@ impl Emitter<'_, '_, '_> {
                 self.pair(function, of);
             }
         }
+    }
+
+    fn is_text(&self, values: &[Expr]) -> bool {
+        let types = &self.context.program.types;
+        values
+            .first()
+            .is_some_and(|value| matches!(types.get(value.ty), Type::Text(_)))
+    }
+
+    /// MIN, MAX and LIMIT of strings, whose addresses are chosen.
+    fn extreme_text(&mut self, function: Function, values: &[Expr]) {
+        if let (Function::Limit, [least, value, most]) = (function, values) {
+            self.expression(value);
+            self.expression(least);
+            self.pair_of_texts(Function::Max);
+            self.expression(most);
+            self.pair_of_texts(Function::Min);
+            return;
+        }
+        for (place, value) in values.iter().enumerate() {
+            self.expression(value);
+            if place > 0 {
+                self.pair_of_texts(function);
+            }
+        }
+    }
+
+    /// The smaller or larger one of two strings whose addresses are on the stack.
+    fn pair_of_texts(&mut self, function: Function) {
+        let (one, other) = (
+            self.function.local(ValType::I32),
+            self.function.local(ValType::I32),
+        );
+        let mut sink = self.function.sink();
+        sink.local_set(other).local_tee(one).local_get(other);
+        sink.local_get(one).local_get(other);
+        self.helper(Helper::Compare);
+        let mut sink = self.function.sink();
+        sink.i32_const(0);
+        match function {
+            Function::Min => sink.i32_lt_s(),
+            _ => sink.i32_gt_s(),
+        };
+        sink.select();
     }
 
     /// The smaller or larger one of two values on the stack.
