@@ -112,6 +112,15 @@ impl<'a> Checker<'a> {
         );
     }
 
+    /// The same of the names of two lists of global variables.
+    fn in_two_lists(&mut self, name: &Ident, other: Span) {
+        let message = format!("two lists of global variables have the name `{}`", name.text);
+        let wrong = Diagnostic::error(Code::DuplicateName, name.span, message);
+        self.tell(wrong.related(other, "here it is given first").help(
+            "here the names of all lists are known everywhere, those of qualified_only too: rename one",
+        ));
+    }
+
     /// Reports a name that is also the name of an elementary type, or whose spelling other compilers refuse.
     pub(super) fn check_name(&mut self, name: &Ident) {
         let key = name.key();
@@ -240,8 +249,13 @@ impl<'a> Checker<'a> {
                 self.files.entry(stem).or_insert(file);
                 match self.global_names.get(&name.key()) {
                     Some(other) => {
-                        let other = self.globals[*other].member.span;
-                        self.twice(name, other);
+                        let other = &self.globals[*other];
+                        let (other, lists) = (other.member.span, other.file != file);
+                        if lists {
+                            self.in_two_lists(name, other);
+                        } else {
+                            self.twice(name, other);
+                        }
                     }
                     None => {
                         self.global_names.insert(name.key(), place);

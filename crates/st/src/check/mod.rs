@@ -98,7 +98,7 @@ pub(crate) struct Global<'a> {
     /// Absent for the instance of a PROGRAM, whose type is known.
     spec: Option<&'a TypeSpec>,
     initial: Option<&'a Initial>,
-    file: usize,
+    pub file: usize,
     state: State,
 }
 

@@ -47,9 +47,13 @@ impl<'a> Checker<'a> {
             let (Selector::Member(name), rest) = selectors.split_first()? else {
                 return None;
             };
-            let place = self.global_names.get(&name.key()).copied()?;
+            let mut place = self.global_names.get(&name.key()).copied()?;
             if self.globals[place].file != file {
-                return None;
+                // One whose name another list has, too, which is reported there.
+                let same = |global: &Global<'_>| {
+                    global.file == file && global.member.name.eq_ignore_ascii_case(&name.text)
+                };
+                place = self.globals.iter().position(same)?;
             }
             selectors = rest;
             listed = Some((place, name.span));

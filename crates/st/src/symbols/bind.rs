@@ -3,14 +3,19 @@
 use crate::Options;
 use crate::check::{Program, UnitKind};
 use crate::error::{Code, Diagnostic, did_you_mean};
-use crate::source::Span;
+use crate::source::{Sources, Span};
 use crate::types::{Array, Member, MemberKind, Type, TypeId};
 
 /// Largest number of variables that a message lists.
 const LISTED_MOST: usize = 8;
 
 /// Writes the initial axis of each variable of type AXIS_REF.
-pub(crate) fn bind(program: &Program<'_>, options: &Options, memory: &mut [u8]) -> Result<(), Diagnostic> {
+pub(crate) fn bind(
+    program: &Program<'_>,
+    sources: &Sources,
+    options: &Options,
+    memory: &mut [u8],
+) -> Result<(), Diagnostic> {
     let mut found = Vec::new();
     for global in &program.globals {
         references(
@@ -48,7 +53,13 @@ pub(crate) fn bind(program: &Program<'_>, options: &Options, memory: &mut [u8]) 
             known.eq_ignore_ascii_case(&plain)
                 || within.as_ref().is_some_and(|it| known.eq_ignore_ascii_case(it))
         };
-        match found.iter().find(|(known, ..)| same(known)) {
+        let listed = without_list(program, sources, &plain);
+        let by_name = found.iter().find(|(known, ..)| same(known));
+        match by_name.or_else(|| {
+            found
+                .iter()
+                .find(|(known, ..)| known.eq_ignore_ascii_case(listed))
+        }) {
             Some((.., address)) if bound.contains(address) => {
                 let message = format!("the variable `{path}` is bound to an axis twice");
                 let wrong = Diagnostic::error(Code::UnknownBinding, Span::default(), message);
@@ -64,8 +75,20 @@ pub(crate) fn bind(program: &Program<'_>, options: &Options, memory: &mut [u8]) 
     Ok(())
 }
 
-/// The message for a path that leads to no variable of type AXIS_REF. `only` is the instance whose name may be left
-/// out.
+/// The path of a global variable without the name of its file: `x` of `GVL.x`.
+fn without_list<'p>(program: &Program<'_>, sources: &Sources, path: &'p str) -> &'p str {
+    let Some((list, rest)) = path.split_once('.') else {
+        return path;
+    };
+    let name = rest.split(['.', '[']).next().unwrap_or(rest);
+    let listed = program.globals.iter().any(|global| {
+        sources.stem(global.file).eq_ignore_ascii_case(list) && global.member.name.eq_ignore_ascii_case(name)
+    });
+    if listed { rest } else { path }
+}
+
+/// The message for a path that leads to no variable of type AXIS_REF; `only` is the instance whose name
+/// may be left out.
 fn unknown(path: &str, found: &References, only: Option<&str>) -> Diagnostic {
     let known: Vec<&str> = found
         .iter()

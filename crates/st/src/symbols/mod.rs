@@ -100,6 +100,8 @@ struct Root {
     address: u32,
     section: Section,
     instance: bool,
+    /// The name of its file, of a global variable.
+    list: String,
 }
 
 /// The variables of a module by their paths, and its places.
@@ -145,6 +147,7 @@ impl Symbols {
             member: global.member.clone(),
             section: Section::Global,
             instance: false,
+            list: sources.stem(global.file).to_owned(),
         });
         let mut roots: Vec<Root> = globals.collect();
         let mut types = program.types;
@@ -153,6 +156,7 @@ impl Symbols {
             address: instance.address,
             section: Section::Internal,
             instance: true,
+            list: String::new(),
         }));
         let tasks = program.tasks.iter().map(|task| Task {
             name: task.name.clone(),
@@ -214,8 +218,8 @@ impl Symbols {
     }
 
     /// The variable with this path, without regard to case: `global`, `instance.variable`, and `variable` if there
-    /// is one instance of a program. A global variable hides a local one. `%IX0.0` finds the variable AT that
-    /// address.
+    /// is one instance of a program. A global variable hides a local one; it is also found by the name of its file,
+    /// `GVL.global`. `%IX0.0` finds the variable AT that address.
     #[must_use]
     pub fn find(&self, path: &str) -> Option<Symbol> {
         if path.starts_with('%') {
@@ -235,9 +239,11 @@ impl Symbols {
         let mut rest = path;
         let name = next_name(&mut rest)?;
         let named = |root: &&Root| root.member.name.eq_ignore_ascii_case(name);
-        let mut part = match self.roots.iter().find(named) {
-            Some(root) => self.root(root),
-            None => self.member(&self.root(self.only_instance()?), name)?,
+        let of_instance = || self.member(&self.root(self.only_instance()?), name);
+        let found = self.roots.iter().find(named).map(|root| self.root(root));
+        let mut part = match found.or_else(of_instance) {
+            Some(part) => part,
+            None => self.listed(name, &mut rest)?,
         };
         while !rest.is_empty() {
             part = if let Some(behind) = rest.strip_prefix('.') {
@@ -251,6 +257,17 @@ impl Symbols {
             };
         }
         Some(part)
+    }
+
+    /// A global variable by the name of its file and its own, which is taken from the rest of the path.
+    fn listed(&self, list: &str, rest: &mut &str) -> Option<Part> {
+        *rest = rest.strip_prefix('.')?;
+        let name = next_name(rest)?;
+        let mut globals = self.roots.iter().filter(|root| root.section == Section::Global);
+        let root = globals.find(|root| {
+            root.list.eq_ignore_ascii_case(list) && root.member.name.eq_ignore_ascii_case(name)
+        })?;
+        Some(self.root(root))
     }
 
     /// The instance of a program, if there is only one.
