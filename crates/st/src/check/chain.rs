@@ -366,6 +366,10 @@ impl<'a> Checker<'a> {
                     "convert it to a number: {0}_TO_UDINT(..), or the type you need",
                     ty.name()
                 ),
+                Class::Time if operation == Operation::Divide => format!(
+                    "for a ratio divide numbers: {0}_TO_LREAL(..) / {0}_TO_LREAL(..)",
+                    ty.name()
+                ),
                 Class::Time => "multiply a TIME with a number, or divide it by one".to_owned(),
                 Class::Real => "MOD is for whole numbers; for a rest: x - y * FLOOR(x / y)".to_owned(),
                 _ => "BOOL is no number: use IF, SEL or BOOL_TO_INT(..)".to_owned(),

@@ -8,6 +8,9 @@ use crate::syntax::{Expression, Ident, Path, Selector};
 use crate::typed::{Base, Expr, Index, Kind, Place};
 use crate::types::{Class, Constant, Member, MemberKind, Start, Type, TypeId, UnitId};
 
+/// The remedy for a member of AXIS_REF that only other systems have.
+const OF_AN_AXIS: &str = "it has `Number`; blocks read the rest of an axis: MC_ReadActualPosition, MC_ReadActualVelocity, MC_ReadStatus, MC_ReadAxisError";
+
 /// The target of a path.
 pub(super) enum Named {
     /// A variable, and the reason why it must not be written, if there is one.
@@ -331,6 +334,8 @@ impl<'a> Checker<'a> {
         };
         let Some((_, member)) = members.find(&key) else {
             let guess = self.guess(&name.text, members.list.iter().map(|member| member.name.as_str()));
+            let axis = matches!(self.types.get(place.ty), Type::Structure(it) if it.name == "AXIS_REF");
+            let guess = guess.or_else(|| axis.then(|| OF_AN_AXIS.to_owned()));
             let message = format!("{} has no member `{}`", self.type_name(place.ty), name.text);
             self.tell(Diagnostic::error(Code::UnknownMember, name.span, message).maybe_help(guess));
             return false;
@@ -376,17 +381,31 @@ impl<'a> Checker<'a> {
     fn index(&mut self, place: &mut Place, given: &'a [Expression], span: Span) -> bool {
         let Type::Array(array) = self.types.get(place.ty) else {
             let message = format!("{} has no elements", self.type_name(place.ty));
-            self.error(Code::WrongType, span, message, "only arrays are indexed");
+            let help = if self.is_text(place.ty) {
+                "MID(s, 1, i) is a character, i from 1; REPLACE(s, 'x', 1, i) puts another one there"
+            } else {
+                "only arrays are indexed"
+            };
+            self.error(Code::WrongType, span, message, help);
             return false;
         };
         let array = array.clone();
         if given.len() != array.bounds.len() {
+            let counted = |count: usize, one: &str, several: &str| match count {
+                1 => format!("1 {one}"),
+                _ => format!("{count} {several}"),
+            };
             let message = format!(
-                "the array has {} dimensions, and {} indices are given",
-                array.bounds.len(),
-                given.len()
+                "the array has {}, but here {}",
+                counted(array.bounds.len(), "dimension", "dimensions"),
+                counted(given.len(), "index is given", "indices are given")
             );
-            self.error(Code::WrongType, span, message, "separate them by commas: a[i, j]");
+            let help = if given.len() < array.bounds.len() {
+                "give one for each: a[i, j]"
+            } else {
+                "an array in an array has indices of its own: a[i][j]"
+            };
+            self.error(Code::WrongType, span, message, help);
             return false;
         }
         let mut stride = array.stride;

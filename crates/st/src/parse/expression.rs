@@ -446,7 +446,7 @@ impl Parser<'_> {
         if let Some(name) = &name
             && ["EN", "ENO"].contains(&name.key().as_str())
         {
-            self.unsupported(name.span, "EN and ENO", "put the call into an IF");
+            self.unsupported(name.span, "a pin EN or ENO", "put the call into an IF");
         }
         if way != Way::In && matches!(self.token(), Token::Comma | Token::Close) {
             return Some(Argument {

@@ -103,7 +103,7 @@ impl Parser<'_> {
         ) {
             self.unsupported(
                 prefix,
-                "dates and times of day",
+                "a date or a time of day",
                 "use TIME, which counts from the start of the run: TIME()",
             );
             self.skip_date();

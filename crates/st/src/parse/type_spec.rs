@@ -44,7 +44,7 @@ impl Parser<'_> {
                 self.unsupported(
                     from,
                     "UNION",
-                    "use a structure, and functions such as DWORD_TO_REAL to convert",
+                    "use a structure; bits are variables, `w.3`, and SHR and DWORD_TO_BYTE(..) give bytes. DWORD_TO_REAL converts the number, not its bits",
                 );
                 self.skip_past(Word::EndUnion);
                 SpecKind::Wrong
