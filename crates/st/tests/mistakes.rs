@@ -201,7 +201,7 @@ const MISTAKES: &[(&str, Code, &str, &str)] = &[
         "PROGRAM P VAR a : ARRAY [0..3] OF INT; END_VAR a[1, 2] := 1; END_PROGRAM",
         Code::WrongType,
         "[1, 2]",
-        "1 dimensions",
+        "1 dimension,",
     ),
     (
         "PROGRAM P VAR x : INT; END_VAR x := 10 / 0; END_PROGRAM",
@@ -639,9 +639,147 @@ const MISTAKES: &[(&str, Code, &str, &str)] = &[
         "SINGLE := TRUE",
         "R_TRIG",
     ),
+    (
+        "VAR_GLOBAL g : INT; END_VAR PROGRAM P FOR g := 1 TO 3 DO g := 1; END_FOR; END_PROGRAM",
+        Code::NotWritable,
+        "g",
+        "control variable",
+    ),
+    (
+        "VAR_GLOBAL g : INT; END_VAR PROGRAM P VAR_EXTERNAL g : INT; END_VAR FOR g := 1 TO 3 DO prog.g := 1; END_FOR; END_PROGRAM",
+        Code::NotWritable,
+        "prog.g",
+        "control variable",
+    ),
+    (
+        "VAR_GLOBAL g : INT; END_VAR PROGRAM P FOR g := 1 TO 3 DO FOR g := 1 TO 2 DO ; END_FOR; END_FOR; END_PROGRAM",
+        Code::NotWritable,
+        "g",
+        "control variable",
+    ),
+    (
+        "VAR_GLOBAL g : INT; END_VAR FUNCTION F : INT VAR_IN_OUT x : INT; END_VAR x := 1; F := x; END_FUNCTION PROGRAM P VAR n : INT; END_VAR FOR g := 1 TO 3 DO n := F(x := g); END_FOR; END_PROGRAM",
+        Code::NotWritable,
+        "g",
+        "control variable",
+    ),
+    (
+        "VAR_GLOBAL g : INT; END_VAR FUNCTION F : INT VAR_OUTPUT y : INT; END_VAR y := 1; END_FUNCTION PROGRAM P VAR n : INT; END_VAR FOR g := 1 TO 3 DO n := F(y => g); END_FOR; END_PROGRAM",
+        Code::NotWritable,
+        "g",
+        "control variable",
+    ),
+    (
+        "FUNCTION F : INT VAR_INPUT a, b, c : INT; END_VAR F := a; END_FUNCTION PROGRAM P VAR n : INT; END_VAR n := F(1); END_PROGRAM",
+        Code::MissingArgument,
+        "F(1)",
+        "takes 3 inputs, and `b`, `c` are missing",
+    ),
+    (
+        "FUNCTION F : INT VAR_INPUT a, b : INT := 5; END_VAR F := a; END_FUNCTION PROGRAM P VAR n : INT; END_VAR n := F(1); END_PROGRAM",
+        Code::MissingArgument,
+        "F(1)",
+        "`b` is missing",
+    ),
+    (
+        "FUNCTION F : INT VAR_INPUT a : INT; END_VAR F := a; END_FUNCTION PROGRAM P VAR n : INT; END_VAR n := F(1, 2); END_PROGRAM",
+        Code::BadArgument,
+        "2",
+        "takes 1 input",
+    ),
+    (
+        "FUNCTION_BLOCK B METHOD M : INT VAR_INPUT a, b : INT; END_VAR M := a; END_METHOD END_FUNCTION_BLOCK PROGRAM P VAR n : INT; x : B; END_VAR n := x.M(1); END_PROGRAM",
+        Code::MissingArgument,
+        "x.M(1)",
+        "`b` is missing",
+    ),
+    (
+        "FUNCTION_BLOCK B VAR n : INT; END_VAR METHOD FB_Init : BOOL n := 1; END_METHOD END_FUNCTION_BLOCK",
+        Code::Unsupported,
+        "FB_Init",
+        "where they are declared",
+    ),
+    (
+        "FUNCTION_BLOCK B METHOD fb_exit : BOOL END_METHOD END_FUNCTION_BLOCK",
+        Code::Unsupported,
+        "fb_exit",
+        "FB_Exit",
+    ),
+    (
+        "VAR_GLOBAL a AT %IX0.0 : BOOL; b AT %I0.0 : BOOL; END_VAR",
+        Code::DuplicateName,
+        "b",
+        "`a` and `b` are two variables at one address, %IX0.0",
+    ),
+    (
+        "PROGRAM P VAR s : STRING; b : BOOL; END_VAR s := SEL(b, 'no', 1); END_PROGRAM",
+        Code::Conversion,
+        "1",
+        "STRING",
+    ),
+    (
+        "PROGRAM P VAR X : AXIS_REF; x1 : LREAL; END_VAR x1 := X.NcToPlc.ActPos; END_PROGRAM",
+        Code::UnknownMember,
+        "NcToPlc",
+        "MC_ReadActualPosition",
+    ),
+    (
+        "PROGRAM P VAR x : LREAL; i : INT; END_VAR i := REAL_TO_INT(x); END_PROGRAM",
+        Code::Conversion,
+        "x",
+        "write LREAL_TO_INT",
+    ),
+    (
+        "PROGRAM P VAR i, n : INT; END_VAR i := REAL_TO_INT(DINT_TO_INT(n)); i := DINT_TO_INT(LINT#1); END_PROGRAM",
+        Code::Conversion,
+        "LINT#1",
+        "write LINT_TO_INT",
+    ),
+    (
+        "PROGRAM P VAR x : LREAL; s : STRING; END_VAR x := STRING_TO_LREAL(s); END_PROGRAM",
+        Code::UnknownName,
+        "STRING_TO_LREAL",
+        "STRING_TO_LINT reads",
+    ),
+    (
+        "PROGRAM P VAR i : INT; s : STRING; END_VAR i := TO_INT(s); END_PROGRAM",
+        Code::UnknownName,
+        "TO_INT",
+        "STRING_TO_INT",
+    ),
+    (
+        "PROGRAM P VAR i : INT; END_VAR i := MAX(IN0 := i, IN1 := 3); END_PROGRAM",
+        Code::BadArgument,
+        "IN0 := i",
+        "it takes IN1, ..",
+    ),
+    (
+        "PROGRAM P VAR x : LREAL; END_VAR x := SIN(); END_PROGRAM",
+        Code::MissingArgument,
+        "SIN()",
+        "takes 1 input",
+    ),
+    (
+        "PROGRAM P VAR s, t : STRING; END_VAR t := s[1]; END_PROGRAM",
+        Code::WrongType,
+        "[1]",
+        "MID(s, 1, i)",
+    ),
+    (
+        "PROGRAM P VAR a, b : TIME; x : LREAL; END_VAR x := a / b; END_PROGRAM",
+        Code::WrongType,
+        "/",
+        "TIME_TO_LREAL",
+    ),
+    (
+        "PROGRAM P VAR a : ARRAY [1..3] OF INT; i : INT; END_VAR i := a[1, 2]; END_PROGRAM",
+        Code::WrongType,
+        "[1, 2]",
+        "has 1 dimension, but here 2 indices are given",
+    ),
 ];
 
-/// Covers: ST5, ST13, ST15, ST20, ST23, ST24
+/// Covers: ST5, ST13, ST15, ST20, ST21, ST23, ST24, ST30
 #[test]
 fn every_mistake_is_told_at_its_place_with_what_to_do() {
     let mut failures = Vec::new();

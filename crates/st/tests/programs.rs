@@ -382,6 +382,17 @@ fn a_fault_names_its_place_and_value_and_writes_nothing_half() {
 
 /// Covers: ST36
 #[test]
+fn a_loop_of_the_library_is_never_the_endless_one() {
+    let mut run = Running::new(
+        "PROGRAM P VAR n : INT := 1; END_VAR\nWHILE n < 10 DO\n  n := LEN(INT_TO_STRING(n));\nEND_WHILE;\nEND_PROGRAM",
+    );
+    assert!(matches!(run.scan(), Err(standstill_guest::Fault::Fuel { .. })));
+    let place = run.compiled.symbols.place(run.loop_site()).unwrap();
+    assert_eq!((place.file.as_str(), place.position.line), ("prog.st", 2));
+}
+
+/// Covers: ST36
+#[test]
 fn an_endless_loop_uses_up_its_fuel_and_is_named() {
     let mut run = Running::new(
         "PROGRAM P VAR i : INT; END_VAR\nFOR i := 1 TO 3 DO ; END_FOR;\n  WHILE TRUE DO i := 0; END_WHILE;\nEND_PROGRAM",
@@ -648,4 +659,115 @@ fn the_default_of_a_type_may_name_what_the_type_declares() {
     // A structure still can't contain itself, not even in its default.
     let told = wrong("TYPE S : STRUCT a : S := (a := 1); END_STRUCT; END_TYPE");
     assert_eq!(told[0].0, "circle", "{told:?}");
+}
+
+/// The codes and messages of what is wrong or doubtful in a program that runs alone.
+fn told(text: &str) -> Vec<(&'static str, String)> {
+    let source = Source {
+        name: "prog.st",
+        bytes: text.as_bytes(),
+    };
+    let options = Options {
+        program: Some("P".to_owned()),
+        ..Options::default()
+    };
+    let report = standstill_st::check(&[source], &options);
+    let told = report.diagnostics().iter();
+    told.map(|it| (it.code.name(), it.message.clone())).collect()
+}
+
+/// Covers: ST21
+#[test]
+fn one_address_is_one_variable() {
+    let other =
+        "PROGRAM Q VAR Go AT %IX0.0 : BOOL; END_VAR VAR_OUTPUT o : BOOL; END_VAR o := Go; END_PROGRAM\n";
+    let main = |body: &str| {
+        format!("{other}PROGRAM P VAR Start AT %IX0.0, b : BOOL; END_VAR b := Start; {body} END_PROGRAM")
+    };
+    // A PROGRAM that does not run has no variables.
+    assert_eq!(told(&main("")), []);
+    let message = "`Go` and `Start` are two variables at one address, %IX0.0".to_owned();
+    assert_eq!(told(&main("Q(); b := Q.o;")), [("duplicate_name", message)]);
+    let overlap = |one: &str, two: &str| {
+        told(&format!(
+            "PROGRAM P VAR a AT {one} : WORD; b AT {two} : BYTE; END_VAR a := b; END_PROGRAM"
+        ))
+    };
+    let apart = "`b` at %MB1 is a part of `a` at %MW0 in other systems; here they are apart".to_owned();
+    assert_eq!(overlap("%MW0", "%MB1"), [("portability", apart)]);
+    for (one, two) in [
+        ("%MW0", "%MB2"),
+        ("%MW0", "%QB1"),
+        ("%MW0", "%MW1"),
+        ("%M*", "%M*"),
+    ] {
+        assert_eq!(overlap(one, two), [], "{one} {two}");
+    }
+}
+
+/// Covers: ST24, ST44
+#[test]
+fn a_call_by_name_may_leave_an_input_out() {
+    let text = |input: &str| {
+        format!(
+            "FUNCTION F : INT VAR_INPUT a : INT; {input}; END_VAR F := a - b; END_FUNCTION\n\
+             PROGRAM P VAR x : INT; END_VAR x := F(a := 3); END_PROGRAM"
+        )
+    };
+    assert_eq!(told(&text("b : INT := 2")), []);
+    let message = "the call of F does not give `b`".to_owned();
+    assert_eq!(told(&text("b : INT")), [("portability", message)]);
+}
+
+/// Covers: ST20, ST43
+#[test]
+fn a_global_variable_is_found_by_its_list_too() {
+    let list = "VAR_GLOBAL Axes : ARRAY [1..2] OF AXIS_REF; bStart : BOOL; END_VAR";
+    let main = "PROGRAM P VAR n : INT; END_VAR IF GVL.bStart THEN n := 1; END_IF; END_PROGRAM";
+    let source = |name: &'static str, text: &'static str| Source {
+        name,
+        bytes: text.as_bytes(),
+    };
+    let sources = [source("lists/GVL.st", list), source("main.st", main)];
+    let options = Options {
+        bindings: vec![("GVL.Axes[2]".to_owned(), 7)],
+        ..Options::default()
+    };
+    let compiled = standstill_st::compile(&sources, &options).unwrap();
+    let found = |path: &str| compiled.symbols.find(path).map(|it| it.path);
+    assert_eq!(found("gvl.bstart"), Some("bStart".to_owned()));
+    assert_eq!(found("GVL.Axes[1].Number"), Some("Axes[1].Number".to_owned()));
+    assert_eq!(
+        (found("main.bStart"), found("GVL"), found("GVL.n")),
+        (None, None, None)
+    );
+    let run = Running::of(compiled);
+    assert_eq!(run.whole("Axes[2].Number"), 7);
+}
+
+/// Covers: ST20
+#[test]
+fn two_lists_with_one_name_are_told_once() {
+    let source = |name: &'static str, text: &'static str| Source {
+        name,
+        bytes: text.as_bytes(),
+    };
+    let sources = [
+        source(
+            "A.st",
+            "{attribute 'qualified_only'}\nVAR_GLOBAL x : INT; END_VAR",
+        ),
+        source(
+            "B.st",
+            "{attribute 'qualified_only'}\nVAR_GLOBAL x : INT; END_VAR",
+        ),
+        source("main.st", "PROGRAM P A.x := B.x; END_PROGRAM"),
+    ];
+    let report = standstill_st::check(&sources, &Options::default());
+    let told: Vec<_> = report
+        .diagnostics()
+        .iter()
+        .map(|it| it.message.as_str())
+        .collect();
+    assert_eq!(told, ["two lists of global variables have the name `x`"]);
 }

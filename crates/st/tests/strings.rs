@@ -80,6 +80,22 @@ fn functions_of_strings_give_new_ones() {
     ]);
 }
 
+/// Covers: ST40
+#[test]
+fn a_string_is_chosen_like_any_value() {
+    hold(&[
+        "SEL(n < 0, 'OK', 'Error') = 'Error'",
+        "SEL(n > 0, 'OK', 'Error') = 'OK'",
+        "SEL(G := TRUE, IN0 := s, IN1 := CONCAT(s, '!')) = 'motion!'",
+        "MUX(2, 'a', 'bcd', s) = s",
+        "MAX('a', 'ab', 'B') = 'ab'",
+        "MIN('a', 'ab', 'B') = 'B' AND MIN(s, s) = s",
+        "LIMIT('b', 'a', 'c') = 'b' AND LIMIT('b', 'd', 'c') = 'c' AND LIMIT('b', 'bb', 'c') = 'bb'",
+        "LEN(SEL(TRUE, short, s)) = 6",
+        "SEL(FALSE, INT_TO_STRING(1), INT_TO_STRING(2)) = '1'",
+    ]);
+}
+
 /// Covers: ST35, ST40
 #[test]
 fn numbers_become_strings_and_strings_numbers() {
