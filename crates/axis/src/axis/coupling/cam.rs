@@ -1,10 +1,9 @@
 //! On a cam: MC_CamIn and MC_CamOut on the slave's side.
 //!
-//! In sync the set-point *is* the cam at the master's place of the same scan ([`CamLaw`]). A slave that
-//! cannot be there stays on the curve. It then follows a lagging master of its own, its shadow. A lag in
-//! position would take a tool off the curve, and into an obstacle. Only before it has reached the curve
-//! does the slave move in its own coordinates, by a move to a place of the curve where the curve is at
-//! rest.
+//! In sync the set-point *is* the cam at the master's place of the same scan ([`CamLaw`]). A slave that cannot be
+//! there stays on the curve. It then follows a lagging master of its own, its shadow. It does not leave the curve,
+//! because that would take a tool into an obstacle. Only before it has reached the curve does the slave move in its
+//! own coordinates. That move ends at a place where the curve is at rest.
 //!
 //! | file | subject |
 //! | --- | --- |
@@ -12,16 +11,16 @@
 //! | [`onto`] | how it comes onto the curve |
 //! | [`start`] | a start that waits for a place of the master |
 //! | [`shadow`] | its shadow in step with the master |
-//! | [`near`] | the same on a long way |
-//! | [`corners`] | its rests where a derivative of the cam jumps |
+//! | [`near`] | a shadow far behind a master with turns |
+//! | [`corners`] | rest at rows where a derivative of the cam jumps |
 //! | [`ahead`] | whether it keeps its limits along the next motion of the master, and where that motion ends |
-//! | [`beside`] | the room that it leaves to a shift, and to its master |
+//! | [`beside`] | the limits that it leaves to a shift, and to its master |
 //! | [`steady`] | the motion step in a scan in which nothing is new |
-//! | [`ends`], [`after`] | ends of periods, and what follows then |
+//! | [`ends`], [`after`] | ends of a cam, and the change to the next command |
 //! | [`laid`] | the place of the cam, for drawing |
 //!
-//! Source: PLCopen Motion Control Part 1, MC_CamTableSelect, MC_CamIn, MC_CamOut; V20 to V20b, S8. What the standard leaves open is
-//! told in docs/cams.md.
+//! Source: PLCopen Motion Control Part 1, MC_CamTableSelect, MC_CamIn, MC_CamOut; V20 to V20b, S8. docs/cams.md
+//! states what the standard leaves open.
 
 mod after;
 mod ahead;
@@ -49,18 +48,19 @@ use standstill_planner::{
     Anchor, Cam, CamAt, CamBounds, CamHead, CamLaw, CamSmooth, Limits, Place, Planner, Setpoint,
 };
 
-/// How an axis can go along a cam, without scalings.
+/// How an axis fits a cam, without scalings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CamFit {
-    /// The number of derivatives that must be continuous: its cam_continuity, or 3 with a snap limit, 2
-    /// with a jerk limit, 1 without.
+    /// The number of derivatives that must be continuous: its cam_continuity. Without that it is 3 with a snap limit,
+    /// 2 with a jerk limit, and otherwise 1.
     pub needed: usize,
-    /// The number that are continuous; without a jerk limit counted from its first row to its last.
+    /// The number that are continuous. Without a jerk limit the rest before the first row and behind the last
+    /// one does not count.
     pub smooth: CamSmooth,
     /// The number that its limits require. It comes to rest at a row where one of these jumps.
     pub limits_need: usize,
-    /// The highest or the lowest place of the cam, if it is outside the software limits, the limit, and the error of a cam whose
-    /// places are those of the axis.
+    /// The highest or the lowest place of the cam if it is outside the software limits, the limit, and the error for
+    /// a cam with absolute slave places.
     pub outside: Option<(f64, f64, ErrorId)>,
     /// The highest constant velocity of the master (u/s) with which the slave can follow.
     pub highest: f64,
@@ -72,7 +72,7 @@ impl CamFit {
     /// The derivatives of the slave by its master, with the names of a table.
     pub const DERIVATIVES: [&'static str; 3] = ["Slope", "Curvature", "Third"];
 
-    /// That of this order, less 1.
+    /// The name of the derivative of this order, less 1.
     fn derivative(order: usize) -> &'static str {
         Self::DERIVATIVES.get(order).copied().unwrap_or_default()
     }
@@ -85,21 +85,21 @@ enum Rung {
     Due,
     /// It is in sync.
     Locked,
-    /// On the curve, at a place of its own: a plan beside the line from `start` with this velocity (u/s of the master), which the
-    /// master follows from so many scans after the start of the plan on.
+    /// On the curve at a place of its own, by a plan beside a line. The line begins at `start` and has this velocity
+    /// (u/s of the master). The master follows the line from this number of scans after the start of the plan.
     BesideLine { start: Place, velocity: f64, begin: u64 },
     /// The same beside the master itself.
     BesideMaster,
     /// The same beside a master whose motion ahead is not known, within this room.
     BesideMeasured { room: Limits },
-    /// On the curve, at a place of its own: to rest at a corner, or before it, by a plan from `start`.
+    /// On the curve at a place of its own, by a plan from `start` to rest at a corner, or before it.
     Corner { start: Place },
-    /// A move in the slave's own coordinates, in its turn of this number, to where the curve is when the master is at this place; to
-    /// rest without one.
+    /// A move in the slave's own coordinates, in the turn with this number. It ends at the place of the curve for a
+    /// master at this place, or at rest if there is none.
     Moving { turns: i64, to: Option<Place> },
     /// It waits at its position: no plan onto the curve exists yet.
     Waiting,
-    /// The master went out of operation: the slave rests until a block couples it anew.
+    /// The master went out of operation: the slave is at rest until a block couples it anew.
     Lost,
 }
 
@@ -109,14 +109,14 @@ impl Rung {
     }
 }
 
-/// The place of a master on its own way, and how it moves there.
+/// A place of a master of its own, and its motion there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shadow {
     place: Place,
     at: Setpoint,
 }
 
-/// How the owner is on a cam.
+/// How the owner follows a cam.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::axis) struct OnCam {
     camming: Camming,
@@ -125,41 +125,42 @@ pub(in crate::axis) struct OnCam {
     /// Its place at the master, and the corresponding place of the cam, if both were decided before it
     /// was engaged.
     begins: Option<(Place, f64)>,
-    /// It is to be in sync at its sync position, and its way there is not chosen yet.
+    /// It has to be in sync at its sync position, and its way there is not chosen yet.
     is_timed: bool,
     rung: Rung,
     /// It has been in sync.
     was_in_sync: bool,
-    /// Where the slave is on the curve, if it is, as a place of its master.
+    /// The place of the slave on the curve, as a place of its master, if it is on the curve.
     shadow: Option<Shadow>,
-    /// The limits of the shadow in motion; where it `slows` down, they are those of its way.
+    /// The limits of the shadow in motion; while it `slows` down, those of its way.
     shadow_limits: Limits,
     slows: bool,
     /// Limits within which its shadow can come to rest before the next corner of the cam, and the limits
     /// of the slave then.
     brakes: Option<(Limits, Limits)>,
-    /// The place on the cam at the end of the scan before.
+    /// The place on the cam at the end of the last scan.
     at: CamAt,
     ends: Ends,
-    /// The master at the end of the scan before, in its coordinates of now.
+    /// The master at the end of the last scan, in its present coordinates.
     was: Seen,
-    /// What was known of its way ahead.
+    /// The known part of the master's motion ahead.
     known: Known,
-    /// Scans until the way is looked for again; the largest number for never.
+    /// Scans until the way is searched again; the largest number for never.
     left: u64,
     /// The kind of way recorded last.
     told: Option<Approach>,
-    /// The limits it was last held against.
+    /// The limits that it was last checked against.
     limits: Limits,
-    /// How often the slave's own coordinates had moved.
+    /// The number of moves of the slave's own coordinates.
     moves: u32,
     /// The distance of the slave from the cam at its master's place (u).
     deviation: f64,
-    /// What was superimposed on the cam and where that lay first, less the place of the layer that is added to it (u).
+    /// The first place of the cam and the superimposed distance together, less the place of the layer that is added
+    /// to it (u).
     lead: f64,
-    /// Where the cam lay first, without what was superimposed on it since (u).
+    /// The first place of the cam, without the distance superimposed since (u).
     laid: f64,
-    /// The limits that it leaves to its master, once they keep the limits of the slave.
+    /// The limits that it leaves to its master, once the master keeps the limits of the slave.
     bound: Option<Limits>,
     /// The place to which its master leads it (u), if that is outside its software limits.
     leads_outside: Option<f64>,
@@ -174,7 +175,7 @@ struct Curve<'a> {
 }
 
 impl Curve<'_> {
-    /// Where the slave is for a master at `place`.
+    /// The place of the slave for a master at `place`.
     fn at(&self, place: Place, moving: &Setpoint, near: u16) -> CamAt {
         self.law.at(&self.cam, &self.anchor, place, moving, near)
     }
@@ -184,7 +185,7 @@ impl Curve<'_> {
         self.law.unwound(&self.cam, &self.anchor, place)
     }
 
-    /// The same the other way round: a place of the master at `x` (u), as seen from `near`.
+    /// The inverse: a place of the master at `x` (u), as seen from `near`.
     fn place_of(&self, x: f64, near: Place) -> Place {
         let further = (x - self.unwound(near)) * self.law.master_scaling;
         Place {
@@ -241,7 +242,7 @@ impl OnCam {
         }
     }
 
-    /// Where its master was told to lead it (u).
+    /// The place to which its master leads it (u), as last recorded.
     pub(super) fn leads_outside(&mut self) -> &mut Option<f64> {
         &mut self.leads_outside
     }
@@ -257,18 +258,18 @@ impl OnCam {
 }
 
 impl<P: Planner> Axis<P> {
-    /// The owner is on a cam.
+    /// Whether the owner is on a cam.
     #[inline]
     pub(crate) fn is_on_cam(&self) -> bool {
         self.follower.on_cam.is_some()
     }
 
-    /// The owner follows a master on a cam.
+    /// Whether the owner follows a master on a cam.
     pub fn is_on_a_cam(&self) -> bool {
         self.is_on_cam()
     }
 
-    /// The owner is on this cam, or a command that waits is for it.
+    /// Whether the owner is on this cam, or a waiting command uses it.
     pub fn uses_cam(&self, id: CamId) -> bool {
         let is_of = |entry: &Entry| matches!(entry.work, super::super::commands::Work::Cam(camming) if camming.cam == id);
         let runs = self
@@ -289,7 +290,7 @@ impl<P: Planner> Axis<P> {
         self.follower.cam_ends
     }
 
-    /// How this axis can go along a complete cam, without scalings.
+    /// How this axis fits a complete cam, without scalings.
     pub fn fit_of_cam(&self, head: &CamHead) -> CamFit {
         let limits = self.slowed(&self.parameters.limits);
         let (low, high) = head.range;
@@ -317,7 +318,7 @@ impl<P: Planner> Axis<P> {
         configured.map_or_else(|| self.corner_order(), usize::from)
     }
 
-    /// How smooth a cam is where this axis needs it to be: without a jerk limit it may begin and end with a slope.
+    /// The smoothness of a cam as far as this axis needs it: without a jerk limit it may begin and end with a slope.
     fn smooth_of_cam(&self, head: &CamHead) -> CamSmooth {
         if self.corner_order() > 1 {
             head.smooth
@@ -427,7 +428,7 @@ impl<P: Planner> Axis<P> {
             .map_or(0.0, |on_cam| on_cam.deviation)
     }
 
-    /// In sync. Before the cam has begun this is not reported.
+    /// Whether it is in sync and the cam has begun.
     pub(super) fn is_in_sync_on_cam(&self) -> bool {
         let is_in_sync = |on_cam: &OnCam| on_cam.rung.is_locked() && on_cam.ends.has_begun();
         self.follower.on_cam.as_ref().is_some_and(is_in_sync)
@@ -453,12 +454,12 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The master of its cam at the end of the scan before.
+    /// The master of its cam at the end of the last scan.
     pub(super) fn master_of_cam_was(&self) -> Option<&Seen> {
         self.follower.on_cam.as_ref().map(|on_cam| &on_cam.was)
     }
 
-    /// How large (u of the slave) the places of its master are that the cam is looked up at.
+    /// The size of its master's places with which the cam is evaluated (u of the slave).
     pub(super) fn size_of_master_on_cam(&self) -> f64 {
         self.follower
             .on_cam
@@ -466,14 +467,14 @@ impl<P: Planner> Axis<P> {
             .map_or(0.0, |on_cam| on_cam.camming.steepest * on_cam.was.size())
     }
 
-    /// Before any axis has moved in this scan: its master is there.
+    /// Before any axis has moved in this scan: notes its master.
     pub(super) fn note_master_on_cam(&mut self, seen: Seen) {
         if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.was = seen;
         }
     }
 
-    /// The motion is not on the curve for a while.
+    /// The motion leaves the curve.
     pub(super) fn leave_cam(&mut self) {
         if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.rung = Rung::Due;
@@ -481,7 +482,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The values at the pins of MC_CamIn.
+    /// Checks the values at the pins of MC_CamIn.
     pub(in crate::axis) fn check_cam_in(
         &self,
         cam: &CamIn,
@@ -508,7 +509,7 @@ impl<P: Planner> Axis<P> {
             ("MasterScaling", cam.master_scaling),
             ("SlaveScaling", cam.slave_scaling),
         ] {
-            // So far from 1 that a cam and its derivatives are no longer finite.
+            // Other values are so far from 1 that a cam and its derivatives are no longer finite.
             if !(value.is_normal() && value.abs() > 1e-30 && value.abs() < 1e30) {
                 return refuse(pin, value, f64::NAN, ErrorId::CamScalingInvalid);
             }

@@ -1,8 +1,9 @@
-//! What follows a cam at its end, or at a place of it: another cam on which the slave may stay in sync, or whatever else waits.
+//! The change from a cam to the next command, at an end of the cam or at a given place. The next command may be a cam
+//! on which the slave stays in sync.
 //!
-//! Where the next cam meets the one in progress with all derivatives that the slave's order asks for, the slave is on the next one in
-//! the scan in which its master passes that place. Where it does not, the slave ends that scan on the cam in progress, and comes onto the
-//! next one as onto any.
+//! If the next cam meets the one in progress with all derivatives that the slave's order needs, the slave is on the
+//! next cam in the scan in which its master passes that place. If not, the slave ends that scan on the cam in
+//! progress. It then comes onto the next cam like onto any other.
 
 use super::super::super::Axis;
 use super::super::super::commands::{Camming, ROUNDING, Work};
@@ -16,20 +17,21 @@ use super::{Curve, OnCam, Rung, Shadow};
 use crate::{ErrorId, Event, Scope};
 use standstill_planner::{Anchor, Cam, CamLaw, Place, Planner, Setpoint};
 
-/// Where a cam gives way to another.
+/// The point where a cam ends and the next command takes over.
 #[derive(Clone, Copy)]
 struct Ended {
-    /// The master there, and by how much it is past it (u), with its sign.
+    /// The place of the master there, and the signed distance (u) by which the master has passed it.
     master: Place,
     over: f64,
-    /// The slave there.
+    /// The place of the slave there.
     slave: Place,
-    /// The master goes up.
+    /// The master moves up.
     upwards: bool,
 }
 
 impl<P: Planner> Axis<P> {
-    /// The slave has moved, its shadow from where it `was`: whether it has come to an end of its cam, and what follows then.
+    /// The slave has moved, and its shadow was at `was` before. Checks whether the slave has reached an end of its
+    /// cam, and starts the next command.
     pub(super) fn end_of_cam(
         &mut self,
         was: Option<Shadow>,
@@ -60,7 +62,7 @@ impl<P: Planner> Axis<P> {
                 } else {
                     let step = shadow.at.velocity * cycle / curve.law.master_scaling;
                     let before = was.map_or(here - step, |was| curve.unwound(was.place));
-                    // Whole periods may have been dropped since, so it is not known to the last bit.
+                    // Whole periods may have been dropped since, so it is not exact to the last bit.
                     let period = if cam.head.periodic {
                         cam.head.end - cam.head.begin
                     } else {
@@ -101,8 +103,9 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The cam is over: the slave holds its last place, also where its shadow went past the end on a way that leads back. To an end
-    /// that is a corner it comes within the last scan of its way but for rounding, and rests at the end of that.
+    /// The cam is over: the slave holds its last place, even if its shadow went past the end on a way that leads
+    /// back. It reaches an end that is a corner within the last scan of its way, except for rounding, and is at rest
+    /// at the end of that scan.
     pub(super) fn stay_at_end(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         if self.is_locked_on_cam() || self.is_coming_to_corner() {
             return;
@@ -119,7 +122,7 @@ impl<P: Planner> Axis<P> {
         self.lock_on_cam(scope);
     }
 
-    /// Where in the cam in progress the next one is to take over, if a cam waits and that is not the end.
+    /// The place in the cam in progress where the next cam takes over, if a cam waits and the place is not the end.
     fn switch_of_next(&self) -> Option<f64> {
         match self.queue.first()?.work {
             Work::Cam(camming) => camming.switch_at,
@@ -127,13 +130,13 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A cam has just become the owner's.
+    /// Whether a cam has just become the owner's.
     fn is_now_due(&self) -> bool {
         let is_new = |on_cam: &OnCam| on_cam.rung == Rung::Due && on_cam.anchor.is_none();
         self.follower.on_cam.as_ref().is_some_and(is_new)
     }
 
-    /// The next cam begins where the one before gave way; the slave comes onto it.
+    /// The next cam begins where the last one ended, and the slave comes onto it.
     fn go_on_behind(&mut self, ended: &Ended, shadow: &Shadow, scope: &Scope<'_>) {
         let Some(mut on_cam) = self.follower.on_cam else {
             return;
@@ -155,8 +158,8 @@ impl<P: Planner> Axis<P> {
         self.follower.on_cam = Some(on_cam);
     }
 
-    /// In sync, before the step of this scan: the master passes the place at which a cam that waits takes over, and both meet there. Then
-    /// the slave is on that in the same scan. Returns whether it is.
+    /// In sync, before the step of this scan: switches to a waiting cam if the master passes the place where it takes
+    /// over and both cams meet there. The slave is on the new cam in the same scan. Returns whether it is.
     pub(super) fn switches_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) -> bool {
         let Some((next, passed)) = self.next_cam_met(view, scope) else {
             return false;
@@ -183,8 +186,8 @@ impl<P: Planner> Axis<P> {
         true
     }
 
-    /// The next cam as it is at the end of this scan, if it takes over in it and meets the one in progress; with the end of that which
-    /// is passed.
+    /// The next cam at the end of this scan, if it takes over in this scan and meets the one in progress; also the
+    /// end of that one, if it was passed.
     fn next_cam_met(
         &mut self,
         view: &View<'_, P::Plan>,
@@ -239,7 +242,8 @@ impl<P: Planner> Axis<P> {
         keeps.then_some((next, passed))
     }
 
-    /// Whether a slave in one state may go on in another: the place is the same, and what its limits do not let jump.
+    /// Whether the motion may change from one state to the other: the place is the same, and so is each derivative
+    /// that the limits do not let jump.
     fn goes_on_at(&self, last: &(Place, Setpoint), next: &(Place, Setpoint)) -> bool {
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
         let numbers = last.0.position.abs() + next.0.position.abs() + length;
@@ -248,7 +252,7 @@ impl<P: Planner> Axis<P> {
         is_there && goes_on(&last.1, &next.1, &limits)
     }
 
-    /// The cam of `next`, laid so that it goes on where the one before gave way, the master being at `now`.
+    /// The cam of `next`, placed so that it continues where the last one ended. The master is at `now`.
     fn laid_behind<'a>(
         &self,
         next: &mut OnCam,
@@ -280,7 +284,7 @@ impl<P: Planner> Axis<P> {
         next.curve(cam)
     }
 
-    /// Where the next cam lies at its slave.
+    /// The place of the next cam on the slave's side.
     fn slave_behind(
         &self,
         camming: &Camming,
@@ -312,7 +316,7 @@ impl<P: Planner> Axis<P> {
             ..Place::default()
         };
         if let Some(modulo) = &self.modulo {
-            // Of the turns that mean the same the nearest one.
+            // The nearest of the turns that mean the same place.
             let away = off(ended.slave, at(&camming.law, slave), modulo.length) / modulo.length;
             let nearest = if away < 0.0 { away - 0.5 } else { away + 0.5 };
             slave.turns = nearest as i64;
@@ -322,7 +326,7 @@ impl<P: Planner> Axis<P> {
 }
 
 impl Curve<'_> {
-    /// The end that was passed, as a place on the master's side (u) that is not taken back into one period.
+    /// The end that was passed, as a place on the master's side (u), not reduced to one period.
     fn end(&self, passed: &Passed) -> f64 {
         let head = self.cam.head;
         if head.periodic {
@@ -334,8 +338,8 @@ impl Curve<'_> {
         }
     }
 
-    /// A shadow that its master braked behind went past an end of a cam without periods to which the master itself has not come: it
-    /// will go back.
+    /// Whether a shadow went past an end of a cam without periods because its master braked, and the master itself is
+    /// not there yet. The shadow will go back.
     fn is_ahead_past_end(&self, shadow: Place, master: Place) -> bool {
         let head = self.cam.head;
         let (shadow, master) = (self.unwound(shadow), self.unwound(master));
@@ -344,8 +348,8 @@ impl Curve<'_> {
         !head.periodic && (is_behind || is_before)
     }
 
-    /// Where `place` of the cam (u of the master's side) is passed on the way from `before` to `here`, neither taken back into one
-    /// period; on a cam with periods in whichever period.
+    /// The point where `place` of the cam (u of the master's side) is passed between `before` and `here`. None of
+    /// these is reduced to one period. On a cam with periods it may be in any period.
     fn passes(&self, place: f64, before: f64, here: f64) -> Option<f64> {
         let head = self.cam.head;
         let length = head.end - head.begin;
@@ -363,7 +367,8 @@ impl Curve<'_> {
             .find(|x| is_in(*x))
     }
 
-    /// The cam gives way at `x` of the master's side, not taken back into one period, and its slave is led from there on by `now`.
+    /// The end of the cam at `x` of the master's side, not reduced to one period. From there on `now` leads the
+    /// slave.
     fn ended(&self, x: f64, forwards: bool, now: &Shadow) -> Ended {
         let over = (self.unwound(now.place) - x) * self.law.master_scaling;
         let master = Place {

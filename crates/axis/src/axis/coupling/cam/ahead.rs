@@ -1,7 +1,7 @@
-//! Whether a slave keeps its limits on a cam along what its master does next.
+//! Whether a slave keeps its limits on a cam along the known motion of its master.
 //!
-//! The rest of a plan is looked at in pieces, and each piece with what the cam is bounded by where it leads. Where the
-//! cam is bent, these bounds are on the safe side by some per cent, the more so the longer the pieces.
+//! The rest of a plan is checked in pieces, each with the bounds of the cam on that part. Where the cam is bent,
+//! these bounds are on the safe side by some per cent. Longer pieces add more.
 
 use super::super::super::Axis;
 use super::super::follow::Beyond;
@@ -11,23 +11,23 @@ use super::Curve;
 use crate::Cams;
 use standstill_planner::{CamBounds, Lead, Limits, Place, Plan, Planner, Setpoint};
 
-/// Most pieces of a plan that are looked at one by one.
+/// Most pieces of a plan that are checked one by one.
 const PIECES: u32 = 40;
 
-/// Each of them in so many parts, as a power of two, while the master accelerates.
+/// While the master accelerates, each is checked in this number of parts, as a power of two.
 const PARTS: u64 = 3;
 
 /// Most parts in all.
 const PARTS_MOST: u32 = 160;
 
-/// A plan as it is followed: where it leads the master, counted from its place now.
+/// A plan as it is followed: the motion of the master, counted from its present place.
 struct Path<'a, Q> {
     lead: &'a Lead<'a, Q>,
     from: f64,
 }
 
 impl<Q: Plan> Path<'_, Q> {
-    /// The state so many scans after the start of the plan, the position counted from where the lead begins.
+    /// The state this number of scans after the start of the plan; the position counts from where the lead begins.
     fn at(&self, scan: u64) -> Setpoint {
         let at = self.lead.plan.at(scan).times(self.lead.factor);
         Setpoint {
@@ -43,7 +43,8 @@ fn larger(one: f64, other: f64) -> f64 {
 }
 
 impl<P: Planner> Axis<P> {
-    /// Where the cam is (u) when its master has come to rest; `None` while that is not known, or the master goes on.
+    /// The place of the slave on the cam (u) when its master has come to rest. `None` if that is not known or the
+    /// master is endless.
     pub(in crate::axis::coupling) fn rest_of_cam(
         &self,
         view: &View<'_, P::Plan>,
@@ -65,8 +66,8 @@ impl<P: Planner> Axis<P> {
         Some(at.place.position)
     }
 
-    /// What a slave on `curve` would need beyond `limits` along the rest of a plan, which begins with the master at `place`. A plan
-    /// of a lower `degree` than those limits changes at once what the slave may not.
+    /// The first limit that a slave on `curve` would exceed along the rest of a plan, which begins with the master at
+    /// `place`. A plan of a lower `degree` than the limits has jumps that the slave may not have.
     ///
     /// Cost: that of [`Axis::along_cam`].
     pub(super) fn beyond_on_cam(
@@ -86,8 +87,8 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The largest magnitudes of the derivatives of a slave on `curve` along the rest of a plan, which begins with the master at
-    /// `place`.
+    /// The largest magnitudes of the derivatives of a slave on `curve` along the rest of a plan, which begins with
+    /// the master at `place`.
     pub(super) fn peaks_on_cam(&self, curve: &Curve<'_>, lead: &Lead<'_, P::Plan>, place: Place) -> Setpoint {
         let mut peaks = Setpoint::default();
         let _none: Option<()> = self.along_cam(curve, lead, place, |bounds, master| {
@@ -104,10 +105,10 @@ impl<P: Planner> Axis<P> {
         peaks
     }
 
-    /// Looks along the rest of a plan, which begins with the master at `place`, in parts: at what the cam is bounded by in each, and at
-    /// the largest magnitudes of the derivatives of the master. Returns the first thing that is `found`.
+    /// Checks the rest of a plan, which begins with the master at `place`, in parts. Each part has the bounds of the
+    /// cam there and the largest magnitudes of the master's derivatives. Returns the first result of `found`.
     ///
-    /// Cost: at most [`PARTS_MOST`] parts, for each three points of the plan and a look at up to four pieces of the cam.
+    /// Cost: at most [`PARTS_MOST`] parts, for each three points of the plan and at most four pieces of the cam.
     fn along_cam<T>(
         &self,
         curve: &Curve<'_>,
@@ -167,15 +168,15 @@ impl<P: Planner> Axis<P> {
                 break;
             }
         }
-        // The box of all that is left.
+        // One box for all that is left.
         let peaks = self.planner.peaks((lead.plan, scan))?;
         found(&curve.bounds(), &peaks.times(lead.factor))
     }
 }
 
 impl Curve<'_> {
-    /// What the cam is bounded by on the way of a master at `x` that goes on with a constant velocity, and how that moves; nothing for
-    /// one that stands.
+    /// The bounds of the cam on the way of a master that is at `x` and continues with a constant velocity, and that
+    /// motion. None for a master at rest.
     fn cruise(&self, x: f64, from: &Setpoint) -> Option<(CamBounds, Setpoint)> {
         if from.velocity == 0.0 {
             return None;
@@ -202,7 +203,7 @@ impl Curve<'_> {
     }
 }
 
-/// What jumps behind a master of a lower degree.
+/// The derivative that jumps behind a master of a lower degree.
 fn rough(degree: usize, limits: &Limits) -> Beyond {
     if degree < 3 {
         ("jerk", f64::INFINITY, limits.jerk)
@@ -211,25 +212,26 @@ fn rough(degree: usize, limits: &Limits) -> Beyond {
     }
 }
 
-/// From where to where a part of a plan leads at most, and the largest magnitudes of its derivatives: a piece of constant snap.
+/// The range of places of a part of a plan, and the largest magnitudes of its derivatives. The part is a piece of
+/// constant snap.
 fn part_of<Q: Plan>(path: &Path<'_, Q>, from: u64, to: u64, cycle: f64) -> ((f64, f64), Setpoint) {
     let (first, inside, last) = (path.at(from), path.at(from.saturating_add(1)), path.at(to));
     let time = to.saturating_sub(from) as f64 * cycle;
     let bent = bent(time);
-    // Told from its inside: on its ends what jumps there may be that of the next one.
+    // Computed from the inside, because a derivative at an end may belong to the next part.
     let (back, on) = (-cycle, time - cycle);
     let jerk_at = |t: f64| inside.jerk + inside.snap * t;
     let acceleration_at = |t: f64| inside.acceleration + inside.jerk * t + 0.5 * inside.snap * t * t;
     let snap = inside.snap.abs();
     let jerk = larger(jerk_at(back), jerk_at(on));
-    // Largest on an end, or where the jerk is 0.
+    // It is largest at an end, or where the jerk is 0.
     let level = -inside.jerk / inside.snap;
     let between = if level > back && level < on { level } else { on };
     let accelerations = [back, between, on].map(acceleration_at);
     let up = accelerations.into_iter().fold(0.0, f64::max);
     let down = accelerations.into_iter().fold(0.0, f64::min).abs();
     let acceleration = larger(up, down);
-    // While it only speeds up, or only slows down, its velocity is largest on an end.
+    // A part that only speeds up or only slows down has its highest velocity at an end.
     let passed = (bent * jerk).min(time * up.min(down));
     let most = Setpoint {
         position: 0.0,
@@ -241,12 +243,12 @@ fn part_of<Q: Plan>(path: &Path<'_, Q>, from: u64, to: u64, cycle: f64) -> ((f64
     (range(&first, &last, bent * acceleration), most)
 }
 
-/// A curve is off its chord by no more than an eighth of its second derivative times the `time` squared.
+/// The largest distance of a curve from its chord for a second derivative of 1: an eighth of the `time` squared.
 fn bent(time: f64) -> f64 {
     0.125 * time * time
 }
 
-/// The places between two, and so far (u) beyond them.
+/// The range between two places, extended by this distance (u) on both sides.
 fn range(first: &Setpoint, last: &Setpoint, beyond: f64) -> (f64, f64) {
     (
         first.position.min(last.position) - beyond,

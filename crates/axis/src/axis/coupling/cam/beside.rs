@@ -1,8 +1,8 @@
-//! What a slave in sync leaves of its limits: to a shift between it and its master, to the master itself (`on_limit`
-//! `slow_master`), and to what is superimposed on it.
+//! The part of its limits that a slave in sync leaves: to a shift between it and its master, to the master itself
+//! (`on_limit` `slow_master`), and to a superimposed motion.
 //!
-//! The first two are boxes: within them the slave keeps its limits wherever it is on the cam. A box with a higher velocity leaves less of the
-//! other three.
+//! The first two are boxes: within them the slave keeps its limits at every place of the cam. A box with a higher
+//! velocity leaves less of the other three.
 
 use super::super::super::Axis;
 use super::super::follow::Beyond;
@@ -15,11 +15,12 @@ use standstill_planner::{CamBounds, Limits, Plan, Planner, Setpoint};
 /// The share of the highest velocity of its cam that a slave leaves to its master.
 const LEFT: f64 = 0.8;
 
-/// The share of what is between the master's velocity and the highest one that a shift has which asks for no velocity.
+/// The velocity of a shift that has no velocity of its own, as a share of the difference between the master's
+/// velocity and the highest one.
 const SHARE: f64 = 0.4;
 
 impl<P: Planner> Axis<P> {
-    /// Before bounds are collected: whether its master keeps the limits of the slave is noted.
+    /// Called before bounds are collected: a slave that has lost its master leaves no bound.
     pub(in crate::axis::coupling) fn begin_bound_on_cam(&mut self) {
         if let Some(on_cam) = &mut self.follower.on_cam
             && on_cam.rung == Rung::Lost
@@ -28,12 +29,12 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// What is left to its master, which keeps the limits of the slave.
+    /// The limits left to its master, which keeps the limits of the slave.
     pub(in crate::axis::coupling) fn bound_on_cam(&self) -> Option<Limits> {
         self.follower.on_cam.as_ref()?.bound
     }
 
-    /// In sync: from now on its master keeps the limits of the slave, if that is how it is set up.
+    /// In sync: from now on its master keeps the limits of the slave, if the axis is configured for that.
     pub(super) fn bound_master_on_cam(&mut self, cams: &Cams<'_>) {
         if self.config.following.on_limit != OnLimit::SlowMaster {
             return;
@@ -57,8 +58,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// What the cam leaves to a shift that asks for these limits, in units of the master; none while it leaves nothing, or while the
-    /// slave is not in sync or what the master does next is not known.
+    /// The limits that the cam leaves to a shift with the limits `asked`, in units of the master. None if it leaves
+    /// nothing, or while the slave is not in sync or the master's motion ahead is not known.
     pub(in crate::axis::coupling) fn room_for_shift_on_cam(
         &self,
         asked: &Limits,
@@ -101,8 +102,8 @@ impl<P: Planner> Axis<P> {
         is_room.then(|| self.share_of_shift(room, &own))
     }
 
-    /// What the cam leaves of the limits of the slave all the time, and whether that is all there will be: the master goes on for ever.
-    /// None while nothing is left, or what the master does next is not known.
+    /// The part of the slave's limits that the cam always leaves, and whether it stays like that because the master
+    /// is endless. None if nothing is left or the master's motion ahead is not known.
     pub(in crate::axis) fn room_on_cam(
         &self,
         view: &View<'_, P::Plan>,
@@ -125,12 +126,13 @@ impl<P: Planner> Axis<P> {
         all.into_iter().all(|room| room > 0.0).then_some((room, endless))
     }
 
-    /// The largest magnitudes of what the cam asks for along what the master does next, and whether that does not end.
+    /// The largest magnitudes of the derivatives that the cam needs along the master's motion ahead, and whether that
+    /// is endless.
     fn used_on_cam(&self, view: &View<'_, P::Plan>, cams: &Cams<'_>) -> Option<(Setpoint, bool)> {
         let on_cam = self.follower.on_cam.as_ref()?;
         let curve = on_cam.curve(cams.cam(on_cam.camming.cam)?)?;
         let lead = self.lead_of_master(view)?;
-        // What changes at once leaves nothing, smooth as it may be beside that.
+        // A derivative that jumps leaves nothing, even to a smooth motion beside it.
         let is_rough = view.degree() < on_cam.limits.order().degree();
         if is_rough && self.planner.peaks((lead.plan, lead.elapsed))?.acceleration != 0.0 {
             return None;
@@ -144,7 +146,7 @@ impl<P: Planner> Axis<P> {
         Some((self.peaks_on_cam(&curve, &lead, place), end.velocity != 0.0))
     }
 
-    /// What of the cam and a motion with these largest magnitudes beside it is beyond the limits of the slave.
+    /// The limit of the slave that the cam exceeds together with a motion of these largest magnitudes beside it.
     pub(in crate::axis) fn beyond_beside_cam(
         &self,
         view: &View<'_, P::Plan>,
@@ -163,7 +165,7 @@ impl<P: Planner> Axis<P> {
         CamBounds::beyond(&all, &limits)
     }
 
-    /// What is added from now on moves the cam on from where it lies: the layer is at `place` (u).
+    /// Distances added from now on move the cam from its present place; the layer is at `place` (u).
     pub(in crate::axis) fn lay_layer_on_cam(&mut self, place: f64) {
         if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.lead = on_cam.anchor.map_or(0.0, |anchor| anchor.slave.phase) - place;

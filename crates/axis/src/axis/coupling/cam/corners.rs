@@ -1,8 +1,9 @@
-//! Rests of a slave at the rows of its cam at which a derivative jumps that its limits do not let jump: the corners.
+//! Corners: rows of a cam with a jump in a derivative that may not jump within the limits of the slave. The slave
+//! comes to rest there.
 //!
-//! On the curve a slave is within its limits there only at rest. It is in sync up to where its shadow has to brake for the next corner,
-//! comes to rest exactly on it, and goes after its master from then on. A slave that must not lag is in sync until its master is past
-//! a corner.
+//! On the curve a slave keeps its limits at a corner only at rest. It is in sync until its shadow has to brake for
+//! the next corner. Then it comes to rest exactly on the corner, and follows its master again from there. A slave
+//! that must not lag is in sync until its master has passed a corner.
 
 use super::super::super::commands::ROUNDING;
 use super::super::super::{Axis, Motion};
@@ -15,19 +16,21 @@ use super::{Curve, OnCam, Rung, Shadow};
 use crate::{Approach, OnLimit, Scope};
 use standstill_planner::{DirectedLimits, Excess, Lead, Limits, Plan, Planner, Setpoint};
 
-/// Velocities of a shadow whose limits are tried on the way to a corner, as shares of what is left of the highest one: the higher, the
-/// less acceleration is left.
+/// Velocities of a shadow whose limits are tried on the way to a corner, as shares of the velocity left up to the
+/// highest one. A higher velocity leaves less acceleration.
 const SHARES: [f64; 4] = [0.01, 0.1, 0.3, 1.0];
 
-/// How often limits are looked for within which a shadow comes to rest that gets faster until its acceleration has faded out, and how
-/// much more than it gains is left to it: with the rates that a higher velocity leaves it gains more.
+/// A shadow that still accelerates gets faster before it comes to rest, until its acceleration is 0. Its limits are
+/// searched this number of times. They leave it this factor times the velocity that it gains: a higher velocity
+/// leaves other rates, with which it gains more.
 const FADING: u32 = 3;
 const GAINED: f64 = 1.25;
 
-/// A shadow goes on to rest on a corner where that takes no longer than so many times what a stop takes.
+/// A shadow continues to rest on a corner only if that takes at most this number of times the scans of a stop.
 const NEAR: u32 = 4;
 
-/// How a shadow comes to rest: by this plan, so far on (u of the master), and so far back behind where it is now.
+/// How a shadow comes to rest: the plan, the distance `on` (u of the master), and the distance `back` behind its
+/// present place.
 struct Stop<Q> {
     plan: Q,
     on: f64,
@@ -37,14 +40,14 @@ struct Stop<Q> {
 /// A corner on the way of a shadow.
 #[derive(Clone, Copy)]
 pub(super) struct Corner {
-    /// Place of the cam's master side (u), not taken back into one period.
+    /// Place on the master's side of the cam (u), not reduced to one period.
     x: f64,
     /// Order of the derivative that jumps, less 1.
     derivative: usize,
 }
 
 impl Corner {
-    /// What the cam asks for there.
+    /// The derivative that the cam needs there, and its limit.
     pub fn asks(&self, limits: &Limits) -> Beyond {
         match self.derivative {
             0 => ("acceleration", f64::INFINITY, limits.lower_acceleration()),
@@ -55,7 +58,7 @@ impl Corner {
 }
 
 impl OnCam {
-    /// A derivative jumps somewhere that the limits of the slave do not let jump.
+    /// Whether the cam has a jump in a derivative that may not jump within the limits of the slave.
     pub(super) fn has_corners(&self) -> bool {
         let order = self.limits.order().degree().saturating_sub(1);
         usize::from(self.camming.continuity) < order
@@ -63,13 +66,13 @@ impl OnCam {
 }
 
 impl<P: Planner> Axis<P> {
-    /// So many derivatives of a cam the limits of the slave do not let jump.
+    /// The number of derivatives of a cam that may not jump within the limits of the slave.
     pub(super) fn corner_order(&self) -> usize {
         let limits = self.slowed(&self.parameters.limits);
         limits.order().degree().saturating_sub(1)
     }
 
-    /// The cam as it lies, if it has corners for this slave, and is not over.
+    /// The cam at its place, if it has corners for this slave and is not over.
     fn curve_with_corners<'a>(&self, scope: &'a Scope<'_>) -> Option<Curve<'a>> {
         let on_cam = self.follower.on_cam.as_ref()?;
         if !on_cam.has_corners() || on_cam.ends.is_over() {
@@ -78,8 +81,8 @@ impl<P: Planner> Axis<P> {
         on_cam.curve(scope.cams.cam(on_cam.camming.cam)?)
     }
 
-    /// In sync with its master at the end of this scan the slave could not come to rest at the next corner any more; one that must not lag
-    /// would be past it.
+    /// In sync: the next corner, if the slave could no longer come to rest at it from its place in sync at the end of
+    /// this scan. For a slave that must not lag: the corner that it would have passed.
     pub(super) fn corner_in_sync(&mut self, view: &View<'_, P::Plan>, scope: &Scope<'_>) -> Option<Corner> {
         let curve = self.curve_with_corners(scope)?;
         let now = Shadow {
@@ -93,7 +96,7 @@ impl<P: Planner> Axis<P> {
         self.note_brakes(found)
     }
 
-    /// The same of a shadow on its own way.
+    /// The same for a shadow on its own way.
     pub(super) fn corner_on_way(&mut self, next: &Shadow, scope: &Scope<'_>) -> Option<Corner> {
         let is_due = matches!(self.cam_rung(), Some(Rung::Corner { .. }));
         let curve = self.curve_with_corners(scope).filter(|_| !is_due)?;
@@ -101,7 +104,7 @@ impl<P: Planner> Axis<P> {
         self.note_brakes(found)
     }
 
-    /// Within which limits the slave can still stop, or the corner before which it can't.
+    /// Notes the limits within which the slave can still stop. Returns the corner before which it can't.
     fn note_brakes(&mut self, found: Result<Option<Limits>, Corner>) -> Option<Corner> {
         let on_cam = self.follower.on_cam.as_mut()?;
         match found {
@@ -113,7 +116,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The corner that the master is past at `now`, or moves over.
+    /// The corner that the master has passed at `now`, or moves across.
     fn corner_passed(&self, curve: &Curve<'_>, now: &Shadow) -> Option<Corner> {
         let on_cam = self.follower.on_cam.as_ref()?;
         let (was, here) = (curve.unwound(on_cam.was.place), curve.unwound(now.place));
@@ -123,14 +126,17 @@ impl<P: Planner> Axis<P> {
         (is_past || !now.at.is_at_rest()).then_some(corner)
     }
 
-    /// Limits within which a shadow that is at `next` at the end of this scan comes to rest before the next corner; none where that is
-    /// far away. The corner, if there are no such limits.
+    /// Limits within which a shadow that is at `next` at the end of this scan comes to rest before the next corner.
+    /// None if the corner is far away.
     ///
-    /// Cost: a look at each row on that way, and at most ten ramps where a corner is near.
+    /// # Errors
+    /// The corner, if there are no such limits.
+    ///
+    /// Cost: a check of each row on that way, and at most ten ramps if a corner is near.
     fn stops_in_time(&self, curve: &Curve<'_>, next: &Shadow) -> Result<Option<Limits>, Corner> {
         let at = &next.at;
         let x = curve.unwound(next.place);
-        // The step of this scan may lead over a corner, too.
+        // The step of this scan may cross a corner, too.
         let was = self.follower.on_cam.as_ref().and_then(|on_cam| on_cam.shadow);
         let from = was.map_or(x, |was| curve.unwound(was.place));
         let ahead = heading(at).unwrap_or_default() * curve.law.master_scaling;
@@ -160,7 +166,7 @@ impl<P: Planner> Axis<P> {
         Some(Corner { x, derivative })
     }
 
-    /// A way (u of the master) that a shadow surely comes to rest on.
+    /// A distance (u of the master) in which a shadow certainly comes to rest.
     fn longest_braking(&self, curve: &Curve<'_>, at: &Setpoint) -> f64 {
         let Some(limits) = self.limits_to_corner(curve, at).next() else {
             return f64::INFINITY;
@@ -181,8 +187,8 @@ impl<P: Planner> Axis<P> {
         2.0 * (speed + at.acceleration.abs() * time) * time
     }
 
-    /// Limits of the shadow on the way to a corner: those with which it was known to stop in time, those it has, and those of other
-    /// velocities.
+    /// Limits of the shadow on the way to a corner: first those with which it was known to stop in time, then its
+    /// present ones, then those of other velocities.
     fn limits_to_corner(&self, curve: &Curve<'_>, at: &Setpoint) -> impl Iterator<Item = Limits> {
         let limits = self.slowed(&self.parameters.limits);
         let highest = FASTEST * curve.bounds().highest_velocity(&limits).min(1e12);
@@ -195,13 +201,13 @@ impl<P: Planner> Axis<P> {
         all.flatten()
     }
 
-    /// The same, and at last those of the velocity that it comes to before its acceleration has faded out.
+    /// The same, and last those of the velocity that it reaches before its acceleration is 0.
     fn limits_to_stop(&self, curve: &Curve<'_>, at: &Setpoint) -> impl Iterator<Item = Limits> {
         let fastest = core::iter::once_with(|| self.limits_while_fading(curve, at));
         self.limits_to_corner(curve, at).chain(fastest.flatten())
     }
 
-    /// Limits of a shadow that comes to rest and is faster before that. Cost: at most three ramps.
+    /// Limits of a shadow that gets faster before it comes to rest. Cost: at most three ramps.
     fn limits_while_fading(&self, curve: &Curve<'_>, at: &Setpoint) -> Option<Limits> {
         let start = Setpoint { position: 0.0, ..*at };
         let speed = at.velocity.abs();
@@ -214,7 +220,7 @@ impl<P: Planner> Axis<P> {
         Some(limits)
     }
 
-    /// How a shadow in this state comes to rest; none where it is outside these limits on that way.
+    /// How a shadow in this state comes to rest. None if it exceeds these limits on the way.
     fn stopping(&self, at: &Setpoint, limits: &Limits, goes_up: bool) -> Option<Stop<P::Plan>> {
         let start = Setpoint { position: 0.0, ..*at };
         let plan = self.planner.ramp_to(&start, 0.0, limits, limits).ok()?;
@@ -224,7 +230,7 @@ impl<P: Planner> Axis<P> {
                 ..excess
             };
             let fastest = self.planner.peaks((&plan, 0)).map(|peaks| peaks.velocity);
-            // It may turn back before it rests.
+            // It may reverse before it comes to rest.
             let is_slow = fastest.is_some_and(|fastest| fastest <= limits.velocity * (1.0 + ROUNDING));
             is_slow && !leaves(&turns, limits)
         });
@@ -233,14 +239,14 @@ impl<P: Planner> Axis<P> {
         stays.then_some(Stop { plan, on, back })
     }
 
-    /// It is on its way to rest at a corner.
+    /// Whether it is on its way to rest at a corner.
     pub(super) fn is_coming_to_corner(&self) -> bool {
         let is_under_way =
             matches!(self.mover.motion(), Motion::Closing { elapsed, scans, .. } if elapsed < scans);
         is_under_way && matches!(self.cam_rung(), Some(Rung::Corner { .. }))
     }
 
-    /// The same, and its limits are what they were when that was planned.
+    /// The same, and its limits have not changed since that was planned.
     pub(super) fn is_bound_for_corner(&self) -> bool {
         let brakes = self
             .follower
@@ -251,8 +257,8 @@ impl<P: Planner> Axis<P> {
         is_known && self.is_coming_to_corner()
     }
 
-    /// From this scan on the slave goes along the curve to rest at the corner; off the curve to rest, where its limits leave it no such
-    /// way.
+    /// From this scan on the slave goes along the curve to rest at the corner. If its limits leave no such way, it
+    /// leaves the curve and comes to rest.
     pub(super) fn brake_for_corner(
         &mut self,
         corner: Corner,
@@ -279,7 +285,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Along the curve to rest at the corner, or before it.
+    /// A way along the curve to rest at the corner, or before it.
     fn way_to_corner(&self, curve: &Curve<'_>, shadow: &Shadow, corner: Corner) -> Option<Way<P::Plan>> {
         let start = Setpoint {
             position: 0.0,
@@ -314,8 +320,8 @@ impl<P: Planner> Axis<P> {
             let stays = !plan.excess().is_some_and(|excess| leaves(&excess, &limits));
             on <= most && back <= resolved && stays
         };
-        // No faster than it is where that goes, so that it does not get ahead of its master. Where no move ends there, or it is far, to
-        // rest first.
+        // If possible no faster than now, so that it does not get ahead of its master. If no move ends there, or the
+        // corner is far away, it comes to rest first.
         let speeds = [shadow.at.velocity.abs(), limits.velocity];
         let there = speeds.into_iter().filter_map(move_there).find(goes_straight);
         let plan = there.filter(is_near).unwrap_or(stop.plan);
@@ -335,7 +341,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// Behind the rest of this plan of its master a slave in sync could not brake for a corner whenever it has to.
+    /// Whether a slave in sync could not always brake for a corner behind the rest of this plan of its master.
     pub(super) fn is_too_fast_for_corners(&self, curve: &Curve<'_>, lead: &Lead<'_, P::Plan>) -> bool {
         let has_corners = usize::from(curve.cam.head.smooth.continuity) < self.corner_order();
         if !has_corners || self.config.following.on_limit == OnLimit::Error {
@@ -357,7 +363,7 @@ impl<P: Planner> Axis<P> {
 }
 
 impl Curve<'_> {
-    /// One of its corners, wherever it is.
+    /// One of its corners, at any place.
     pub(super) fn corner(&self) -> Corner {
         Corner {
             x: 0.0,
@@ -366,7 +372,7 @@ impl Curve<'_> {
     }
 }
 
-/// Which way a shadow goes, or is about to; none at rest.
+/// The direction in which a shadow moves or starts to move; none at rest.
 fn heading(at: &Setpoint) -> Option<f64> {
     [at.velocity, at.acceleration, at.jerk]
         .into_iter()

@@ -1,57 +1,58 @@
-//! Ends of a cam: told once each time one is reached, whichever way, and nothing is told twice where a master trembles there.
+//! Ends of a cam. Each end reached is reported once, in either direction. A master that trembles at an end causes no
+//! further reports.
 
 use standstill_planner::{Cam, CamAt};
 
-/// An end that was told is told again only after the slave was this part of the period away from it.
+/// An end that was reported is reported again only after the slave was this part of the period away from it.
 const AWAY: f64 = 0.25;
 
-/// The same for an end that it began at, and that was never told.
+/// The same for an end where it began, which was never reported.
 const OFF: f64 = 0.01;
 
-/// A place so near to an end is on it, relative to the period or to the places of both ends.
+/// A place this near to an end counts as on it, relative to the period or to the places of both ends.
 const ROUNDING: f64 = 1e-12;
 
-/// What became of the ends of a cam so far.
+/// The state of the ends of a cam.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Ends {
-    /// The place at the end of the scan before.
+    /// The place at the end of the last scan.
     before: Option<(i64, f64)>,
-    /// The end told last, or the one it began at, while the slave is near it.
+    /// The end reported last, or the one where it began, while the slave is near it.
     told: Option<Told>,
     /// Without periods: it has been between its first and its last row, and it has come to an end.
     has_begun: bool,
     is_over: bool,
 }
 
-/// An end that is not told now.
+/// An end that is not reported now.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Told {
-    /// So many periods lie before it.
+    /// The number of periods before it.
     end: i64,
-    /// It may be told once the slave was this part of the period away from it.
+    /// It may be reported once the slave was this part of the period away from it.
     away: f64,
 }
 
 impl Told {
-    /// The slave, at this share of this period, is far enough away.
+    /// Whether the slave, at this share of this period, is far enough away.
     fn is_left(&self, periods: i64, share: f64) -> bool {
         ((periods - self.end) as f64 + share).abs() >= self.away
     }
 }
 
-/// What a scan brought.
+/// The result of a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Passed {
-    /// So many ends were reached.
+    /// The number of ends reached.
     pub ends: u32,
-    /// The end reached last: so many periods lie before it.
+    /// The end reached last: the number of periods before it.
     pub end: i64,
     /// It was reached with the cam running forwards.
     pub forwards: bool,
 }
 
 impl Ends {
-    /// The slave is to be on the curve, or was.
+    /// The slave has been on the curve, or has to be from now on.
     pub fn has_begun(&self) -> bool {
         self.has_begun
     }
@@ -61,7 +62,7 @@ impl Ends {
         self.is_over
     }
 
-    /// The slave is called so many periods further on, and has not moved.
+    /// Adds this number of periods to the place of the slave, which has not moved.
     pub fn renumber(&mut self, periods: i64) {
         if let Some((before, _)) = &mut self.before {
             *before = before.saturating_add(periods);
@@ -71,7 +72,7 @@ impl Ends {
         }
     }
 
-    /// The slave is `at` this place of the curve now.
+    /// Notes that the slave is `at` this place of the curve now.
     pub fn note(&mut self, cam: &Cam<'_>, at: &CamAt) -> Option<Passed> {
         let head = cam.head;
         let length = head.end - head.begin;
@@ -91,7 +92,7 @@ impl Ends {
             self.passed(first, at.periods, true)
         } else if at.periods < periods {
             let last = at.periods.saturating_add(1);
-            // Where it stood on that end before it was reached already.
+            // If it stood on that end before, the end was reached already.
             let first = if before == 0.0 {
                 periods.saturating_sub(1)
             } else {
@@ -105,7 +106,7 @@ impl Ends {
         };
         if !head.periodic {
             passed.take_if(|passed| !self.has_begun || (passed.end == 1) != passed.forwards);
-            // On its first or last row but for rounding it has not begun yet.
+            // On its first or last row, except for rounding, it has not begun yet.
             let rounding = ROUNDING * (head.begin.abs() + head.end.abs());
             self.has_begun |= at.periods == 0 && way > rounding && length - way > rounding;
             self.is_over = passed.is_some();
@@ -122,7 +123,7 @@ impl Ends {
         passed
     }
 
-    /// Ends from the first to the last, but for one that was told and not left since.
+    /// The ends from the first to the last, except for one that was reported and not left since.
     fn passed(&mut self, first: i64, last: i64, forwards: bool) -> Option<Passed> {
         let all = last.abs_diff(first).saturating_add(1);
         let told = u64::from(self.told.is_some_and(|told| told.end == first));
@@ -135,7 +136,7 @@ impl Ends {
     }
 }
 
-/// The end that a place is on, so many periods and this share of one from the first.
+/// The end that a place is on. The place is this number of periods and this share of one after the first row.
 fn begun_at(periods: i64, share: f64) -> Option<Told> {
     let end = if share <= ROUNDING {
         periods
@@ -192,9 +193,9 @@ mod tests {
         let up: std::vec::Vec<f64> = (0..=35).map(|step| f64::from(step) * 10.0).collect();
         assert_eq!(pulses(&up, true), [(10, 1), (20, 1), (30, 1)]);
         let down: std::vec::Vec<f64> = (0..=35).map(|step| f64::from(step) * -10.0).collect();
-        // It began at the first row: that is no end that was reached.
+        // It began at the first row, so that end was not reached.
         assert_eq!(pulses(&down, true), [(10, 1), (20, 1), (30, 1)]);
-        // There and back, over an end and exactly onto one.
+        // Forward and back, over an end and exactly onto one.
         assert_eq!(
             pulses(&[50.0, 90.0, 110.0, 150.0, 110.0, 90.0], true),
             [(2, 1), (5, 1)]
@@ -224,7 +225,7 @@ mod tests {
         assert_eq!(pulses(&[20.0, 3.0, -1.0], false), [(2, 1)]);
         assert_eq!(pulses(&[0.0, 0.5, -0.5, 0.5, -0.5, 0.0], true), []);
         assert_eq!(pulses(&[0.0, 0.5, -0.5, 0.5, -0.5, 50.0], false), []);
-        // Over it but for rounding in a long step.
+        // Over it, except for rounding, in a long step.
         assert_eq!(pulses(&[100.0 - 1e-13, 110.0, 160.0], true), []);
     }
 
@@ -248,7 +249,7 @@ mod tests {
         assert_eq!(pulses(&[0.0, 50.0, 101.0, 50.0, -5.0, 101.0], false), [(2, 1)]);
         assert_eq!(pulses(&[50.0, 10.0, -5.0, 50.0, 120.0], false), [(2, 1)]);
         assert_eq!(pulses(&[50.0, 0.0, 50.0, 120.0], false), [(1, 1)]);
-        // It begins when the master comes in, from whichever side.
+        // It begins when the master enters, from either side.
         assert_eq!(pulses(&[-50.0, -10.0, 5.0, 99.0, 100.0], false), [(4, 1)]);
         assert_eq!(pulses(&[150.0, 110.0, 99.0, 1.0, -3.0], false), [(4, 1)]);
         assert_eq!(pulses(&[0.0, -10.0, 5.0, 120.0], false), [(3, 1)]);

@@ -1,4 +1,4 @@
-//! The motion step of a slave on a cam: after that of its master.
+//! The motion step of a slave on a cam, after that of its master.
 
 use super::super::super::commands::ROUNDING;
 use super::super::super::power::Reaction;
@@ -11,11 +11,11 @@ use crate::{ErrorId, Event, OnLimit, Scope};
 use standstill_planner::{CamAt, Lead, Limits, Place, Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
-    /// [`Axis::advance`] of an axis on a cam, with a look at its master.
+    /// [`Axis::advance`] for an axis on a cam, which can see its master.
     ///
-    /// Cost: in sync one evaluation of the cam, and one ramp while what the master does next is not known or there are software
-    /// limits; where the master got another plan, a look along it ([`Axis::beyond_on_cam`]) and at most 50 plans; on a long way behind
-    /// a master that comes round, one plan in some turns.
+    /// Cost in sync: one evaluation of the cam, and one ramp while the master's motion ahead is not known or there
+    /// are software limits. If the master got another plan: a check along it ([`Axis::beyond_on_cam`]) and at most 50
+    /// plans. On a long way behind a master with turns: one plan every few turns.
     #[inline(never)]
     pub(crate) fn advance_on_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         if !self.still_follows(view, scope) {
@@ -28,7 +28,7 @@ impl<P: Planner> Axis<P> {
         if self.stays_paused(is_new, scope) {
             return self.measure_on_cam(view, scope);
         }
-        // A slave that must not lag is in sync until it can't be.
+        // A slave that must not lag stays in sync until it can't.
         let is_locked = self.is_locked_on_cam();
         let stays = self.config.following.on_limit == OnLimit::Error;
         self.superimpose_behind(view, is_new, !stays, scope);
@@ -37,7 +37,7 @@ impl<P: Planner> Axis<P> {
         if (is_new && !stays) || self.cam_rung() == Some(Rung::Due) {
             self.decide_on_cam(view, true, scope);
             self.tell_outside(view, scope);
-            // The last step of a shift is one of its own.
+            // The last step of a shift is a special one.
             if !shifts {
                 self.note_source();
             }
@@ -70,14 +70,14 @@ impl<P: Planner> Axis<P> {
         self.follower.on_cam.as_ref().map(|on_cam| on_cam.rung)
     }
 
-    /// Coordinates of master or slave have moved: the cam moves with them, and nobody else.
+    /// Coordinates of master or slave have moved: the cam moves with them, and nothing else changes.
     fn rebase_cam(&mut self, view: &View<'_, P::Plan>, scan: u64) {
         let moves = self.frame.moves();
         let own = self.coordinates_moved(scan);
         let Some(on_cam) = &mut self.follower.on_cam else {
             return;
         };
-        // What moved in the motion step itself was not seen before it.
+        // A move of coordinates within the motion step was not seen before it.
         let late = view.now.moved - on_cam.was.moved;
         on_cam.was.place.position += late;
         on_cam.was.at.position += late;
@@ -89,7 +89,7 @@ impl<P: Planner> Axis<P> {
         }
         let is_held = by.abs() <= FURTHEST && own.abs() <= FURTHEST;
         if !is_held && on_cam.rung != Rung::Lost {
-            // Numbers of that size hold no place on the cam: it is laid anew.
+            // At numbers of that size the place of the cam is lost in rounding: it is fixed anew.
             on_cam.was.place = view.now.place;
             on_cam.was.at.position = view.now.at.position;
             *on_cam = OnCam {
@@ -123,8 +123,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Notes what the master does next. Returns whether that, or a limit, is another one than in the scan before, or the way is to
-    /// be looked for again.
+    /// Notes the master's next motion. Returns whether that or a limit has changed since the last scan, or whether
+    /// the way is due to be searched again.
     fn look_ahead_on_cam(&mut self, view: &View<'_, P::Plan>) -> bool {
         let limits = self.slowed(&self.parameters.limits);
         let Some(on_cam) = &mut self.follower.on_cam else {
@@ -144,8 +144,11 @@ impl<P: Planner> Axis<P> {
         lead
     }
 
-    /// Whether the cam keeps the limits of the slave as far as is known, with the slave at the place of its master: from the end of
-    /// this scan on if it `is_over`, else from the end of the one before. What is beyond them is told.
+    /// Checks that the cam keeps the limits of the slave as far as is known, with the slave at the place of its
+    /// master. It is checked from the end of this scan if the step `is_over`, else from the end of the last one.
+    ///
+    /// # Errors
+    /// The limit that is exceeded.
     pub(super) fn keeps_on_cam(
         &self,
         curve: &Curve<'_>,
@@ -161,7 +164,7 @@ impl<P: Planner> Axis<P> {
                 Some(curve.corner().asks(&on_cam.limits))
             }
             Some(mut lead) => {
-                // A step that was not of this plan was never looked at.
+                // A step that did not belong to this plan was never checked.
                 let now = is_late.then(|| self.beyond_on_cam_now(curve, view)).flatten();
                 let place = if is_late || is_over {
                     view.now.place
@@ -178,7 +181,7 @@ impl<P: Planner> Axis<P> {
         found.map_or(Ok(()), Err)
     }
 
-    /// What the cam asks for beyond the limits in this scan, where nothing is known of what comes.
+    /// The limit that the cam exceeds in this scan, if the motion ahead is not known.
     fn beyond_on_cam_now(&self, curve: &Curve<'_>, view: &View<'_, P::Plan>) -> Option<Beyond> {
         let on_cam = self.follower.on_cam.as_ref()?;
         let at = curve.at(view.now.place, &view.now.at, on_cam.at.piece);
@@ -186,7 +189,8 @@ impl<P: Planner> Axis<P> {
         self.beyond(Some(at.place), &at.state, &on_cam.limits, Some(is_rough))
     }
 
-    /// The master moves less smoothly than the slave may, where the cam passes that on. A shift is as smooth as the slave.
+    /// Whether the master moves less smoothly than the slave may, and the cam passes that on. A shift is as smooth as
+    /// the slave.
     fn is_rough_on_cam(&self, view: &View<'_, P::Plan>, at: &CamAt) -> bool {
         let degree = self.slowed(&self.parameters.limits).order().degree();
         let was = self
@@ -218,20 +222,20 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Where the slave is on the curve for a master there.
+    /// The place of the slave on the curve for a master at `place`.
     fn on_curve(&self, place: Place, moving: &Setpoint, scope: &Scope<'_>) -> Option<CamAt> {
         let on_cam = self.follower.on_cam.as_ref()?;
         let curve = on_cam.curve(scope.cams.cam(on_cam.camming.cam)?)?;
         Some(curve.at(place, moving, on_cam.at.piece))
     }
 
-    /// In sync: the set-point is the cam, moved on by what is superimposed on it.
+    /// In sync: the set-point is the cam, moved by the superimposed distance.
     fn step_in_sync(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         if !self.queue.is_empty() && self.switches_cam(view, scope) {
             return;
         }
         let added = self.next_added();
-        // What is added to a law that stands was held against the limits before.
+        // A motion added to a law at rest was checked against the limits before.
         let is_held = added.is_some() && self.law_stands(view);
         let before = self.follower.on_cam.as_ref().and_then(|on_cam| on_cam.anchor);
         let held = self.held_end(added.as_ref());
@@ -290,7 +294,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Publishes a place of the curve, at which the slave is from now on.
+    /// Publishes a place of the curve. The slave is there from now on.
     pub(super) fn publish_on_cam(&mut self, at: &CamAt, shadow: Shadow, scope: &mut Scope<'_>) {
         if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.at = *at;
@@ -299,7 +303,7 @@ impl<P: Planner> Axis<P> {
         self.publish_behind(at.place, at.state, scope);
     }
 
-    /// Along the curve by a plan for the place of a master of its own.
+    /// A step along the curve, by a plan for the place of the shadow.
     fn step_along_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let cycle = self.planner.cycle();
         let Some(step) = self.mover.step_beside() else {
@@ -352,7 +356,8 @@ impl<P: Planner> Axis<P> {
         self.publish_on_cam(&at, shadow, scope);
     }
 
-    /// Whether a master whose motion ahead is not known left the shadow this `room` beside it, and the slave keeps its limits at `next`.
+    /// Whether a master whose motion ahead is not known left the shadow this `room` beside it, and the slave keeps
+    /// its limits at `next`.
     fn keeps_room(&self, room: &Limits, next: &Shadow, view: &View<'_, P::Plan>, scope: &Scope<'_>) -> bool {
         let (Some(on_cam), Some(at)) = (&self.follower.on_cam, self.on_curve(next.place, &next.at, scope))
         else {
@@ -367,7 +372,7 @@ impl<P: Planner> Axis<P> {
                 .is_none()
     }
 
-    /// The shadow has come to its master: in sync from now on, if that keeps the limits. Returns whether it is.
+    /// The shadow has reached its master: in sync from now on, if that keeps the limits. Returns whether it is.
     fn arrive_on_cam(&mut self, shadow: &Shadow, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) -> bool {
         let Some(on_cam) = &self.follower.on_cam else {
             return false;
@@ -399,7 +404,7 @@ impl<P: Planner> Axis<P> {
         true
     }
 
-    /// By a move of its own to a place of the curve, or to rest.
+    /// A step of a move of its own, to a place of the curve or to rest.
     fn step_to_cam(
         &mut self,
         turns: i64,
@@ -466,7 +471,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// No longer in sync: the cam asks for more than a limit.
+    /// No longer in sync: the cam exceeds a limit.
     pub(in crate::axis::coupling) fn lose_sync(
         &mut self,
         (what, value, limit): Beyond,
@@ -476,7 +481,7 @@ impl<P: Planner> Axis<P> {
         if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.rung = Rung::Due;
             if adds {
-                // It has the velocity of what was being added, which no place of the curve has.
+                // It has the velocity of the added motion, which no place of the curve has.
                 on_cam.shadow = None;
             }
         }
@@ -486,7 +491,7 @@ impl<P: Planner> Axis<P> {
         self.record(event, &mut self.owner_scope(scope));
     }
 
-    /// The master went out of operation: no way onto the cam is looked for.
+    /// The master went out of operation: no way onto the cam is searched.
     pub(in crate::axis::coupling) fn hold_off_cam(&mut self) {
         if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.rung = Rung::Lost;
@@ -495,7 +500,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// By how much it is off the cam at its master's place, and whether that is too much.
+    /// Its present distance from the cam at its master's place, and whether that is too large.
     fn measure_on_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let here = self.place();
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
@@ -514,7 +519,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The end of a cam without periods at which the slave holds, moved on by what is `added` to that.
+    /// The end of a cam without periods where the slave holds, moved by the `added` distance.
     pub(super) fn held_end(&self, added: Option<&Setpoint>) -> Option<CamAt> {
         let on_cam = self
             .follower
@@ -529,7 +534,7 @@ impl<P: Planner> Axis<P> {
         Some(at)
     }
 
-    /// A cam without periods is over, and the slave holds its last place.
+    /// Whether a cam without periods is over and the slave holds its last place.
     pub(in crate::axis) fn holds_end_of_cam(&self) -> bool {
         self.follower
             .on_cam

@@ -1,10 +1,10 @@
-//! How the cam of an axis lies, for who draws it.
+//! The place of an axis's cam, for drawing.
 
 use super::Axis;
 use crate::CamId;
 use standstill_planner::{Anchor, Cam, CamLaw, Place, Planner, Setpoint};
 
-/// A cam as it lies between a slave and its master.
+/// A cam at its place between a slave and its master.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CamLaid {
     /// The cam.
@@ -19,19 +19,20 @@ impl CamLaid {
         master.place().turns
     }
 
-    /// Place of the master at the first row (u of the master), counted on from its turn of this number.
+    /// Place of the master at the first row (u of the master), counted from the turn with this number.
     pub fn begin(&self, cam: &Cam<'_>, turn: i64) -> f64 {
         let from = self.first_row(cam);
         let turns = from.turns.wrapping_sub(turn);
         from.position + self.law.master_turn.unwrap_or_default() * turns as f64
     }
 
-    /// Way of the master from the first row to the last (u of the master); below 0 if it goes back for that.
+    /// Distance of the master from the first row to the last (u of the master); negative if the master moves back.
     pub fn length(&self, cam: &Cam<'_>) -> f64 {
         (cam.head.end - cam.head.begin) * self.law.master_scaling
     }
 
-    /// Place of the slave (u) at this part of the way from the first row, 0, to the last, 1; turns are not taken off.
+    /// Place of the slave (u) at this part of the distance from the first row (0) to the last (1); not reduced to one
+    /// turn.
     pub fn slave_at(&self, cam: &Cam<'_>, part: f64) -> f64 {
         let from = self.first_row(cam);
         let place = Place {
@@ -60,7 +61,7 @@ impl CamLaid {
 }
 
 impl<P: Planner> Axis<P> {
-    /// The cam that the owner is on, once it lies somewhere.
+    /// The cam of the owner, once it has a place.
     pub fn cam_laid(&self) -> Option<CamLaid> {
         let on_cam = self.follower.on_cam.as_ref()?;
         Some(CamLaid {

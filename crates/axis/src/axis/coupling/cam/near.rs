@@ -1,5 +1,6 @@
-//! A shadow on a long way behind a master that comes round: its places are told, and its way is planned on, from near where it is. A
-//! place that is told from many turns away is as coarse as those are long, and so is the motion along it.
+//! A shadow far behind a master with turns. A place relative to a point many turns away is as coarse as that
+//! distance, and so is a motion along it. Therefore the place of the shadow is renewed in its present turn, and its
+//! way is planned again from there.
 
 use super::super::super::modulo::is_far;
 use super::super::super::{Axis, Motion};
@@ -10,12 +11,12 @@ use standstill_planner::turns::split;
 use standstill_planner::{Place, Planner};
 
 impl Curve<'_> {
-    /// A way (u of the master) is of several turns.
+    /// Whether a distance (u of the master) is several turns long.
     pub(super) fn is_long(&self, way: f64) -> bool {
         self.law.master_turn.is_some_and(|turn| is_far(way, turn))
     }
 
-    /// A place of the master, told in its turn if it was told from turns away.
+    /// A place of the master, expressed in its own turn if it was expressed from turns away.
     pub(super) fn told_near(&self, place: Place) -> Place {
         match self.law.master_turn {
             Some(turn) if self.is_long(place.position) => {
@@ -32,7 +33,7 @@ impl Curve<'_> {
 }
 
 impl<P: Planner> Axis<P> {
-    /// The place of the shadow is told from near it.
+    /// Expresses the place of the shadow in its own turn.
     pub(super) fn tell_shadow_near(&mut self, curve: &Curve<'_>) {
         if let Some(shadow) = self
             .follower
@@ -44,7 +45,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// After a long part of its way the shadow goes on along it by a plan from where it is. Cost: one plan.
+    /// After a long part of its way the shadow continues with a plan that starts at its present place. Cost: one
+    /// plan.
     pub(super) fn go_on_from_near(&mut self, view: &View<'_, P::Plan>, scope: &Scope<'_>) {
         let Some(on_cam) = self.follower.on_cam else {
             return;

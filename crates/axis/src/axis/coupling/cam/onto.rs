@@ -1,12 +1,13 @@
-//! How a slave comes onto its cam, and in step with its master: looked for whenever the master gets another plan, or a way ended.
+//! How a slave comes onto its cam, and in step with its master. The way is searched whenever the master gets another
+//! plan, or a way has ended.
 //!
 //! | the slave is | way |
 //! | --- | --- |
-//! | on the cam at its master's place, moving as that asks | in sync at once, if that keeps its limits as far as is known |
+//! | on the cam at its master's place, moving as the cam needs | in sync at once, if that keeps its limits as far as is known |
 //! | on the curve elsewhere | its shadow, a master of its own, comes in step with the real one: beside it, or onto its next stretch of constant velocity, or as fast as it may |
-//! | on the curve, where none of these keeps its limits | off the curve, and back as below |
+//! | on the curve, and none of these keeps its limits | off the curve, and back as below |
 //! | off the curve, master at rest | a move to the cam at the master's place |
-//! | off the curve, master moving | a move to a place of the curve further on, where it rests until its shadow sets off to be in step with the arriving master |
+//! | off the curve, master moving | a move to a place of the curve further on; there it is at rest until its shadow starts, in time to be in step with the arriving master |
 
 use super::super::super::commands::{Entry, ROUNDING, refusal};
 use super::super::super::{Axis, Motion};
@@ -20,25 +21,25 @@ use standstill_planner::{Anchor, Cam, CamLaw, Limits, Place, Plan, Planner, Setp
 /// A velocity left beside that of a line must be at least this part of the limit.
 pub(super) const LEAST: f64 = 1e-6;
 
-/// Places of the cam ahead of the master that are looked at, one by one.
+/// Places of the cam ahead of the master that are tried, one by one.
 const PLACES: u32 = 4;
 
-/// The master's next stretch of constant velocity: in how many scans it begins and ends, its velocity (u/s), and where a line of
-/// that velocity through it is now.
+/// The master's next stretch of constant velocity: the scans until it begins and until it ends, its velocity (u/s),
+/// and the present place of a line of that velocity through it.
 #[derive(Clone, Copy)]
 pub(super) struct Stretch {
     pub begin: u64,
     pub end: u64,
     pub velocity: f64,
     pub now: Place,
-    /// That line is ahead of the master until it begins.
+    /// The line is ahead of the master until the stretch begins.
     pub is_ahead: bool,
-    /// What the master does next is not known: the line is a guess that is made again at its end.
+    /// The master's motion ahead is not known: the line is a guess that is renewed at its end.
     pub is_guess: bool,
 }
 
-/// How a shadow sets off: by how much its master comes nearer meanwhile, without a sign, and its own way with one (u of the cam's
-/// master side).
+/// How a shadow starts from rest: the distance that its master gains meanwhile, without a sign, and its own signed
+/// distance (both in u of the cam's master side).
 struct Ramp {
     gained: f64,
     way: f64,
@@ -48,37 +49,39 @@ struct Ramp {
 pub(super) struct Way<Q> {
     pub motion: Motion<Q>,
     pub rung: Rung,
-    /// Scans until in sync; the largest number if not along this way.
+    /// Scans until in sync; the largest number if this way does not lead there.
     pub lock: u64,
-    /// Scans until it is looked for again.
+    /// Scans until the way is searched again.
     pub left: u64,
     pub name: Approach,
     pub velocity: f64,
     /// Limits of the shadow along it.
     pub shadow: Limits,
-    /// These limits leave the slave its own along this way only, not wherever it is on the cam.
+    /// With these limits the slave keeps its own along this way only, not at every place of the cam.
     pub slows: bool,
-    /// Its place is called so much more (u of the master): whole periods, as the master comes by once more.
+    /// The shadow's place is raised by this distance (u of the master): whole periods, because the master passes once
+    /// more.
     pub laps: f64,
-    /// It begins outside them.
+    /// It begins outside these limits.
     pub exceeds: bool,
     /// It leads ahead of its master.
     pub ahead: bool,
 }
 
-/// What is to be done.
+/// The decision.
 pub(super) enum Choice<Q> {
     Lock,
     Take(Way<Q>),
-    /// It goes on along its way.
+    /// It continues along its way.
     Stay,
-    /// There is no way now, it is looked for again after so many scans.
+    /// There is no way now. It is searched again after this number of scans.
     Wait(u64),
     Fail(ErrorId),
 }
 
 impl<P: Planner> Axis<P> {
-    /// Finds the way onto the cam, from the state at the end of the scan before; in sync at once only if it `may_lock`.
+    /// Finds the way onto the cam, from the state at the end of the last scan. It is in sync at once only if it
+    /// `may_lock`.
     pub(super) fn decide_on_cam(&mut self, view: &View<'_, P::Plan>, may_lock: bool, scope: &mut Scope<'_>) {
         let Some(on_cam) = self.follower.on_cam else {
             return;
@@ -121,7 +124,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Where the cam lies is settled, and whether the slave is on it.
+    /// Fixes the place of the cam, if that is not known yet, and finds whether the slave is on it.
     pub(super) fn lay_cam<'a>(&mut self, cam: Cam<'a>) -> Option<Curve<'a>> {
         let mut on_cam = self.follower.on_cam?;
         if on_cam.anchor.is_none() {
@@ -139,7 +142,7 @@ impl<P: Planner> Axis<P> {
         Some(curve)
     }
 
-    /// Where the cam lies that lies there at its `master`, from the places of both at the end of the scan before.
+    /// The place of a cam that has this place at its `master`, from the places of both at the end of the last scan.
     fn laid(&self, on_cam: &OnCam, cam: &Cam<'_>, master: Place) -> Anchor {
         let camming = &on_cam.camming;
         let was = on_cam.was.place;
@@ -165,7 +168,7 @@ impl<P: Planner> Axis<P> {
         };
         let on_curve = straight.at(cam, &without, was, &on_cam.was.at, 0).place.position;
         if camming.slave_absolute {
-            // Of the turns that mean the same the nearest one.
+            // The nearest of the turns that mean the same place.
             if let Some(modulo) = &self.modulo {
                 let length = modulo.length;
                 let place = law.at(cam, &anchor, was, &on_cam.was.at, 0).place;
@@ -174,7 +177,7 @@ impl<P: Planner> Axis<P> {
                 anchor.slave.turns = nearest as i64;
             }
         } else {
-            // The cam passes through where the slave is, but for the offset.
+            // The cam passes through the place of the slave, except for the offset.
             anchor.slave = Place {
                 turns: here.turns,
                 position: here.position,
@@ -184,7 +187,7 @@ impl<P: Planner> Axis<P> {
         anchor
     }
 
-    /// A slave that is not known to be on the curve may be, at its master's place.
+    /// Checks whether a slave that is not known to be on the curve is on it, at its master's place.
     pub(super) fn find_shadow(&mut self, curve: &Curve<'_>) {
         let here = self.place();
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
@@ -215,7 +218,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A shadow that is whole periods behind is where it would be without them.
+    /// Raises the place of a shadow that is whole periods behind by these periods.
     fn drop_periods(&mut self, curve: &Curve<'_>) {
         let Some(on_cam) = &self.follower.on_cam else {
             return;
@@ -227,13 +230,13 @@ impl<P: Planner> Axis<P> {
         let behind = apart(on_cam.was.place, shadow.place, turn);
         let period = curve.period();
         let whole = (behind / period) as i64 as f64;
-        // Ahead of a master that moves it lets that come.
+        // A shadow ahead of a moving master waits for it.
         if whole != 0.0 && whole * on_cam.was.at.velocity >= 0.0 {
             self.move_shadow(curve, whole * period);
         }
     }
 
-    /// The place of the shadow is called so much more (u of the master): whole periods.
+    /// Raises the place of the shadow by this distance (u of the master): whole periods.
     fn move_shadow(&mut self, curve: &Curve<'_>, by: f64) {
         let Some(on_cam) = &mut self.follower.on_cam else {
             return;
@@ -243,7 +246,7 @@ impl<P: Planner> Axis<P> {
             position: shadow.place.position + by,
             ..shadow.place
         });
-        // So is its way, where it stays on that.
+        // The start of its way moves, too, if it stays on that way.
         if let Rung::BesideLine { start, .. } | Rung::Corner { start } = &mut on_cam.rung {
             start.position += by;
         }
@@ -280,7 +283,7 @@ impl<P: Planner> Axis<P> {
             snap: 0.0,
         };
         let is_there = difference.position == 0.0 && difference.is_at_rest();
-        // Where the curve is level the slave rests, however its master moves.
+        // Where the curve is level the slave is at rest for any motion of its master.
         let is_there = is_there
             || ((meet(shadow.place, was.place, turn) || curve.bounds().is_level()) && {
                 let at = curve.at(was.place, &was.at, on_cam.at.piece);
@@ -294,7 +297,8 @@ impl<P: Planner> Axis<P> {
         }
         let along = self.in_step(curve, view, &shadow, &difference, &stretch);
         match along {
-            // Its limits come first: from here none of the ways along the curve keeps them, so it comes back onto it.
+            // Its limits come first: if no way along the curve keeps them, it leaves the curve and comes back onto
+            // it.
             Choice::Take(way) if way.exceeds => match self.onto_curve(curve, owner, &stretch) {
                 Choice::Wait(left) => self.braking(left).map_or(Choice::Take(way), Choice::Take),
                 off => off,
@@ -303,7 +307,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The stretch of its master's plan that the shadow is to be led onto.
+    /// The stretch of its master's plan onto which the shadow is led.
     pub(super) fn stretch_of_master(&self, on_cam: &OnCam, view: &View<'_, P::Plan>) -> Stretch {
         let (was, now) = (&on_cam.was, &view.now);
         let cycle = self.planner.cycle();
@@ -358,7 +362,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A move onto the curve: to the master's place where that rests or the curve is level, else to one it comes to.
+    /// A move onto the curve: to the master's place if the master is at rest or the curve is level, otherwise to a
+    /// place that the master reaches.
     fn onto_curve(&self, curve: &Curve<'_>, owner: &Entry, stretch: &Stretch) -> Choice<P::Plan> {
         let Some(on_cam) = &self.follower.on_cam else {
             return Choice::Wait(u64::MAX);
@@ -373,7 +378,8 @@ impl<P: Planner> Axis<P> {
         let cycle = self.planner.cycle();
         let speed = stretch.velocity / curve.law.master_scaling;
         let forwards = speed > 0.0;
-        // The way the master gains on a shadow that sets off at rest, on the cam's side; none if it can't be reached at all.
+        // The distance that the master gains on a shadow that starts from rest, on the cam's side. None if the shadow
+        // can't reach it at all.
         let gained = self.gained(curve, stretch);
         let Some(Ramp { gained, way }) = gained else {
             return self.never_in_step(curve, owner, stretch, head.periodic);
@@ -381,7 +387,7 @@ impl<P: Planner> Axis<P> {
         let (here, line) = (curve.unwound(on_cam.was.place), curve.unwound(stretch.now));
         let length = head.end - head.begin;
         let period = if head.periodic { length } else { 0.0 };
-        // To be in sync at a place its shadow sets off before that.
+        // To be in sync at a place, its shadow starts before it.
         let starts = on_cam.camming.start_distance != 0.0;
         let goal = on_cam
             .camming
@@ -418,7 +424,7 @@ impl<P: Planner> Axis<P> {
                 Err(error) => return Choice::Fail(error),
             };
             let needed = line + speed * (way.motion.scans() as f64 * cycle);
-            // How much earlier the master is there than the slave is ready.
+            // The distance by which the master is there before the slave is ready.
             let missing = if forwards { needed - place } else { place - needed } + gained;
             if missing <= 0.0 {
                 return Choice::Take(way);
@@ -427,7 +433,8 @@ impl<P: Planner> Axis<P> {
                 return Choice::Fail(ErrorId::SyncNotReachable);
             }
             if head.periodic && look + 2 >= PLACES {
-                // Nothing near: as many periods on as it takes, and one more for the way there, which may be another one.
+                // No near place is late enough: adds as many periods as needed, and one more, because the way there
+                // may differ.
                 let periods = (missing / length) as i64 as f64 + 1.0;
                 place += (periods * length).copysign(speed);
             } else if on_cam.camming.sync.is_some() {
@@ -441,19 +448,20 @@ impl<P: Planner> Axis<P> {
             last = Some(way);
         }
         match last {
-            // Onto the last place ahead, from which the shadow catches up, or waits for the next time round.
+            // Onto the last place tried. From there the shadow catches up, or waits for the next period.
             Some(way) if head.periodic || self.catches_up(curve, stretch) => Choice::Take(way),
             _ => Choice::Fail(ErrorId::SyncNotReachable),
         }
     }
 
-    /// The shadow can be faster than the stretch of its master.
+    /// Whether the shadow can be faster than the stretch of its master.
     fn catches_up(&self, curve: &Curve<'_>, stretch: &Stretch) -> bool {
         let [.., fastest] = self.speeds_of_shadow(curve, stretch);
         fastest > stretch.velocity.abs() * (1.0 + LEAST)
     }
 
-    /// No shadow comes into step: with periods the slave goes onto the curve all the same and lags, without it can't be.
+    /// No shadow comes into step. On a cam with periods the slave still goes onto the curve and lags. On one without
+    /// periods it fails.
     fn never_in_step(
         &self,
         curve: &Curve<'_>,
@@ -476,7 +484,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// How a shadow that sets off at rest comes to the velocity of its master; `None` if it can't.
+    /// How a shadow that starts from rest reaches the velocity of its master; `None` if it can't.
     fn gained(&self, curve: &Curve<'_>, stretch: &Stretch) -> Option<Ramp> {
         let rest = Setpoint::default();
         let [wanted, ..] = self.speeds_of_shadow(curve, stretch);
@@ -497,10 +505,10 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// A move to where the curve is for a master at `to`.
+    /// A move to the place of the curve for a master at `to`.
     ///
     /// # Errors
-    /// Why the slave may not go there.
+    /// The reason why the slave may not go there.
     fn move_onto(&self, curve: &Curve<'_>, owner: &Entry, to: Place) -> Result<Way<P::Plan>, ErrorId> {
         let near = self.follower.on_cam.as_ref().map_or(0, |on_cam| on_cam.at.piece);
         let at = curve.at(to, &Setpoint::default(), near);
@@ -543,7 +551,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The place of the shadow is called a period more.
+    /// Raises the place of the shadow by a period.
     fn lap_shadow(&mut self, by: f64, scope: &Scope<'_>) {
         let Some(on_cam) = self.follower.on_cam else {
             return;
@@ -554,7 +562,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// From now on along `way`.
+    /// Takes `way` from now on.
     pub(super) fn take_way_on_cam(&mut self, way: Way<P::Plan>, scope: &mut Scope<'_>) {
         let limits = self.slowed(&self.parameters.limits);
         self.mover.take_over_from(self.limits_before(&limits));
@@ -562,13 +570,13 @@ impl<P: Planner> Axis<P> {
         self.mover.start(way.motion, limits);
         self.arrival = Default::default();
         self.replan_due = false;
-        // A move of its own comes to rest.
+        // A move of its own ends at rest.
         let from = matches!(way.rung, Rung::Moving { .. }).then_some(0.0);
         let may_leave = self.may_leave_on_way(from);
         self.mover.watch(may_leave);
         let mut is_told = false;
         if let Some(on_cam) = &mut self.follower.on_cam {
-            // Behind a master whose motion is not known the same way along the curve is found again and again.
+            // Behind a master whose motion is not known, the same way along the curve is found many times.
             let is_along = |rung: Rung| {
                 let beside = matches!(rung, Rung::BesideLine { .. } | Rung::BesideMaster);
                 beside || matches!(rung, Rung::BesideMeasured { .. })
@@ -596,7 +604,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// To rest, within the limits of the slave; the way onto the curve is looked for again after so many scans, or there.
+    /// A way to rest, within the limits of the slave. The way onto the curve is searched again after this number of
+    /// scans.
     fn braking(&self, left: u64) -> Option<Way<P::Plan>> {
         let here = self.place();
         let start = Setpoint {
@@ -624,7 +633,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// There is no way now: it stays where it is, or comes to rest.
+    /// There is no way now: it stays at rest, or comes to rest.
     pub(super) fn wait_on_cam(&mut self, left: u64, scope: &mut Scope<'_>) {
         if !self.mover.setpoint().is_at_rest() {
             return match self.braking(left) {
@@ -667,8 +676,8 @@ impl<P: Planner> Axis<P> {
 }
 
 impl Curve<'_> {
-    /// The next place at which a row of the table lies, on the way of the master from `x`, neither taken back into one period; on a
-    /// cam without periods infinite where there is none.
+    /// The next place of a row of the table on the master's way from `x`; neither is reduced to one period. Infinite
+    /// on a cam without periods if there is none.
     fn next_row(&self, x: f64, forwards: bool) -> f64 {
         let cam = &self.cam;
         let (first, length) = (cam.head.begin, cam.head.end - cam.head.begin);
@@ -697,7 +706,8 @@ impl Curve<'_> {
     }
 }
 
-/// Whether a motion in one state may go on in another at the same place: what `limits` do not let jump is the same.
+/// Whether a motion may change from one state to another at the same place: each derivative that `limits` do not let
+/// jump is equal.
 pub(super) fn goes_on(last: &Setpoint, next: &Setpoint, limits: &Limits) -> bool {
     let near = |one: f64, other: f64, limit: f64, bound: f64| {
         !bound.is_finite() || (one - other).abs() <= ROUNDING * limit

@@ -1,5 +1,5 @@
-//! A master of the slave's own: how it comes into step with the real one, within limits that leave the slave its own wherever it is on the
-//! cam.
+//! The shadow: the slave's own master. It comes into step with the real master, within limits with which the slave
+//! keeps its own limits at every place of the cam.
 
 use super::super::super::commands::ROUNDING;
 use super::super::super::{Axis, Motion};
@@ -15,21 +15,23 @@ use standstill_planner::{DirectedLimits, Excess, Lead, Limits, MoveProfile, Plac
 /// Velocities of a shadow that are tried.
 const SPEEDS: usize = 4;
 
-/// So many scans ahead a shadow looks that has to slow down.
+/// The numbers of scans that a shadow which has to slow down looks ahead.
 const AHEAD: [f64; 7] = [10.0, 25.0, 50.0, 100.0, 200.0, 400.0, 800.0];
 
-/// How much more than it gains until its acceleration has faded out is left to a shadow that has to slow down: with the rates that
-/// the higher velocity leaves it gains more.
+/// A shadow that has to slow down still gets faster, until its acceleration is 0. It is left this factor times the
+/// velocity that it gains, because the rates that a higher velocity leaves let it gain more.
 const GAINED: f64 = 1.25;
 
-/// A part of a cam that is flatter than this part of its steepest bounds a shadow as if it were that steep.
+/// A part of a cam flatter than this share of its steepest part bounds a shadow as if it were that steep.
 const FLAT: f64 = 1e-3;
 
-/// The most a shadow may have of the highest velocity of its cam: above it nothing is left to its acceleration.
+/// The largest share of the highest velocity of its cam that a shadow may have. Above it nothing is left for its
+/// acceleration.
 pub(super) const FASTEST: f64 = 0.98;
 
 impl<P: Planner> Axis<P> {
-    /// Limits of the shadow with a velocity of its own (u/s of the master). `None` if nothing is left of the slave's.
+    /// Limits of the shadow with a velocity of its own (u/s of the master). `None` if nothing is left of the slave's
+    /// limits.
     pub(super) fn limits_of_shadow(
         &self,
         curve: &Curve<'_>,
@@ -39,14 +41,15 @@ impl<P: Planner> Axis<P> {
         let limits = self.slowed(&self.parameters.limits);
         let bounds = curve.bounds();
         let highest = bounds.highest_velocity(&limits).min(f64::MAX);
-        // As fast as it is already it may be in any case.
+        // Its present velocity is always allowed.
         let present = shadow.velocity.abs().min(0.999 * highest);
         let found = bounds.shadow(&limits, wanted.max(present), present)?;
         Some(bounded(&found))
     }
 
-    /// Velocities of a shadow that comes into step with a stretch: hardly more than that leaves most of the acceleration, the highest
-    /// one least; which is soonest is a matter of the way. Where the stretch is too fast, those that fall behind.
+    /// Velocities of a shadow that comes into step with a stretch. The lowest one leaves most of the acceleration,
+    /// the highest one least. The distance decides which is soonest in step. If the stretch is too fast, these are
+    /// lower velocities, with which the shadow falls behind.
     pub(super) fn speeds_of_shadow(&self, curve: &Curve<'_>, stretch: &Stretch) -> [f64; SPEEDS] {
         let limits = self.slowed(&self.parameters.limits);
         let highest = curve.bounds().highest_velocity(&limits).min(1e12);
@@ -57,9 +60,10 @@ impl<P: Planner> Axis<P> {
         [0.1, 0.4, 0.7, 1.0].map(|share| speed + share * (FASTEST * highest - speed))
     }
 
-    /// The way of the shadow into step with its master that is soonest there.
+    /// The way of the shadow that is soonest in step with its master.
     ///
-    /// What brings a shadow inside lower limits than it has now keeps neither: such a way is taken only where there is no other.
+    /// A way that brings a shadow inside limits lower than its present ones exceeds them. It is taken only if there
+    /// is no other.
     pub(super) fn in_step(
         &self,
         curve: &Curve<'_>,
@@ -77,7 +81,7 @@ impl<P: Planner> Axis<P> {
                 *best = Some(way);
             }
         };
-        // Where it is now the master comes by once more a period later.
+        // The master passes its present place again one period later.
         let can_wait = curve.repeats() && stretch.velocity != 0.0;
         let speeds = self.speeds_of_shadow(curve, stretch);
         let wanted = speeds.map(|wanted| self.limits_of_shadow(curve, &shadow.at, wanted));
@@ -95,7 +99,8 @@ impl<P: Planner> Axis<P> {
             }
         }
         if let Some(near) = stretch.near(view) {
-            // The line only leads near its master. A shadow that waits for that does so beside the line, as the master itself may jitter.
+            // The line only leads near its master. A shadow that waits for its master waits beside the line, because
+            // the master itself may jitter.
             let line = best.as_ref().filter(|way| !way.exceeds);
             let line = line.map_or(u64::MAX, |way| way.lock);
             let waits = stretch.comes(shadow, difference) && line > near;
@@ -113,7 +118,8 @@ impl<P: Planner> Axis<P> {
             best.as_ref()
                 .is_none_or(|way| way.exceeds || way.lock == u64::MAX)
         };
-        // Beside its master it gets ahead of it only where it does so along the other ways, too, or is not in step along them.
+        // The way beside the master that gets ahead of it is used only if the other ways get ahead, too, or do not
+        // lead into step.
         if is_missing(&best) || best.as_ref().is_some_and(|way| way.ahead) {
             take(&mut best, ahead);
         }
@@ -121,7 +127,7 @@ impl<P: Planner> Axis<P> {
             let is_outside = best.as_ref().is_some_and(|way| way.exceeds);
             for limits in all {
                 let mut pace = self.at_shadow_pace(view, shadow, stretch, &limits);
-                // What exceeds from here may not do so a little later.
+                // A way that exceeds the limits from here may keep them a little later.
                 if let (true, Some(way)) = (is_outside, &mut pace) {
                     way.left = way.left.min(self.next_switch_along(way));
                 }
@@ -154,9 +160,9 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The shadow is faster than it may be anywhere on the cam, where the cam is flat: it comes down to less as fast as that part
-    /// allows, before it is at a steeper one or so that it keeps the limits there, too. Cost: at most 14 ramps and seven looks
-    /// along them.
+    /// A way for a shadow that is faster than the limit for the whole cam, on a flat part of the cam. It slows down
+    /// as fast as the flat part allows. It has slowed down before a steeper part begins, or keeps the limits there,
+    /// too. Cost: at most 14 ramps and checks along seven of them.
     fn slowing_down(&self, curve: &Curve<'_>, shadow: &Shadow) -> Option<Way<P::Plan>> {
         let limits = self.slowed(&self.parameters.limits);
         let speed = shadow.at.velocity.abs();
@@ -187,7 +193,7 @@ impl<P: Planner> Axis<P> {
             let Some((mut plan, mut own)) = within(speed) else {
                 continue;
             };
-            // Until its acceleration has faded out it gets faster.
+            // It gets faster until its acceleration is 0.
             let gained = plan.excess().map_or(0.0, |excess| excess.velocity);
             if gained > 0.0 {
                 let Some(faster) = within(speed + GAINED * gained) else {
@@ -239,7 +245,7 @@ impl<P: Planner> Axis<P> {
         found
     }
 
-    /// The limits of the shadow in motion, inside which it is.
+    /// The limits of the shadow in motion, which it keeps.
     pub(super) fn shadow_limits_now(&self) -> Option<Limits> {
         let on_cam = self.follower.on_cam.as_ref()?;
         match on_cam.rung {
@@ -255,15 +261,15 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// It comes down to a velocity that it may have anywhere on the cam.
+    /// Whether it slows down to a velocity that is allowed on the whole cam.
     fn is_slowing_down(&self) -> bool {
         let is_under_way =
             matches!(self.mover.motion(), Motion::Closing { elapsed, scans, .. } if elapsed < scans);
         is_under_way && self.follower.on_cam.as_ref().is_some_and(|on_cam| on_cam.slows)
     }
 
-    /// Beside the master: the difference comes to 0. None where that is not known to keep the limits, or goes a way that its master does
-    /// not go.
+    /// A way beside the master that takes the difference to 0. None if it is not known to keep the limits, or moves
+    /// the shadow in a direction in which its master does not move.
     fn beside_master(
         &self,
         view: &View<'_, P::Plan>,
@@ -304,7 +310,7 @@ impl<P: Planner> Axis<P> {
             Some(plan) => plan,
             None => attempt(&self.room_beside(&leads, limits)?)?,
         };
-        // It comes from behind and stays there.
+        // Whether it starts behind its master and then gets ahead of it.
         let forwards = 1.0_f64.copysign(lead.plan.at(lead.elapsed.saturating_add(1)).velocity * lead.factor);
         let (lowest, highest) = self.planner.reach((&plan, 0));
         let furthest = difference.position + if forwards > 0.0 { highest } else { lowest };
@@ -316,8 +322,9 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The same beside a master whose motion ahead is not known, with half of the limits that it leaves the shadow now. Each step is
-    /// checked before it is made. There is none again if the half was not enough in this step.
+    /// The same beside a master whose motion ahead is not known, with half of the limits that it leaves the shadow
+    /// now. Each step is checked before it is made. There is no such way again if the half was not enough in this
+    /// step.
     fn beside_measured_master(
         &self,
         view: &View<'_, P::Plan>,
@@ -340,7 +347,7 @@ impl<P: Planner> Axis<P> {
         Some(beside(plan, Rung::BesideMeasured { room }, difference, limits))
     }
 
-    /// Whether the rest of this plan leads its master that way at all: up (1) or down (-1).
+    /// Whether the rest of this plan moves its master in this direction at all: up (1) or down (-1).
     fn goes(&self, lead: &Lead<'_, P::Plan>, side: f64) -> bool {
         let (up, down) = self.planner.ways((lead.plan, lead.elapsed));
         let side = side * lead.factor;
@@ -348,7 +355,7 @@ impl<P: Planner> Axis<P> {
         (if side > 0.0 { up } else { down }) > 0.0 || side * end > 0.0
     }
 
-    /// Onto the next stretch of the master, or where that comes by so many `laps` later (u of the master).
+    /// A way onto the next stretch of the master, or onto the same stretch `laps` later (u of the master).
     pub(super) fn beside_stretch_of_master(
         &self,
         shadow: &Shadow,
@@ -360,7 +367,8 @@ impl<P: Planner> Axis<P> {
         let speed = stretch.velocity.abs();
         let along = limits.velocity - speed;
         let turn = curve.law.master_turn.unwrap_or(0.0);
-        // Beside a line through the shadow: places beside one far away would be as coarse as that is far.
+        // Relative to a line through the shadow: places relative to a line far away would be as coarse as that
+        // distance.
         let start = Setpoint {
             position: 0.0,
             velocity: shadow.at.velocity - stretch.velocity,
@@ -400,7 +408,8 @@ impl<P: Planner> Axis<P> {
         let scans = u64::from(plan.scans());
         let arrives = scans.max(stretch.begin);
         let is_in_time = stretch.is_guess || arrives <= stretch.end;
-        // One that still moves against the stretch is faster beside it than it will be, and yet within its limits.
+        // A shadow that still moves against the stretch has a higher velocity relative to it than later, and may
+        // still keep its limits.
         let exceeds = plan.excess().is_some_and(|excess| leaves(&excess, limits))
             && !self.keeps_beside_line(&shadow.at, stretch.velocity, &plan, limits);
         Some(Way {
@@ -425,7 +434,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// A motion from `now` by this plan beside a line of this `velocity` (u/s) keeps the limits.
+    /// Whether a motion from `now` by this plan beside a line of this `velocity` (u/s) keeps the limits.
     fn keeps_beside_line(&self, now: &Setpoint, velocity: f64, plan: &P::Plan, limits: &Limits) -> bool {
         let steady = Setpoint {
             velocity,
@@ -443,7 +452,7 @@ impl<P: Planner> Axis<P> {
             .fits_behind(&[Some(line), None], now, Some((plan, 0)), limits)
     }
 
-    /// As fast as the shadow may go, the way its master goes.
+    /// A way as fast as the shadow may go, in the direction of its master.
     pub(super) fn at_shadow_pace(
         &self,
         view: &View<'_, P::Plan>,
@@ -485,7 +494,7 @@ impl<P: Planner> Axis<P> {
     }
 }
 
-/// The way by a `plan` of the `difference` from what a shadow goes beside, within these `limits` of the shadow.
+/// The way by a `plan` that takes the `difference` to 0, within these `limits` of the shadow.
 fn beside<Q: Plan>(plan: Q, rung: Rung, difference: &Setpoint, limits: &Limits) -> Way<Q> {
     Way {
         exceeds: false,
@@ -503,19 +512,19 @@ fn beside<Q: Plan>(plan: Q, rung: Rung, difference: &Setpoint, limits: &Limits) 
 }
 
 impl Stretch {
-    /// Ahead of the line a shadow lets it come, which is never against the master; one that goes to meet it already goes on. Onto a
-    /// master at rest it may go either way.
+    /// Whether a shadow ahead of the line waits for it, without moving against the master. A shadow that already
+    /// moves against the line continues to do so. Onto a master at rest it may move in either direction.
     fn lets_come(&self, shadow: &Shadow) -> bool {
         self.velocity != 0.0 && shadow.at.velocity * self.velocity >= 0.0
     }
 
-    /// The shadow is ahead of its master, and lets it come.
+    /// Whether the shadow is ahead of its master and waits for it.
     fn comes(&self, shadow: &Shadow, difference: &Setpoint) -> bool {
         difference.position * self.velocity > 0.0 && self.lets_come(shadow)
     }
 
-    /// So many scans before it comes onto this line a way gives way to one beside the master itself; none where that is known to come onto
-    /// the line. A master that is even now may be on it.
+    /// The number of scans before the shadow reaches this line at which a way beside the master itself takes over.
+    /// None if the motion of the master is known. A master that moves evenly now may be on the line.
     fn near<Q: Plan>(&self, view: &View<'_, Q>) -> Option<u64> {
         let now = &view.now.at;
         let is_on_line = now.velocity == self.velocity && now.acceleration == 0.0 && now.jerk == 0.0;
@@ -524,7 +533,7 @@ impl Stretch {
     }
 }
 
-/// A cam that hardly moves leaves more than numbers hold.
+/// Limits the numbers, because a cam that hardly moves leaves more than they can hold.
 fn bounded(limits: &Limits) -> Limits {
     let most = |limit: f64, most: f64| if limit.is_finite() { limit.min(most) } else { limit };
     Limits {

@@ -1,4 +1,5 @@
-//! MC_CamIn with a MasterStartDistance: a start that waits for a place of the master, and a way that is in sync at its sync position.
+//! MC_CamIn with a MasterStartDistance: a start that waits for a place of the master, and a way that is in sync at
+//! its sync position.
 
 use super::super::super::Axis;
 use super::super::super::commands::{Camming, Entry, ROUNDING};
@@ -11,7 +12,8 @@ use standstill_planner::turns::split;
 use standstill_planner::{CamHead, Place, Plan, Planner};
 
 impl Camming {
-    /// Where the cam lies at its master, which was there at the end of the scan before, and which place of the cam that is.
+    /// The place of the cam at its master, which was at `was` at the end of the last scan, and the place of the cam
+    /// there.
     pub(in crate::axis::coupling) fn laid(&self, was: Place, head: &CamHead) -> (Place, f64) {
         let place = Place {
             turns: was.turns,
@@ -22,13 +24,13 @@ impl Camming {
                 was.position + was.phase
             },
         };
-        // A cam that is counted from where its master is begins there.
+        // A cam with relative master places begins at the master's place.
         (place, if self.master_absolute { 0.0 } else { head.begin })
     }
 }
 
 impl<P: Planner> Axis<P> {
-    /// What the cam of the owner was laid by while it waited for its start point.
+    /// Notes the place of the owner's cam that was fixed while it waited for its start point.
     pub(in crate::axis::coupling) fn note_start_on_cam(&mut self, laid: Option<(Place, f64)>) {
         if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.begins = laid;
@@ -36,7 +38,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether a cam that starts now, behind a master that was seen there and where it was laid before, is in sync in time.
+    /// Checks that a cam that starts now is in sync in time, behind a master `seen` there and at the place `laid`
+    /// before.
     pub(in crate::axis::coupling) fn cam_starts(
         &mut self,
         entry: &Entry,
@@ -94,7 +97,7 @@ impl<P: Planner> Axis<P> {
         }
         let heading = 1.0_f64.copysign(distance);
         let further = match way.rung {
-            // It is there in time, and in sync from that place of the master on.
+            // The slave is there in time, and in sync from that place of the master on.
             Rung::Moving { to: Some(to), .. } => curve.unwound(to) - curve.unwound(on_cam.was.place),
             _ => self.way_of_cam_master(view, way.lock) / curve.law.master_scaling,
         };
@@ -105,7 +108,7 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
-    /// How far (u) the master comes in so many scans from the end of the scan before, as far as is known.
+    /// The distance (u) that the master covers in this many scans from the end of the last one, as far as is known.
     fn way_of_cam_master(&self, view: &View<'_, P::Plan>, scans: u64) -> f64 {
         let even = view.now.at.velocity * self.planner.cycle();
         match self.lead_of_master(view) {
@@ -119,7 +122,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// In sync for the first time: told if the master is past its sync position by more than a scan.
+    /// In sync for the first time: records if the master has passed its sync position by more than a scan.
     pub(super) fn note_sync_on_cam(&self, scope: &mut Scope<'_>) {
         let Some(on_cam) = &self.follower.on_cam else {
             return;
@@ -138,7 +141,7 @@ impl<P: Planner> Axis<P> {
         } else {
             past
         };
-        // Further than half a period behind it is before the next one.
+        // More than half a period behind means ahead of the next one.
         let is_before = cam.head.periodic && past > 0.5 * length;
         let speed = on_cam.shadow.map_or(0.0, |shadow| shadow.at.velocity.abs());
         let by = past * scaling.abs();
@@ -149,7 +152,8 @@ impl<P: Planner> Axis<P> {
 }
 
 impl Curve<'_> {
-    /// How far the master is from its sync position (u of the cam's master side), in the direction in which it starts.
+    /// The distance from the master to its sync position (u of the cam's master side), in the direction in which it
+    /// starts.
     pub(super) fn left_to_sync(&self, on_cam: &OnCam) -> f64 {
         let head = self.cam.head;
         let heading = 1.0_f64.copysign(on_cam.camming.start_distance);

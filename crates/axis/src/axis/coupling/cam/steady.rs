@@ -7,8 +7,9 @@ use crate::{Scope, ValueSource};
 use standstill_planner::{Limits, Planner, Setpoint};
 
 impl OnCam {
-    /// Nothing of the cam keeps the next step from being that of a scan in which nothing is new: the slave is in sync behind the
-    /// set-point of its master, and the cam is not over and has no corners. The limits of the slave are these, and its coordinates have moved so often.
+    /// Whether the cam permits a next step in which nothing is new. The slave is in sync behind the set-point of its
+    /// master, the cam is not over and has no corners, the limits of the slave are these, and its coordinates have
+    /// moved this many times.
     pub(in crate::axis::coupling) fn may_go_on(&self, limits: &Limits, moves: u32) -> bool {
         self.rung.is_locked()
             && self.camming.source == ValueSource::Set
@@ -23,8 +24,8 @@ impl OnCam {
 }
 
 impl<P: Planner> Axis<P> {
-    /// [`Axis::follow_steadily`] on a cam, behind a master that follows this `plan`: its axis, and the scans after its start. Also where
-    /// an end of the cam is reached something is new.
+    /// [`Axis::follow_steadily`] on a cam, behind a master that follows this `plan`: its axis, and the scans after
+    /// its start. A scan in which an end of the cam is reached also counts as new.
     ///
     /// Cost: one evaluation of the cam.
     pub(in crate::axis::coupling) fn follow_cam_steadily(
