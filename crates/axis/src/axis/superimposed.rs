@@ -1,4 +1,4 @@
-//! A second motion on top of the owner's: what MC_MoveSuperimposed adds and MC_HaltSuperimposed ends.
+//! A second motion on top of the owner's: MC_MoveSuperimposed adds it and MC_HaltSuperimposed ends it.
 //!
 //! The owner's set-point and the added motion are planned apart and published as their sum, so the owner
 //! keeps its time and path. The added motion must leave the sum inside the limits of the axis. It is used
@@ -42,11 +42,11 @@ pub(super) struct Added {
     pub id: CommandId,
     instance: InstanceId,
     adds: Adds,
-    /// As the limits of the application lower them and the override scales them.
+    /// Its limits, lowered by those of the application and scaled by the override.
     limits: Limits,
     /// As commanded.
     asked: Limits,
-    /// The override holds it: it comes to rest, and continues when the factor of the velocity is raised.
+    /// The override holds it: it comes to rest, and continues when the velocity factor is raised.
     halting: bool,
     progress: Progress,
     /// No block follows it: its instance was triggered anew and refused.
@@ -93,7 +93,8 @@ impl Added {
 pub(super) struct Layer<Plan> {
     /// Set-point of the owner alone.
     base: Setpoint,
-    /// The owner's motion was even for so many scans; see [`even_scans`]. Counted on an axis with a shaper.
+    /// The number of scans in which the owner's motion was even; see [`even_scans`]. Counted on an axis with a
+    /// shaper.
     even: u32,
     /// The added motion; its position counts from the start of the layer.
     added: Setpoint,
@@ -103,12 +104,12 @@ pub(super) struct Layer<Plan> {
     motion: Motion<Plan>,
     /// Limits of that motion.
     in_force: Limits,
-    /// Limits of the one it took over from.
+    /// Limits of the motion that it took over from.
     before: Limits,
     command: Option<Added>,
     /// Scan of the owner's plan from which a command that waits or was lowered may find more room.
     retry: u64,
-    /// What has been found for the command.
+    /// The results of the search for the command.
     search: Search,
 }
 
@@ -138,7 +139,7 @@ impl<P: Plan> Layer<P> {
         &self.added
     }
 
-    /// What the added motion comes from.
+    /// The motion of the added part.
     pub fn motion(&self) -> &Motion<P> {
         &self.motion
     }
@@ -148,7 +149,7 @@ impl<P: Plan> Layer<P> {
         self.even
     }
 
-    /// The owner is about to be at `base`.
+    /// Notes that the owner is going to be at `base`.
     pub fn count_even(&mut self, base: &Setpoint, coarsest: f64) {
         self.even = even_scans(self.even, &self.base, base, coarsest);
     }
@@ -169,7 +170,7 @@ impl<P: Plan> Layer<P> {
         self.base.position += by;
     }
 
-    /// The part of the added distance that the owner's frame has in it (u).
+    /// The part of the added distance that the positions in the owner's frame contain (u).
     pub fn taken(&self) -> f64 {
         self.taken
     }
@@ -256,13 +257,14 @@ impl<P: Plan> Layer<P> {
         self.search = Search::NEW;
     }
 
-    /// The place of the axis once everything is added to the owner at `position` (u).
+    /// The place of the axis once everything is added, with the owner at `position` (u).
     pub fn end_above(&self, position: f64) -> f64 {
         position + (self.added.position - self.taken) + self.left()
     }
 
-    /// The same for whatever part of the rest is added by then: the place that is farthest `forward`, or back. `is_owner` says whether
-    /// it is the owner's place, or that of the command that takes over from it now.
+    /// The same for any part of the rest that may be added by then: the place that is farthest `forward`, or farthest
+    /// back. `is_owner` says whether `position` is the owner's place, or that of the command that takes over from it
+    /// now.
     pub fn farthest_above(&self, position: f64, forward: bool, is_owner: bool) -> f64 {
         let added = if is_owner {
             self.added.position - self.taken
@@ -286,7 +288,8 @@ impl<P: Planner> Axis<P> {
     /// Takes MC_MoveSuperimposed, or refuses it without any effect (R38). It aborts only an earlier
     /// superimposed command (R66), and takes over from its motion.
     ///
-    /// Cost: where the owner moves that of `Axis::soonest`: at most 48 plans, and 16 in a later scan; else at most 7. Each is laid over the owner's.
+    /// Cost: if the owner moves, that of `Axis::soonest`: at most 48 plans, and 16 in a later scan; otherwise at most
+    /// 7. Each is laid over the owner's plan.
     ///
     /// # Errors
     /// The [`ErrorId`] the block shows; the refusal is recorded with pin, value and limit. A lack of room
@@ -421,12 +424,13 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// Whether something is yet to be superimposed.
+    /// Whether some distance is still to be superimposed.
     pub(super) fn is_superimposing(&self) -> bool {
         self.mover.layer().is_some_and(Layer::is_busy)
     }
 
-    /// The highest speed (u/s) that is still to come from what is superimposed: no higher than its way lets it stop from.
+    /// The highest speed (u/s) that the superimposed motion can still reach. It is limited to one from which it can
+    /// stop in its distance.
     ///
     /// Cost: one ramp or root of ramps.
     pub(super) fn superimposed_speed(&self) -> f64 {
@@ -453,7 +457,7 @@ impl<P: Planner> Axis<P> {
         self.mover.layer().map_or(0.0, Layer::left)
     }
 
-    /// The states it may start in (R64, S9).
+    /// Checks that it may start in this state (R64, S9).
     fn admit_superimposed(&self) -> Result<(), ErrorId> {
         if self.power.is_going_off() {
             return Err(ErrorId::PoweringOff);
@@ -514,8 +518,8 @@ impl<P: Planner> Axis<P> {
         self.decide(command.id, fate);
     }
 
-    /// Superimposed command `id` waits for room, or is held up, and its instance gives another one: its
-    /// motion comes to rest. Returns whether this was so.
+    /// Superimposed command `id` waits for room, or is held up, and its instance gives another command: its motion
+    /// comes to rest. Returns whether that is the case.
     pub(super) fn withdraw_superimposed(&mut self, id: CommandId) -> bool {
         let Some(layer) = self.mover.layer_mut() else {
             return false;
@@ -630,7 +634,7 @@ impl<P: Planner> Axis<P> {
             self.end_of_superimposed(scope);
         }
         let still = !matches!(self.mover.motion(), Motion::Run { .. });
-        // A paused owner goes on to its end later, and that lies where something has been added.
+        // A paused owner continues to its end later. That end has moved by the added distance.
         let keeps = |layer: &Layer<P::Plan>| self.is_paused() && layer.added.position != layer.taken;
         let kept = self.mover.layer().is_some_and(keeps);
         let is_idle = self.mover.layer().is_some_and(|layer| layer.command.is_none());
@@ -647,7 +651,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Where nothing is superimposed any more, what waits behind the owner is blended again. Where nothing has been added, there is one motion.
+    /// When nothing is superimposed any more, a command that waits behind the owner is blended again. If nothing has
+    /// been added, there is one motion.
     fn end_of_superimposed(&mut self, scope: &mut Scope<'_>) {
         let Some(layer) = self
             .mover

@@ -1,12 +1,12 @@
-//! What is superimposed on a slave.
+//! A superimposed motion on a slave.
 //!
 //! In gear the set-point is the law, with the place of the slave moved by the added distance. Once the
 //! distance is added it stays in the law, to the bit. Room is checked in the motion step, after the
 //! master has moved and when its plan is known. When the slave loses its law, the added motion passes its
 //! velocity to the slave, and the rest of the distance waits.
 //!
-//! Source: PLCopen Motion Control Part 1, MC_MoveSuperimposed, MC_HaltSuperimposed. What the standard leaves open is told in
-//! docs/coupling.md.
+//! Source: PLCopen Motion Control Part 1, MC_MoveSuperimposed, MC_HaltSuperimposed. docs/coupling.md states what the
+//! standard leaves open.
 
 use super::plan::{Proposal, Room};
 use super::{Added, Adds, Layer, Progress};
@@ -24,7 +24,7 @@ impl<P: Planner> Axis<P> {
         self.stir();
     }
 
-    /// Refuses what could not be added even to a master at rest.
+    /// Refuses a command that could not be added even to a master at rest.
     ///
     /// # Errors
     /// The planner refuses the original command, or MC_Power bars its direction.
@@ -36,12 +36,12 @@ impl<P: Planner> Axis<P> {
         self.propose_within(layer, command, room, |_| true).map(|_| ())
     }
 
-    /// Something is being superimposed, and moves.
+    /// Whether something is being superimposed, and moves.
     pub(in crate::axis) fn adds_motion(&self) -> bool {
         self.mover.layer().is_some_and(Layer::moves)
     }
 
-    /// A halt of a superimposed motion that finds nothing in motion is done.
+    /// A halt of a superimposed motion that finds no motion is done.
     pub(in crate::axis) fn end_idle_halt(&mut self) {
         let idle = |layer: &Layer<P::Plan>| {
             !layer.moves() && layer.command.is_none_or(|command| command.adds == Adds::Halt)
@@ -62,9 +62,9 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Before the step of a slave: a motion without room beside the law slows down, and a command that
-    /// waits for room begins. `is_new`: the master's motion differs from the known one, or a limit has
-    /// changed. The slave loses its gear for lack of room if it `may_lose` it.
+    /// Before the step of a slave: slows down a motion without room beside the law, and starts a command that waits
+    /// for room. `is_new` says that the master's motion differs from the known one, or a limit has changed. For lack
+    /// of room the slave loses its gear only if it `may_lose` it.
     ///
     /// Cost: at most nine plans, each laid over the master's.
     pub(in crate::axis) fn superimpose_behind(
@@ -90,7 +90,7 @@ impl<P: Planner> Axis<P> {
         self.begin_behind(view, scope);
     }
 
-    /// Records once that a command waits.
+    /// Records a command that waits, once.
     fn tell_waiting(&mut self, scope: &mut Scope<'_>) {
         let Some(layer) = self.mover.layer_mut().filter(|layer| layer.retry == 0) else {
             return;
@@ -125,7 +125,7 @@ impl<P: Planner> Axis<P> {
         let Motion::Run { plan, elapsed, .. } = &motion else {
             return;
         };
-        // If the way of the master is not known, each step is checked.
+        // If the master's motion ahead is not known, each step is checked.
         if !self.sees_law(view)
             || view.future.kind() == Kind::Measured
             || self.fits_law(view, (plan, *elapsed), &scope.cams)
@@ -194,7 +194,7 @@ impl<P: Planner> Axis<P> {
         if let Some(layer) = self.mover.layer_mut() {
             layer.retry = match next {
                 Some((switch, now)) if switch > now => switch,
-                // Nothing changes until the master does.
+                // Nothing changes until the master's motion changes.
                 _ => u64::MAX,
             };
         }
@@ -377,7 +377,7 @@ impl<P: Planner> Axis<P> {
         }
         layer.added = Setpoint::at_rest(added.position);
         layer.motion = Motion::Hold;
-        // It is at rest now, and more may fit from there.
+        // It is at rest now, so more may fit from here.
         layer.try_soon();
         let is_done = |command: &Added| !command.halting && (command.runs() || command.adds == Adds::Halt);
         if layer.command.as_ref().is_none_or(is_done) {
@@ -385,7 +385,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// After the step of a slave: its own part of the set-point is the part that is not added.
+    /// After the step of a slave: notes the slave's own part of the set-point, without the added motion.
     pub(in crate::axis) fn note_own_part(&mut self) {
         let all = *self.mover.setpoint();
         let Some(layer) = self.mover.layer_mut() else {

@@ -17,7 +17,7 @@ const SLOWER: [f64; PROPOSALS - 3] = [0.75, 0.5, 0.25, 0.125];
 pub(super) struct Proposal<Plan> {
     pub plan: Plan,
     pub limits: Limits,
-    /// It is not the commanded one.
+    /// It differs from the commanded one.
     pub lowered: bool,
 }
 
@@ -28,13 +28,13 @@ fn min(a: f64, b: f64) -> f64 {
 /// The room that the owner's motion always leaves.
 pub(super) struct Room {
     pub limits: Limits,
-    /// It is endless: there will be no more room than now.
+    /// The owner's motion is endless: there will never be more room than now.
     pub endless: bool,
 }
 
 impl Room {
-    /// `asked`, or the part of it that is free. `None` if nothing is free, or if it is less than the
-    /// slowest proposal takes and the owner's motion will end: then waiting is faster.
+    /// The free part of `asked`. `None` if nothing is free. Also `None` if it is less than the slowest proposal needs
+    /// and the owner's motion will end: then waiting is faster.
     fn of(&self, asked: f64, free: f64, least: f64) -> Option<f64> {
         let least = if self.endless { 0.0 } else { least * asked };
         (free >= asked || (free > 0.0 && free >= least)).then_some(min(asked, free))
@@ -123,7 +123,7 @@ impl<P: Planner> Axis<P> {
             }
             return self.soonest(layer, command, &room(), &Below { rest, axis, range }, search);
         }
-        // A motion over nothing may not turn outside the software limits either.
+        // A motion of distance 0 may not reverse outside the software limits either.
         let still = Setpoint::at_rest(layer.base.position);
         let hold = range.and_then(|_| self.planner.ramp_to(&still, 0.0, axis, axis).ok());
         let base = base.or(hold.as_ref().map(|plan| (plan, 0)));
@@ -132,8 +132,8 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// Whether the owner's end, if that is passed for a blended command, may be passed with `command` in motion: both together have to stop
-    /// inside the software limits from there.
+    /// Whether the owner may pass its end for a blended command with `command` in motion: from there both together
+    /// have to stop inside the software limits.
     fn may_run_past_the_end(&self, layer: &Layer<P::Plan>, command: &Added, rest: (&P::Plan, u64)) -> bool {
         let blends = self
             .owner
@@ -190,8 +190,8 @@ impl<P: Planner> Axis<P> {
                     {
                         return Err(error);
                     }
-                    // Alone it exceeds the axis limits only if it takes over from a motion for which its
-                    // own limits are too low. That motion may continue instead.
+                    // Alone it exceeds the axis limits only if it takes over from a motion for which its own limits
+                    // are too low. That motion may continue instead.
                     let motion = Motion::along(plan);
                     if !self.exceeds(&motion) && fits(&plan) {
                         let is_faster = u64::from(plan.scans()) < layer.scans_in_progress(command);
@@ -203,7 +203,7 @@ impl<P: Planner> Axis<P> {
                     }
                 }
                 Err(error) if index == 0 => return Err(refusal(error)),
-                // Slower is longer still.
+                // A slower motion takes even longer.
                 Err(_) => break,
             }
         }
@@ -425,7 +425,7 @@ impl<P: Planner> Axis<P> {
         if !self.fits_under(&motion, &layer) {
             motion = self.plan_from(entry, self.mover.setpoint(), &self.limits_before(&entry.limits))?;
             if self.exceeds(&motion) {
-                // It cannot take over this velocity either; soon the velocity is lower.
+                // It cannot take over this velocity either. The velocity will be lower soon.
                 return Ok(None);
             }
             layer.pass_velocity(*self.mover.setpoint());

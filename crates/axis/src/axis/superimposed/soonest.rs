@@ -1,12 +1,13 @@
-//! A superimposed distance on top of an owner in motion: of all motions that are tried it takes the one that ends first.
+//! A superimposed distance on top of an owner in motion. Of all motions that are tried, the one that ends first is
+//! taken.
 //!
-//! Where the owner uses a limit to the full, no pace is slow enough for the added motion to change the same way. So what
-//! matters is where its changes lie beside those of the owner. Which limits put them there is found by trying: motions with
-//! some of the limits lowered start now or, from rest, at a later switch of the owner's plan. A slower one now may end even
-//! sooner: it goes on faster at one of the next switches.
+//! While the owner uses a limit fully, even a slow added motion cannot change in the same direction. So the added
+//! motion has to change when the owner leaves room for it. The limits for that are found by trying. Motions with some
+//! of the limits lowered start now or, from rest, at a later switch of the owner's plan. A slower motion now may even
+//! end sooner, because it continues faster at one of the next switches.
 //!
-//! The trials are spread over the scans. What was found is kept until something better is, and each scan tries from where the
-//! motion is then. All trials come from one fixed sequence, so the same program always finds the same motion.
+//! The trials are spread over the scans. The best result is kept until a better one is found, and each scan tries
+//! from the present state. All trials come from one fixed sequence, so the same program always finds the same motion.
 
 use super::plan::{Proposal, Room, limits_of, slower};
 use super::{Added, Adds, Layer};
@@ -16,36 +17,38 @@ use crate::axis::{Axis, Motion};
 use standstill_planner::math::{max, min, sqrt};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
-/// Most plans in a scan in which the command, or the owner's motion, is new ..
+/// Most plans in a scan in which the command or the owner's motion is new ..
 const FIRST: u32 = 48;
 
 /// .. and in a later one.
 const LATER: u32 = 16;
 
-/// Most limits that are drawn in a scan. Many of them can't end sooner than what is known, and cost no plan.
+/// Most sets of limits that are drawn in a scan. Many of them can't end sooner than the best known motion, and cost
+/// no plan.
 const DRAWS: u32 = 200;
 
-/// In so many scans nothing better was found: there will hardly be, until the owner comes to a switch.
+/// After this number of scans without a better result, trying stops until just before the owner's next switch.
 const FRUITLESS: u32 = 12;
 
-/// The scans before a switch in which it is tried again.
+/// The number of scans before a switch in which trying starts again.
 const AHEAD: u64 = 3;
 
-/// Switches of the owner's plan that are looked at. Only a curve has more, and no motion can be added to a curve.
+/// Most switches of the owner's plan that are considered. Only a curve has more, and no motion can be added to a
+/// curve.
 const SWITCHES: usize = 16;
 
-/// The simple ones: the same path at these rates ..
+/// The simple motions: the same path at these rates ..
 const PACES: [f64; 7] = [0.875, 0.75, 0.625, 0.5, 0.375, 0.25, 0.125];
 
 /// .. and only the velocity lowered.
 const VELOCITIES: [f64; 6] = [0.8, 0.6, 0.45, 0.3, 0.2, 0.1];
 
-/// The share of the limits that are lowered, and how far.
+/// The share of the limits that are lowered, and the lowest factor.
 const LOWERED: f64 = 0.3;
 const LOWEST: f64 = 0.1;
 
-/// Starts at later switches that are tried for a motion: one that is in progress, one at the velocity that is always free, and
-/// any other.
+/// The number of starts at later switches that are tried: for a motion in progress, for one at the velocity that is
+/// always free, and for any other.
 const AFTER_CURRENT: u32 = 1;
 const AFTER_FREE: u32 = 4;
 const AFTER_OTHER: u32 = 1;
@@ -59,18 +62,18 @@ pub(super) struct Below<'a, Plan> {
     pub range: Option<(f64, f64)>,
 }
 
-/// What has been found for a command so far.
+/// The results for a command so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Search {
     /// The command or the owner's motion is new.
     fresh: bool,
-    /// Scans to the end of the best that is known; the largest number if nothing fits.
+    /// Scans to the end of the best known motion; the largest number if nothing fits.
     end: u64,
-    /// The scans after which that goes on within other limits, or starts.
+    /// The scans after which that motion starts, or continues within other limits.
     next: Option<(u64, Limits)>,
     /// Number of the last draw.
     drawn: u32,
-    /// Scans in which nothing better was found, and the switches that were left then.
+    /// Scans without a better result, and the switches that were left then.
     fruitless: u32,
     switches: usize,
 }
@@ -85,7 +88,7 @@ impl Search {
         switches: 0,
     };
 
-    /// A scan is over.
+    /// Called at the end of a scan.
     pub fn pass(&mut self) {
         self.end = if self.end == u64::MAX {
             self.end
@@ -97,7 +100,8 @@ impl Search {
         }
     }
 
-    /// Scans until it is worth trying again; `None` if nothing will change. The owner's next switch is in `switch` scans.
+    /// Scans until another trial is useful; `None` if nothing will change. The owner's next switch is in `switch`
+    /// scans.
     pub fn pause(&self, switch: Option<u64>) -> Option<u64> {
         let start = self.next.map(|(wait, _)| wait);
         let near = switch.map(|wait| wait.saturating_sub(AHEAD));
@@ -109,7 +113,7 @@ impl Search {
         Some(pause.max(1))
     }
 
-    /// All of it, for [`crate::Outlook`].
+    /// The whole state, for [`crate::Outlook`].
     pub fn bits(&self) -> [u64; 9] {
         let progress = u64::from(self.drawn) << 32 | u64::from(self.fruitless);
         let flags = (self.switches as u64) << 1 | u64::from(self.fresh);
@@ -150,12 +154,12 @@ impl Search {
         f64::from(bits ^ (bits >> 16)) / (f64::from(u32::MAX) + 1.0)
     }
 
-    /// One of `count` numbers from 0.
+    /// One of `count` numbers, starting at 0.
     fn pick(&mut self, count: usize) -> usize {
         (self.draw() * count as f64) as usize
     }
 
-    /// A limit, or less than that.
+    /// The limit, or a lower value.
     fn lower(&mut self, limit: f64) -> f64 {
         if self.draw() >= LOWERED {
             return limit;
@@ -171,10 +175,10 @@ struct Trials<'a, P: Planner> {
     below: &'a Below<'a, P::Plan>,
     /// Scans to the next switches of the owner's plan.
     switches: ([u64; SWITCHES], usize),
-    /// The limits that the owner's plan uses: faster than that it does not make room.
+    /// The part of the limits that the owner's plan uses. A faster motion does not get room sooner.
     used: Limits,
     start: &'a Setpoint,
-    /// The limits that apply at the start until those of the motion do; none at rest.
+    /// The limits at the start, until those of the motion apply; none at rest.
     before: Option<Limits>,
     target: f64,
     asked: &'a Limits,
@@ -187,15 +191,15 @@ struct Trials<'a, P: Planner> {
 }
 
 impl<P: Planner> Axis<P> {
-    /// The motion that starts now for `command`; `Ok(None)` if what is in progress or a later start ends sooner, or nothing
-    /// fits. `search` is what was found in the scans before.
+    /// The motion that starts now for `command`. `Ok(None)` if the motion in progress or a later start ends sooner,
+    /// or nothing fits. `search` holds the results of the last scans.
     ///
-    /// Cost: at most [`FIRST`] plans in the scan of the command and where the owner's motion changes, then [`LATER`] in a scan;
-    /// each is laid over the owner's, those from rest once for each of its [`SWITCHES`]. After [`FRUITLESS`] scans without gain
-    /// only near a switch.
+    /// Cost: at most [`FIRST`] plans in the scan in which the command or the owner's motion is new, then [`LATER`] in
+    /// a scan. Each is laid over the owner's plan; those from rest once for each of its [`SWITCHES`]. After
+    /// [`FRUITLESS`] scans without gain only near a switch.
     ///
     /// # Errors
-    /// As [`Axis::propose`].
+    /// The same as [`Axis::propose`].
     pub(super) fn soonest(
         &self,
         layer: &Layer<P::Plan>,
@@ -267,7 +271,7 @@ impl<P: Planner> Axis<P> {
         (waits, count)
     }
 
-    /// The part of `asked` that the owner uses of each limit, and the whole where it uses none.
+    /// The part of each limit of `asked` that the owner uses, or the whole limit if it uses none.
     fn used(&self, below: &Below<'_, P::Plan>, asked: &Limits) -> Limits {
         let peaks = self.planner.peaks(below.rest).unwrap_or_default();
         let part = |asked: f64, peak: f64| if peak > 0.0 { min(asked, peak) } else { asked };
@@ -282,7 +286,7 @@ impl<P: Planner> Axis<P> {
 }
 
 impl<P: Planner> Trials<'_, P> {
-    /// The motion from the start as commanded. Returns whether it fits and ends first; then there is nothing to gain.
+    /// The motion from the start as commanded. Returns whether it fits and ends first; if so, nothing can be gained.
     fn as_commanded(&mut self) -> Result<bool, ErrorId> {
         let asked = *self.asked;
         let before = self.before.unwrap_or(asked);
@@ -299,7 +303,8 @@ impl<P: Planner> Trials<'_, P> {
         Ok(self.best.as_ref().is_some_and(|best| !best.lowered))
     }
 
-    /// What was found to start in this scan starts. The motion in progress may go on faster at a later switch.
+    /// Starts the motion that was found to start in this scan. The motion in progress may continue faster at a later
+    /// switch.
     fn go_on(&mut self, layer: &Layer<P::Plan>) {
         if let Some((0, limits)) = self.search.next {
             self.search.next = None;
@@ -313,7 +318,7 @@ impl<P: Planner> Trials<'_, P> {
         }
     }
 
-    /// The motion at the velocity that is always free, and the one within all limits that are.
+    /// The motion at the velocity that is always free, and the one within all limits that are always free.
     fn free(&mut self, room: &Room, layer: &Layer<P::Plan>) {
         let velocity = room.limits.velocity;
         if velocity > 0.0 && velocity < self.asked.velocity {
@@ -328,7 +333,7 @@ impl<P: Planner> Trials<'_, P> {
         }
     }
 
-    /// The same path in more time, and only the velocity lowered.
+    /// The same path in more time, and motions with only the velocity lowered.
     fn simple(&mut self) {
         let asked = *self.asked;
         let longer = PACES.into_iter().map(|rate| slower(&asked, rate));
@@ -375,7 +380,8 @@ impl<P: Planner> Trials<'_, P> {
         limits
     }
 
-    /// A jerk that is reached in whole scans, and an acceleration that is left, or reached, at a switch of the owner's plan.
+    /// A jerk that is reached after whole scans, and an acceleration that is reached or left at a switch of the
+    /// owner's plan.
     fn end_at_a_switch(&mut self, limits: &mut Limits) {
         let asked = self.asked;
         let cycle = self.axis.planner.cycle();
@@ -395,7 +401,7 @@ impl<P: Planner> Trials<'_, P> {
         }
     }
 
-    /// Whether a motion within `limits` may end sooner than what is known, if it comes to the velocity at once.
+    /// Whether a motion within `limits` could end sooner than the best known one if it had its velocity at once.
     fn may_end_sooner(&self, limits: &Limits) -> bool {
         let left = self.target - self.start.position;
         let rise = max(limits.velocity - self.start.velocity * left.signum(), 0.0);
@@ -414,7 +420,7 @@ impl<P: Planner> Trials<'_, P> {
         time < (self.search.end as f64 + 1.0) * self.axis.planner.cycle()
     }
 
-    /// Tries a motion, and if it fits from now also that it goes on faster later.
+    /// Tries a motion. If it fits from now, also tries to continue it faster later.
     fn take(&mut self, limits: &Limits, after: u32) {
         let Some(plan) = self.plan(self.start, limits, self.before) else {
             return;
@@ -424,7 +430,8 @@ impl<P: Planner> Trials<'_, P> {
         }
     }
 
-    /// Notes a motion that ends before what is known: from now or, at rest, from a later switch. Returns whether it fits now.
+    /// Notes a motion that ends before the best known one, from now or, at rest, from a later switch. Returns whether
+    /// it fits now.
     fn see(&mut self, plan: &P::Plan, limits: &Limits) -> bool {
         let scans = u64::from(plan.scans());
         if self.fits(plan, 0) {
@@ -450,7 +457,8 @@ impl<P: Planner> Trials<'_, P> {
         false
     }
 
-    /// Tries `count` times that a motion goes on faster from a later switch of the owner's plan. `starts` is the motion, unless
+    /// Tries `count` times to continue a motion faster from a later switch of the owner's plan. `starts` is the
+    /// motion, unless it is in progress.
     /// it is in progress.
     fn faster_later(
         &mut self,
@@ -491,7 +499,7 @@ impl<P: Planner> Trials<'_, P> {
         }
     }
 
-    /// The best so far: `plan` from now, or what is in progress; and what follows.
+    /// Notes the best so far: `plan` from now, or the motion in progress, and the motion after it.
     fn note(&mut self, plan: Option<&P::Plan>, limits: &Limits, end: u64, next: Option<(u64, Limits)>) {
         self.search.end = end;
         self.search.next = next;
@@ -508,7 +516,7 @@ impl<P: Planner> Trials<'_, P> {
         let before = before.unwrap_or(*limits);
         let plan = self.move_to(start, limits, &before).ok()?;
         let planner = &self.axis.planner;
-        // Lowered rates may not be enough to end a rise in time.
+        // Lowered rates may not be enough to end an acceleration in time.
         let peak = planner.peaks((&plan, 0)).map_or(0.0, |peaks| peaks.velocity);
         let is_good = peak <= self.highest * (1.0 + 1e-9)
             && self.axis.barred((&plan, 0), limits, &before).is_none()

@@ -50,7 +50,7 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
-    /// A command on `layer` whose distance counts from `origin` (u), if its values and its end are valid.
+    /// A command on `layer` with a distance that counts from `origin` (u), if its values and its end are valid.
     pub(super) fn added(
         &self,
         id: CommandId,
