@@ -1,8 +1,10 @@
-//! Ends that are passed on a ramp: between moves with other dynamics a short one need not come to a constant velocity at its end.
+//! Ends that are passed on a ramp. Between moves with different dynamics, a short move need not reach a constant
+//! velocity at its end.
 //!
-//! Where a way is too short for the speed that is asked for at its end, the ramp to that speed leads through the end, or the axis passes it
-//! speeding up with the higher rates of the first command. Where the next way is too short to come down from that speed, the axis passes the end
-//! braking. What stands here: which of them, and whether the next command is done sooner for it. The maths is the planner's.
+//! A move may be too short for the velocity wanted at its end. Then the ramp to that velocity leads through the end,
+//! or the axis passes the end still accelerating, with the higher rates of the first command. The next move may be
+//! too short to slow down from that velocity. Then the axis passes the end braking. This module decides which of
+//! these is used, and whether the next command is done sooner with it. The planner does the calculation.
 //!
 //! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; B14, B15. `docs/buffering.md`.
 
@@ -11,17 +13,17 @@ use super::run::goal_past;
 use super::{Axis, Motion};
 use standstill_planner::{Excess, Limits, MoveProfile, Passage, Plan, Planner, Setpoint};
 
-/// The part of the deceleration it has at the end on the way down to the speed of the next one, with which an end is passed braking: some
-/// of it is left to build up the jerk.
+/// An end is passed braking with this part of a deceleration: the one with which the next command would slow down
+/// there. The rest is needed to build up the jerk.
 const BRAKE: f64 = 0.8;
 
-/// The part of the lower deceleration that it is at least.
+/// The least deceleration, as a part of the lower limit of the two commands.
 const LEAST: f64 = 0.2;
 
-/// The part of the lower acceleration with which an end is passed speeding up.
+/// An end is passed accelerating with this part of the lower acceleration limit.
 const PUSH: f64 = 0.8;
 
-/// What comes behind an end.
+/// The next command behind an end.
 pub(super) struct Behind<'a> {
     next: &'a Entry,
     end: f64,
@@ -34,10 +36,10 @@ pub(super) struct Behind<'a> {
 }
 
 impl<P: Planner> Axis<P> {
-    /// The plan of `entry` past the end with which its next command is done soonest: `passing`, which has no acceleration there, or one on
-    /// a ramp; `None` if it is with a rest.
+    /// The plan of `entry` past the end with which its next command is done soonest: `passing`, which has no
+    /// acceleration there, or a plan on a ramp. `None` if a stop at the end is soonest.
     ///
-    /// Cost: the plan on a ramp, two plans behind it, and with a rest two more.
+    /// Cost: the plan on a ramp, two plans behind it, and for the stop two more.
     pub(super) fn soonest_past(
         &self,
         entry: &Entry,
@@ -80,25 +82,26 @@ impl<P: Planner> Axis<P> {
             let to_rest = self.scans_to_rest(entry, start, behind.end, before);
             to_rest.saturating_add(self.scans_behind(&Setpoint::at_rest(behind.end), behind))
         };
-        // What is too late for anything passes as it can; nothing else has to.
+        // Without a usable ramp `passing` is taken as it is; nothing else is possible.
         let ramps = ramps.into_iter().flatten().map(counted);
         let ramps = ramps.filter(|(_, scans)| *scans < u64::MAX);
         let on_a_ramp = ramps.min_by_key(|(_, scans)| *scans);
-        // A ramp to the speed asked for comes nearer to it than what is faster.
+        // A ramp to the wanted velocity is nearer to it than a faster plan.
         let passing = passing.filter(|_| !is_faster || on_a_ramp.is_none());
         let plans = passing.map(counted).into_iter().chain(on_a_ramp);
         let (plan, scans) = plans.min_by_key(|(_, scans)| *scans)?;
         let goes_on = || {
             let with_rest = with_rest();
-            // Too late for a rest it is too late for what follows, too.
+            // If it is too late for a stop, it is too late for the next command, too.
             scans < with_rest || with_rest == u64::MAX
         };
         (is_certain || goes_on()).then_some(plan)
     }
 
-    /// Whether what waits behind the end of the owner is done sooner along `plan`, which `owner` would have, than along the one in progress.
+    /// Whether the commands that wait behind the owner's end are done sooner along `plan`, a new plan of `owner`,
+    /// than along the one in progress.
     ///
-    /// Cost: for each of them the plan of the next command, and one of that behind it.
+    /// Cost for each of the two: the plan of the next command, and a plan of the command behind it.
     pub(super) fn is_sooner(&self, owner: &Entry, plan: &P::Plan) -> bool {
         let (
             Some(end),
@@ -125,8 +128,8 @@ impl<P: Planner> Axis<P> {
         anew < as_planned && !self.turns(plan, forward)
     }
 
-    /// Scans from a state at the begin of the next command, which is the first that waits, until it and the one behind it are done; [`u64::MAX`]
-    /// if they can't without turning.
+    /// Scans from a state at the start of the next command, which is the first that waits, until it and the command
+    /// behind it are done; [`u64::MAX`] if they can't without reversing.
     fn scans_of_next(&self, from: &Setpoint, behind: &Behind<'_>) -> u64 {
         let Behind { target, forward, .. } = *behind;
         let mut next = Entry {
@@ -162,7 +165,8 @@ impl<P: Planner> Axis<P> {
             && self.owner.as_ref().is_some_and(is_one)
     }
 
-    /// What comes behind the `end` of `entry`, if it is a move that leads on and can be looked through.
+    /// The command behind the `end` of `entry`, if it is a move in the same direction with other limits, and ramps
+    /// are possible.
     pub(super) fn behind(&self, entry: &Entry, end: f64, forward: bool) -> Option<Behind<'_>> {
         self.behind_at(self.number_behind(entry), entry, end, forward)
     }
@@ -174,7 +178,7 @@ impl<P: Planner> Axis<P> {
         (has_ramps && is_other).then(|| self.leading_on(number, end, forward))?
     }
 
-    /// The same, whatever its dynamics.
+    /// The same with any limits.
     fn leading_on(&self, number: usize, end: f64, forward: bool) -> Option<Behind<'_>> {
         let next = self.queue.iter().nth(number)?;
         let is_move = matches!(next.work, Work::Position(_) | Work::Distance(_));
@@ -197,7 +201,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The ramp to the `wanted` speed through the end, with rates that the next command may have, too.
+    /// The ramp to the `wanted` velocity through the end, with rates that the next command also allows.
     fn speeding_through(
         &self,
         entry: &Entry,
@@ -207,7 +211,7 @@ impl<P: Planner> Axis<P> {
         behind: &Behind<'_>,
     ) -> Option<P::Plan> {
         let (own, next) = (&entry.limits, &behind.next.limits);
-        // What comes faster slows down with these rates, too.
+        // A faster motion slows down with these rates, too.
         let limits = Limits {
             velocity: own.velocity.max(wanted).max(start.velocity.abs()),
             ..rates_of_both(own, next)
@@ -216,15 +220,15 @@ impl<P: Planner> Axis<P> {
         let ramp = self.planner.ramp_to(start, velocity, &limits, before).ok()?;
         let at_end = ramp.at(goal_past(&ramp, 0, behind.end, behind.forward));
         let is_past = (at_end.position >= behind.end) == behind.forward;
-        // What begins with more acceleration than it may pass the end with is down to that there.
+        // A start with more acceleration than is allowed at the end has lowered it by then.
         let within = |value: f64, limit: f64| value.abs() <= limit * (1.0 + ROUNDING);
         let is_kept = within(at_end.acceleration, limits.acceleration) && within(at_end.jerk, limits.jerk);
         let keeps = is_kept && keeps_rates_from(&ramp, start, own);
         (is_past && keeps && self.stops_inside(&at_end)).then_some(ramp)
     }
 
-    /// The ramp through the end that lets go of its acceleration at once, if that leads to `most` velocity at most (u/s): the one of
-    /// [`Axis::speeding_through`] that leads the least far.
+    /// The ramp through the end that lowers its acceleration to 0 at once, if that leads to at most `most` velocity
+    /// (u/s). It is the ramp of [`Axis::speeding_through`] with the shortest travel.
     fn letting_go(
         &self,
         entry: &Entry,
@@ -239,7 +243,8 @@ impl<P: Planner> Axis<P> {
         (arrested <= most).then(ramp)?
     }
 
-    /// The plan that passes the end still speeding up, as much as the next command may, with the speed a ramp of its own rates comes to.
+    /// The plan that passes the end still accelerating, as much as the next command allows, with the velocity that a
+    /// ramp of its own rates reaches.
     fn pushing_through(
         &self,
         entry: &Entry,
@@ -268,7 +273,8 @@ impl<P: Planner> Axis<P> {
         (keeps_rates(&plan) && self.stops_inside(&at_end)).then_some(plan)
     }
 
-    /// The plan that passes the end braking, with the speed from which the next command comes down to that of its own end.
+    /// The plan that passes the end braking. Its velocity there lets the next command slow down to the velocity at
+    /// its own end.
     fn braking_through(
         &self,
         entry: &Entry,
@@ -301,7 +307,8 @@ impl<P: Planner> Axis<P> {
         planned.ok().flatten().filter(keeps_rates)
     }
 
-    /// The deceleration (u/s^2) that the next command has a `way` (u) before it has come down from `speed` to that of its end.
+    /// The deceleration (u/s^2) of the next command at a `way` (u) before it has slowed down from `speed` to the
+    /// velocity at its end.
     fn deceleration_before(&self, way: f64, speed: f64, behind: &Behind<'_>) -> Option<f64> {
         let begin = Setpoint {
             velocity: speed,
@@ -321,7 +328,7 @@ impl<P: Planner> Axis<P> {
         Some((-state.acceleration).max(0.0))
     }
 
-    /// The speed asked for at `end`, as far as software limits leave it.
+    /// The velocity wanted at `end`, as far as software limits allow it.
     fn asked(&self, entry: &Entry, next: &Entry, end: f64, forward: bool) -> f64 {
         let asked = next
             .mode
@@ -335,7 +342,7 @@ impl<P: Planner> Axis<P> {
         self.stoppable(passage, Some(end), direction).wanted
     }
 
-    /// Scans that the next command takes from a state at its begin, [`u64::MAX`] if it can't.
+    /// Scans that the next command takes from a state at its start; [`u64::MAX`] if it can't.
     fn scans_behind(&self, from: &Setpoint, behind: &Behind<'_>) -> u64 {
         let scans = self.scans_as_asked(from, behind);
         scans
@@ -343,7 +350,7 @@ impl<P: Planner> Axis<P> {
             .unwrap_or(u64::MAX)
     }
 
-    /// The same where it passes its own end as asked, or comes to rest there.
+    /// The same if it passes its own end as wanted, or comes to rest there.
     fn scans_as_asked(&self, from: &Setpoint, behind: &Behind<'_>) -> Option<u64> {
         let Behind {
             next, target, exit, ..
@@ -359,14 +366,14 @@ impl<P: Planner> Axis<P> {
                 .move_to(MoveProfile::Online, from, *target, limits, limits);
             planned.ok()
         };
-        // Where it is to turn it must be able to rest: what turns is decided when it begins.
+        // Before a reversal it must be able to come to rest. Whether it reverses is decided when it begins.
         let plan = if exit.wanted > 0.0 { blended() } else { None };
         let plan = plan.or_else(to_rest)?;
         let goal = goal_past(&plan, 0, *target, behind.forward);
         self.arrives(&plan, goal, behind).then_some(goal)
     }
 
-    /// The same where it passes its own end on a ramp, too, and what follows does as asked.
+    /// The same if it passes its own end on a ramp, too, and the command behind it passes its end as wanted.
     fn scans_speeding(&self, from: &Setpoint, behind: &Behind<'_>) -> Option<u64> {
         if (behind.target > from.position) != behind.forward {
             return None;
@@ -384,7 +391,7 @@ impl<P: Planner> Axis<P> {
         (is_speeding && self.arrives(&plan, goal, behind) && goes_on()).then_some(goal)
     }
 
-    /// Whether a `plan` of the next command is at its end in the scan `goal` as it may be.
+    /// Whether a `plan` of the next command is in an allowed state at its end in the scan `goal`.
     fn arrives(&self, plan: &P::Plan, goal: u64, behind: &Behind<'_>) -> bool {
         let is_slow = plan.at(goal).velocity.abs() <= behind.exit.most * (1.0 + ROUNDING);
         is_slow && !self.turns(plan, behind.forward) && keeps_rates_of(plan, &behind.next.limits)
@@ -396,7 +403,7 @@ pub(super) fn is_braking(state: &Setpoint) -> bool {
     state.velocity * state.acceleration < 0.0
 }
 
-/// The limits of a command with the lower rates of it and the next, but its own deceleration.
+/// The lower rates of a command and the next one, but its own velocity and deceleration.
 fn rates_of_both(own: &Limits, next: &Limits) -> Limits {
     Limits {
         velocity: own.velocity,
@@ -407,17 +414,17 @@ fn rates_of_both(own: &Limits, next: &Limits) -> Limits {
     }
 }
 
-/// Whether a plan exceeds no more than a velocity of its limits.
+/// Whether a plan exceeds none of its limits, except for the velocity.
 pub(super) fn keeps_rates<P: Plan>(plan: &P) -> bool {
     is_of_velocity(plan.excess())
 }
 
-/// The same, of other limits.
+/// The same for other limits.
 fn keeps_rates_of<P: Plan>(plan: &P, limits: &Limits) -> bool {
     is_of_velocity(plan.excess_over(limits))
 }
 
-/// The same, but for what its `start` has beyond them.
+/// The same, except for the excess that its `start` has already.
 fn keeps_rates_from<P: Plan>(plan: &P, start: &Setpoint, limits: &Limits) -> bool {
     let most = if is_braking(start) {
         limits.deceleration
