@@ -20,8 +20,8 @@
 //! | [`steady`] | the motion step in a scan in which nothing is new |
 //! | [`sync`] | MC_GearInPos: a law given by sync positions, and a start that waits for a place of the master |
 //!
-//! Source: PLCopen Motion Control Part 1, MC_GearIn, MC_GearOut; V16, V18, V18b, V18d. What the standard leaves open is told in
-//! docs/coupling.md.
+//! Source: PLCopen Motion Control Part 1, MC_GearIn, MC_GearOut; V16, V18, V18b, V18d. docs/coupling.md states what
+//! the standard leaves open.
 
 mod approach;
 mod bound;

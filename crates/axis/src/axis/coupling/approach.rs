@@ -1,5 +1,5 @@
-//! How a slave comes onto the law of its gear. The way is searched whenever the master gets another plan,
-//! or a way has ended.
+//! How a slave comes onto the law of its gear. The way is searched whenever the master gets another plan, or a way
+//! has ended.
 //!
 //! | rung | the slave moves | in gear |
 //! | --- | --- | --- |
@@ -28,10 +28,10 @@ use standstill_planner::{
 /// A velocity that is left beside that of a line must be at least this part of the limit.
 const LEAST: f64 = 1e-6;
 
-/// The share of its velocity limit up to which a slave comes near to a law that will be too fast.
+/// The share of its velocity limit up to which a slave comes near a law that will be too fast.
 const SLOW: f64 = 0.9;
 
-/// Places on a way back at which it is looked how fast it is.
+/// The number of places on a way back at which its velocity is checked.
 const LOOKS: u64 = 16;
 
 /// The law's next stretch of constant velocity.
@@ -86,10 +86,10 @@ impl<P: Planner> Axis<P> {
         let anchor = coupling.anchor.unwrap_or(here);
         let (law_place, law) = coupling.law(&anchor, &coupling.was);
         let difference = self.difference(coupling, &anchor);
-        // A turn may have changed the name of its masters' places by a rounding.
+        // A turn may have renamed its masters' places with a rounding error.
         let is_kept = was_locked && difference.position.abs() <= self.resolved_of(coupling, law_place);
         if difference.is_at_rest() && (difference.position == 0.0 || is_kept) {
-            // A step off the law may not have been checked against a plan of the master that is over now.
+            // A step off the law may not have been checked against a plan of the master that has ended since.
             let was_on_law = coupling.anchor.is_some();
             let is_seen = match view.future.kind() {
                 Kind::Still => law.is_at_rest(),
@@ -136,7 +136,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// How exactly (u) the slave can be told to be on its law, which is at `law` now.
+    /// The smallest difference (u) from the law, which is at `law` now, that rounding lets the slave resolve.
     pub(super) fn resolved_of(&self, coupling: &Coupling, law: Place) -> f64 {
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
         let masters = coupling.size_of_masters(&coupling.was);
@@ -186,7 +186,7 @@ impl<P: Planner> Axis<P> {
             };
         }
         let velocity = stretch.map_or(law.velocity, |stretch| stretch.velocity);
-        // Behind a master whose motion is not known it may have to make up for what was lost.
+        // Behind a master whose motion is not known it may have to catch up lost distance.
         if let (true, Some(stretch), Kind::Plan) = (coupling.is_syncing(), &stretch, view.future.kind()) {
             if coupling.goes_slowly() && velocity != 0.0 {
                 limits.velocity = limits.velocity.min(velocity.abs());
@@ -425,8 +425,8 @@ impl<P: Planner> Axis<P> {
                     .stop_ahead(&start, stretch.velocity, limits)
                     .is_some_and(|ahead| ahead > 0.0);
             let track = self.line(stretch.velocity)?;
-            // A slave ahead of the line waits for it, or goes to meet it. Then it may be faster against the
-            // line than with it.
+            // A slave ahead of the line waits for it, or goes to meet it. In the second case it may be faster against
+            // the line than with it.
             let attempt = |waits: bool| {
                 let along = |limits: &Limits| if waits { line } else { limits.velocity - line };
                 if along(limits) <= LEAST * limits.velocity {
@@ -480,8 +480,8 @@ impl<P: Planner> Axis<P> {
         self.planner.ramp_to(&steady, velocity, axis, axis).ok()
     }
 
-    /// Whether a motion `beside` a line of this `velocity` (u/s) may go against it: nothing bars the slave, and it turns inside its
-    /// software limits.
+    /// Whether a motion `beside` a line of this `velocity` (u/s) may go against it: nothing bars that direction, and
+    /// the slave reverses inside its software limits.
     fn may_go_back(&self, velocity: f64, beside: &P::Plan) -> bool {
         let heading = 1.0_f64.copysign(velocity);
         let cycle = self.planner.cycle();
@@ -489,7 +489,7 @@ impl<P: Planner> Axis<P> {
         let scans = u64::from(beside.scans());
         let looks = (0..=LOOKS).map(|look| scans * look / LOOKS);
         let back = looks.min_by(|one, other| speed(*one).total_cmp(&speed(*other)));
-        // From there on it comes back to the velocity of the line.
+        // From there it comes back to the velocity of the line.
         let (mut low, mut high) = (back.unwrap_or(0), scans);
         while high - low > 1 {
             let middle = low + (high - low) / 2;
@@ -500,7 +500,7 @@ impl<P: Planner> Axis<P> {
             }
         }
         let way = velocity * (low as f64 * cycle) + beside.at(low).position;
-        // What it may still go back within a scan.
+        // The distance that it may still go back within a scan.
         let in_scan = heading * self.parameters.limits.lower_acceleration() * cycle * cycle;
         let place = self.mover.setpoint().position + way - in_scan;
         self.allowed(place).is_ok() && self.way_barred(-velocity).is_none()
@@ -676,8 +676,9 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// A way that does not get ahead of a law that will be too fast, while that is still well within the limits:
-    /// along the law if it `may_follow` that in this step, else with its velocity or, from behind, faster.
+    /// A way that does not get ahead of a law that will be too fast. While the law is well within the limits, the
+    /// slave goes along it if it `may_follow` it in this step. Otherwise it takes the law's velocity or, from behind,
+    /// a higher one.
     fn near_law(
         &self,
         owner: &Entry,
@@ -719,8 +720,8 @@ impl<P: Planner> Axis<P> {
         Some(Way { left: UNKNOWN, ..way })
     }
 
-    /// Along a law that will be too fast in time, and from beside it within this `room`; on it without any.
-    /// Each step is checked before it is made.
+    /// A way along a law that will be too fast later, and from beside it within this `room`; on the law without a
+    /// room. Each step is checked before it is made.
     fn along_law(
         &self,
         anchor: Anchor,
@@ -743,7 +744,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// A plan within this `room` that takes a difference to 0, or its velocity only.
+    /// A plan within this `room` that takes a difference to 0, or only its velocity.
     pub(super) fn within_room(
         &self,
         difference: &Setpoint,
@@ -785,12 +786,13 @@ impl<P: Planner> Axis<P> {
         (least > 0.0 && leads.iter().any(Option::is_some)).then_some(room)
     }
 
-    /// Whether a slave that is ahead of a law without an even stretch but its rest, which is further on, lets it come.
+    /// Whether a slave that is ahead of the law waits for it. Applies to a law whose only even stretch is its rest at
+    /// the end, which is further on.
     fn lets_law_come(&self, view: &View<'_, P::Plan>, difference: &Setpoint, line: f64) -> bool {
         let Some(coupling) = &self.follower.coupling else {
             return false;
         };
-        // A start that waits for a place of the master is in time where the slave goes ahead to the rest.
+        // A start that waits for a place of the master is in time if the slave goes ahead to that rest.
         let is_timed = coupling
             .gearing
             .sync
@@ -804,7 +806,7 @@ impl<P: Planner> Axis<P> {
         left.is_some_and(|left| difference.position * left > 0.0 && left.abs() > difference.position.abs())
     }
 
-    /// A velocity (u/s) of its own, which does not lead onto the law.
+    /// A velocity (u/s) of the slave's own, which does not lead onto the law.
     ///
     /// # Errors
     /// The reason why it may not move.
@@ -850,10 +852,10 @@ impl<P: Planner> Axis<P> {
         Ok(Way { left, ..way })
     }
 
-    /// A ramp in the slave's own coordinates, planned like MC_MoveVelocity's, and its limits.
+    /// A ramp in the slave's own coordinates, planned like that of MC_MoveVelocity, and its limits.
     ///
     /// # Errors
-    /// Why it may not go there.
+    /// The reason why it may not go there.
     fn to_velocity(&self, owner: &Entry, velocity: f64) -> Result<(Motion<P::Plan>, Limits), ErrorId> {
         let limits = self.limits_of_approach(owner);
         let mut entry = Entry {
@@ -885,7 +887,7 @@ impl<P: Planner> Axis<P> {
         if self.modulo.is_some() {
             self.start_of_plan();
         }
-        // Beside a line that stands it comes to rest.
+        // Beside a line at rest it comes to rest.
         let from = match way.rung {
             Rung::BesideLine {
                 start, velocity: 0.0, ..
@@ -991,7 +993,8 @@ impl<P: Planner> Axis<P> {
     }
 }
 
-/// The way the law leads (u, or u/s): along its next even stretch `line`, or to its rest if it has no other stretch.
+/// The direction of the law, as the sign of a distance (u) or a velocity (u/s): along its next even stretch `line`,
+/// or to its rest if it has no other stretch.
 fn heading<Q: Plan>(leads: &Leads<'_, Q>, line: f64) -> f64 {
     if line == 0.0 {
         way_to_rest(leads, 0).unwrap_or(0.0)

@@ -21,7 +21,7 @@ const SHARE: f64 = 0.5;
 /// inside the rest.
 const NEARLY_ALL: f64 = 1023.0 / 1024.0;
 
-/// What slaves leave of the limits of an axis.
+/// The limits that the slaves of an axis leave to it.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::axis) struct Bound {
     /// In force.
@@ -41,13 +41,13 @@ impl Default for Bound {
 }
 
 impl<P: Planner> Axis<P> {
-    /// `limits` lowered to what slaves leave.
+    /// `limits`, lowered to those that slaves leave.
     pub(in crate::axis) fn slowed(&self, limits: &Limits) -> Limits {
         limits.or_smaller(&self.follower.bound.now)
     }
 
-    /// Lowers the limits of `entry` to what slaves leave. Commands behind a master, commands that keep
-    /// their times and commands without motion have no limits to lower here.
+    /// Lowers the limits of `entry` to those that slaves leave. Commands behind a master, commands that keep their
+    /// times and commands without motion have no limits to lower here.
     pub(in crate::axis) fn bound_entry(&self, entry: &mut Entry) {
         if !Self::has_bound(&entry.work) {
             return;
@@ -134,12 +134,12 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Lowers the bound to `bound`, which a slave leaves.
+    /// Lowers the bound to `bound`, the limits that a slave leaves.
     pub(crate) fn lower_bound(&mut self, bound: &Limits) {
         self.follower.bound.next = self.follower.bound.next.or_smaller(bound);
     }
 
-    /// Its master keeps its limits.
+    /// Whether its master keeps its limits.
     pub(super) fn slows_master(&self) -> bool {
         self.follower
             .coupling
@@ -148,8 +148,8 @@ impl<P: Planner> Axis<P> {
             || self.bound_on_cam().is_some()
     }
 
-    /// Whether its motion was planned within what its slaves leave. It was not if planned before there
-    /// were any, or after a fault.
+    /// Whether its motion was planned within the limits that its slaves leave. It was not if it was planned before
+    /// there were slaves, or after a fault.
     pub(super) fn keeps_bound(&self) -> bool {
         let own = Some(self.mover.in_force()).filter(|_| !matches!(self.mover.motion(), Motion::Hold));
         let added = self.mover.layer().and_then(|layer| layer.limits_in_motion());

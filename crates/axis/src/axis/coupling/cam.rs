@@ -2,7 +2,7 @@
 //!
 //! In sync the set-point *is* the cam at the master's place of the same scan ([`CamLaw`]). A slave that cannot be
 //! there stays on the curve. It then follows a lagging master of its own, its shadow. It does not leave the curve,
-//! because that would take a tool into an obstacle. Only before it has reached the curve does the slave move in its
+//! because that could take a tool into an obstacle. Only before it has reached the curve does the slave move in its
 //! own coordinates. That move ends at a place where the curve is at rest.
 //!
 //! | file | subject |

@@ -34,7 +34,7 @@ impl Coupling {
         (slave, state)
     }
 
-    /// How large (u of the slave) the places of its masters are that the law is made of, with what shifts them.
+    /// The size of the masters' places from which the law is computed, including their shifts (u of the slave).
     pub(super) fn size_of_masters(&self, seen: &SeenBoth) -> f64 {
         let [first, second] = seen;
         let part = |leg, seen: &Seen| self.gearing.factor(leg, seen.size()).abs();
@@ -285,7 +285,8 @@ impl<P: Planner> Axis<P> {
             && both.all(|(was, now)| was.place == now.place && was.at.is_at_rest())
     }
 
-    /// After a step: its slaves see whether it stands as long as its law does, and whether it only trembles with its masters.
+    /// After a step: notes for its slaves whether it is at rest as long as its law is, and whether it only trembles
+    /// with its masters.
     pub(super) fn note_whether_law_stands(&mut self, view: &View<'_, P::Plan>) {
         self.follower.stands =
             self.is_on_law() && self.mover.setpoint().is_at_rest() && self.law_stands(view);
@@ -361,7 +362,7 @@ impl<P: Planner> Axis<P> {
             let law = |seen| coupling.law(&anchor, seen).1;
             let ends = [law(&coupling.was), law(&view.seen())];
             let speeds = [self.mover.setpoint().velocity, next.velocity];
-            // On the law it needs no room.
+            // A motion on the law needs no room.
             let leaves_room = room.velocity == 0.0 || leaves_room(&ends, &room, speeds, in_force, cycle);
             if !leaves_room || self.beyond(Some(place), &next, in_force, Some(false)).is_some() {
                 self.approach(view, false, scope);
@@ -374,7 +375,7 @@ impl<P: Planner> Axis<P> {
         self.look_from_near(&beside, frame.position - frame_place.position);
         let arrives = arrives && self.law_fits(view, true);
         if arrives && known.is_some() && self.is_on(&end, frame_place, &law, law_place) {
-            // The snap is that of the way up to here.
+            // The snap is that of the motion before this point.
             let snap = next.snap;
             self.publish_behind(law_place, Setpoint { snap, ..law }, scope);
             return self.lock_unless_stopped(anchor, view, scope);
@@ -386,8 +387,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// After several turns on its way back onto its law the rest is looked for from where it is then: a plan that began further away is
-    /// as coarse as that is far.
+    /// On a way of several turns back onto its law, the rest of the way is searched again from the present place: a
+    /// plan that began further away is as coarse as that distance.
     fn look_from_near(&mut self, beside: &Setpoint, line: f64) {
         let (Some(modulo), Some(coupling)) = (&self.modulo, &mut self.follower.coupling) else {
             return;
@@ -398,7 +399,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// In gear, if what was published last did not end that.
+    /// In gear, unless the last published set-point has ended that.
     fn lock_unless_stopped(&mut self, anchor: Anchor, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         if self.is_coupled() && !self.is_paused() {
             self.lock(anchor, view, scope);
@@ -635,8 +636,8 @@ impl<P: Planner> Axis<P> {
             return None;
         }
         let ramp = self.planner.ramp_to(next, 0.0, limits, limits);
-        // The velocity that it can only reach. A stop in the middle of a reversal turns back within the
-        // limits.
+        // The highest velocity that cannot be avoided. A stop in the middle of a reversal stays within the limits
+        // when it reverses.
         let most = match &ramp {
             Ok(ramp) => {
                 let excess = ramp.excess()?;
@@ -735,8 +736,8 @@ impl<P: Planner> Axis<P> {
     }
 }
 
-/// Whether a law of measured values, in these two states at the ends of a scan of this `cycle` (s), left a plan this `room` beside it
-/// during the whole scan. Both together had these two velocities at its ends.
+/// Whether a law of measured values left a plan this `room` beside it during the whole scan. The law has these two
+/// states at the ends of a scan of this `cycle` (s). The sum of both had these two velocities there.
 pub(super) fn leaves_room(
     law: &[Setpoint; 2],
     room: &Limits,
@@ -783,7 +784,7 @@ pub(super) fn apart(one: Place, other: Place, length: f64) -> f64 {
     off(one, other, length) + (one.phase - other.phase)
 }
 
-/// Whether two masters are at the same place but for rounding.
+/// Whether two masters are at the same place, except for rounding.
 pub(super) fn meet(one: Place, other: Place, length: f64) -> bool {
     let numbers = one.position.abs() + other.position.abs() + length;
     apart(one, other, length).abs() <= RESOLVED * 4.0 * numbers

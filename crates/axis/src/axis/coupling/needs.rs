@@ -7,8 +7,9 @@ use standstill_planner::{Limits, Setpoint};
 /// The order of the results of [`Step::needs`].
 pub(super) const DERIVATIVES: [&str; 4] = ["velocity", "acceleration", "jerk", "snap"];
 
-/// A third derivative of at most J leads at most J cycle^3 / `BENT` off the way that velocities and accelerations at both ends
-/// of a scan explain: 36 times the root of 3 (error of the trapezoidal rule with end correction).
+/// A third derivative of at most J moves the end at most J cycle^3 / `BENT` away from the place that the velocities
+/// and accelerations at both ends of a scan give. `BENT` is 36 times the root of 3 (error of the trapezoidal rule
+/// with end correction).
 const BENT: f64 = 62.353_829_072_479_58;
 
 /// The largest relative error of a position, relative to the largest position that it was made from.
@@ -42,8 +43,8 @@ impl Step<'_> {
         let bend = |of: [f64; 2]| cycle * cycle / 12.0 * change(of);
         let resolved = |[from, to]: [f64; 2], more: f64| RESOLVED * (from.abs() + to.abs() + more);
         let [once, twice, thrice] = [1.0 / cycle, 4.0 / (cycle * cycle), BENT / (cycle * cycle * cycle)];
-        // For a way, a change of velocity and a change of acceleration: the part that one, two and three
-        // derivatives of it explain.
+        // For a distance, a change of velocity and a change of acceleration: the part that one, two and three of its
+        // derivatives explain.
         let place = resolved([last.position, next.position], self.coarsest);
         let way = |of: &dyn Fn(f64) -> f64, by: f64| {
             let off = self.way.map_or(0.0, of);
@@ -68,8 +69,8 @@ impl Step<'_> {
     }
 }
 
-/// How much rounding may exceed a limit if it moves a moment by `1`, relative to the limit: if a motion
-/// is at its limit all the time, the room left grows with the square of the excess.
+/// How much rounding may exceed a limit if it moves a moment by `1`, relative to the limit. If a motion is always at
+/// its limit, the room left grows with the square of the excess.
 const FAR: f64 = 64.0;
 
 /// A moment with a rounding error above this, relative to its largest possible value, is ignored.
@@ -80,9 +81,9 @@ impl Step<'_> {
     /// value that some motion needs, and the limit. Each derivative is checked by itself, independent of
     /// the lower ones between the two.
     ///
-    /// The derivative is a function of time between M - L and M + L, and the set-points give its first
-    /// moments. The possible moments of such a function are known: see [`are_possible`]. M is 0 but for
-    /// accelerations, if one way another limit applies than the other.
+    /// The derivative is a function of time between M - L and M + L, and the set-points give its first moments. The
+    /// possible moments of such a function are known: see [`are_possible`]. M is 0, except for accelerations with
+    /// different limits in the two directions.
     pub(super) fn beyond(&self, most: &Limits) -> Option<Beyond> {
         let (middle, rate) = self.rates(most);
         let limits = [(middle, rate), (0.0, most.jerk), (0.0, most.snap)];
@@ -91,15 +92,15 @@ impl Step<'_> {
             let (_, limit) = range;
             limit.is_finite() && !self.is_possible(number + 1, *range)
         })?;
-        // The limit of the way in which the velocity changes.
+        // The limit for the direction in which the velocity changes.
         let (middle, limit) = range;
         let more = middle.copysign(middle * (self.next.velocity - self.last.velocity));
         Some((name, self.least(number + 1, range) + more, limit + more))
     }
 
-    /// The middle of the possible accelerations and their distance from it (u/s^2). While the velocity
-    /// keeps its sign, one way the acceleration limit applies and the other way the deceleration limit.
-    /// Where the scan is long enough to brake to rest and set off again, the larger one applies both ways.
+    /// The middle of the possible accelerations, and their distance from it (u/s^2). While the velocity keeps its
+    /// sign, the acceleration limit applies in one direction and the deceleration limit in the other. If the scan is
+    /// long enough to brake to rest and start again, the larger one applies in both directions.
     fn rates(&self, most: &Limits) -> (f64, f64) {
         let (from, to) = (self.last.velocity, self.next.velocity);
         let (up, down) = (most.acceleration, most.deceleration);
@@ -429,7 +430,7 @@ mod tests {
                 assert_eq!((name, limit), ("acceleration", most));
                 assert!((least / rate.abs() - 1.0).abs() < 1e-3, "{least}");
             }
-            // It brakes to rest within the scan, and sets off the other way.
+            // It brakes to rest within the scan, and starts again in the other direction.
             let turns = step(&state(0.0, sign * 0.1), &state(sign * 0.00005, sign * -0.1)).beyond(&limits);
             assert_eq!(turns, None);
         }

@@ -1,12 +1,11 @@
 //! MC_PhasingAbsolute and MC_PhasingRelative: the slave sees its master at a shifted place.
 //!
-//! The shift moves on a plan of its own, in units of the master. The plan keeps the sum of master and
-//! shift inside the limits of the slave: it is slower than asked, or waits for room. The shift belongs to
-//! the slave. It stays when another coupling with the same master takes over, and ends with the last
-//! coupling.
+//! The shift moves on a plan of its own, in units of the master. The plan keeps the sum of master and shift inside
+//! the limits of the slave: it is slower than asked, or waits for room. The shift belongs to the slave. It remains
+//! when another coupling with the same master takes over, and ends with the last coupling.
 //!
-//! Source: PLCopen Motion Control Part 1, MC_PhasingAbsolute, MC_PhasingRelative; V21. What the standard leaves open is told in
-//! docs/coupling.md.
+//! Source: PLCopen Motion Control Part 1, MC_PhasingAbsolute, MC_PhasingRelative; V21. docs/coupling.md states what
+//! the standard leaves open.
 
 use super::super::Axis;
 use super::super::commands::{Entry, Work, refusal};
@@ -35,11 +34,11 @@ struct Moving<Plan> {
     elapsed: u64,
     scans: u64,
     limits: Limits,
-    /// The same, or those of the earlier shifts that it took over from in motion.
+    /// The same, or the limits of the earlier shifts from which it took over in motion.
     most: Limits,
-    /// What was known of the masters when it was planned.
+    /// The known motion of the masters when it was planned.
     kind: Kind,
-    /// They have got another motion since: there may be more room.
+    /// The masters have a new motion since then, so there may be more room.
     is_dated: bool,
 }
 
@@ -71,7 +70,7 @@ impl<Plan> Default for Phasing<Plan> {
 }
 
 impl<Plan> Phasing<Plan> {
-    /// Whether there is no shift and none is asked for.
+    /// Whether there is no shift and none is commanded.
     pub(super) fn is_none(&self) -> bool {
         let rests = |leg: &Shifts| leg.command.is_none() && leg.now.position == 0.0;
         self.motion.is_none() && self.legs.iter().all(rests)
@@ -104,7 +103,7 @@ impl Seen {
         self.unshifted.unwrap_or([self.at.velocity, self.at.acceleration])
     }
 
-    /// How large the numbers are that tell where it is seen (u).
+    /// The size of the numbers that give its shifted place (u).
     pub(super) fn size(&self) -> f64 {
         self.at.position.abs() + self.place.phase.abs()
     }
@@ -276,12 +275,12 @@ impl<P: Planner> Axis<P> {
         taken
     }
 
-    /// The shift is changing.
+    /// Whether the shift is changing.
     pub(super) fn is_phasing(&self) -> bool {
         self.follower.phasing.motion.is_some()
     }
 
-    /// The limits that a changing shift of this master takes at most (u of the master).
+    /// The most of the limits that a changing shift of this master takes (u of the master).
     pub(super) fn taken_by_shift(&self, leg: usize) -> Option<&Limits> {
         let motion = self.follower.phasing.motion.as_ref();
         motion
@@ -312,7 +311,7 @@ impl<P: Planner> Axis<P> {
         }
         let mut shifted = *view;
         for leg in &mut self.follower.phasing.legs {
-            // The condition that stopped it is over.
+            // The condition that stopped it has ended.
             leg.now = Setpoint::at_rest(leg.now.position);
         }
         if let Some((leg, moving)) = &mut self.follower.phasing.motion {
@@ -350,7 +349,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Begins the command that waits for room, if there is some.
+    /// Begins the command that waits for room, if there is room.
     fn begin_shift(&mut self, leg: usize, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let Some(Shifts { now, command, .. }) = self.follower.phasing.legs.get(leg).copied() else {
             return;
@@ -358,7 +357,7 @@ impl<P: Planner> Axis<P> {
         let Some(mut shift) = command.filter(|shift| !shift.runs) else {
             return;
         };
-        // One at a time.
+        // Only one shift moves at a time.
         if self
             .follower
             .phasing
@@ -373,7 +372,7 @@ impl<P: Planner> Axis<P> {
         };
         let asked = shift.shift;
         if shift.is_relative {
-            // To a place from now on, however often it is planned anew.
+            // From now on a fixed value, however often it is planned anew.
             shift.shift += now.position;
             shift.is_relative = false;
         }
@@ -395,9 +394,9 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Plans the shift in progress anew if its masters have left room since with which it is there sooner.
+    /// Plans the shift in progress anew if its masters have left more room since, and it is done sooner with that.
     ///
-    /// Cost: as [`Axis::shifted_view`], once for each motion of the masters.
+    /// Cost: that of [`Axis::shifted_view`], once for each motion of the masters.
     fn hasten_shift(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let kind = view.future.kind();
         let Some((leg, moving)) = &mut self.follower.phasing.motion else {
@@ -434,7 +433,7 @@ impl<P: Planner> Axis<P> {
         self.record(Event::Phasing { to, scans }, scope);
     }
 
-    /// The way of a shift from its state `now`, with what it asks for of the `room`.
+    /// The way of a shift from its state `now`, with the part of the `room` that it asks for.
     fn planned_shift(
         &self,
         shift: &Shift,
@@ -460,7 +459,7 @@ impl<P: Planner> Axis<P> {
         };
         let mut plan = planned(&limits)?;
         if let (Some(most), true) = (&most, self.slows_master() && plan.excess().is_some()) {
-            // At such low rates it would overrun the room that the master leaves.
+            // At such low rates it would exceed the room that the master leaves.
             limits = Limits {
                 velocity: limits.velocity,
                 acceleration: limits.acceleration.max(most.acceleration),

@@ -14,8 +14,8 @@ use super::{Coupling, Seen};
 use crate::{AxisId, OnLimit, Scope, ValueSource};
 use standstill_planner::{Limits, Place, Planner, Setpoint};
 
-/// The data of the last step of an axis, if some axis may follow another: they tell whether anything is
-/// new in the next.
+/// The data of the last step of an axis, if some axis may follow another. They show whether anything is new in the
+/// next step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::axis) struct Steady {
     /// Nothing is new; never out of date if it is TRUE.
@@ -37,8 +37,8 @@ pub(in crate::axis) struct Steady {
 pub(super) struct Room {
     /// Its derivatives: the limits of the slave.
     most: Limits,
-    /// Way (u) from the last set-point, and changes of velocity (u/s) and acceleration (u/s^2): the
-    /// limits of the axis.
+    /// Distance (u) from the last set-point, and changes of velocity (u/s) and acceleration (u/s^2): the limits of
+    /// the axis.
     step: [f64; 3],
     /// It is in gear by a law of axes without turns, and neither is phase shifted.
     is_straight: bool,

@@ -1,11 +1,12 @@
 //! MC_GearInPos: a law that is given before the slave is on it, and a start that waits for a place of the
 //! master. MC_CamIn may also have such a start.
 //!
-//! Until the start the command waits beside the owner of the slave, and does not affect it. When the
-//! start point is crossed, it is checked whether the slave can be in sync in time, before the owner is
+//! Until the start the command waits beside the owner of the slave, and does not affect it. When the master crosses
+//! the start point, the command is checked first: can the slave be in sync in time? Only then is the owner
 //! interrupted.
 //!
-//! Source: PLCopen Motion Control Part 1, MC_GearInPos; V19, V19a. What the standard leaves open is told in docs/coupling.md.
+//! Source: PLCopen Motion Control Part 1, MC_GearInPos; V19, V19a. docs/coupling.md states what the standard leaves
+//! open.
 
 use super::super::commands::{Entry, Gearing, Sync, Work};
 use super::super::{Axis, Motion};
@@ -21,7 +22,7 @@ use standstill_planner::{Anchor, CamLaw, Limits, Place, Plan, Planner, Setpoint}
 /// The largest rounding error of a master's place, relative to the numbers it is made of.
 const ROUNDING: f64 = 1e-9;
 
-/// Most halvings of a span of scans, of which a plan has at most 2^31.
+/// Most times that a span of scans is halved; a plan has at most 2^31 scans.
 const HALVINGS: u32 = 32;
 
 /// Most start distances that are tried for the record of a start that is too late.
@@ -36,10 +37,10 @@ pub(in crate::axis) struct Awaited {
     pub(in crate::axis) entry: Entry,
     master: AxisId,
     source: ValueSource,
-    /// The master at the end of the scan before, in its coordinates of now.
+    /// The master at the end of the last scan, in its present coordinates.
     was: Seen,
     start: StartPoint,
-    /// The place at the master where its cam is laid, once that is known, and the place of the cam there.
+    /// The place of its cam at the master, once that is known, and the place of the cam there.
     laid: Option<(Place, f64)>,
 }
 
@@ -57,7 +58,7 @@ struct StartPoint {
     is_between: bool,
 }
 
-/// A step of the master: from where to where, and the way between them.
+/// A step of the master: its start, its end, and the distance between them.
 struct Course {
     before: f64,
     here: f64,
@@ -95,7 +96,7 @@ impl StartPoint {
         let way = heading * course.way;
         let has_crossed = match course.length {
             None => heading * (before - point) < 0.0 && heading * (here - point) >= 0.0,
-            // Its distance behind the start point is less than its way in this scan.
+            // Its distance behind the start point is shorter than its travel in this scan.
             Some(length) => wrapped(heading * (here - point), length) < way,
         };
         if core::mem::take(&mut self.is_new) {
@@ -158,10 +159,10 @@ impl Awaited {
         Some((place, cams.cam(camming.cam)?.head.begin))
     }
 
-    /// The way of the master from the end of the last scan to `now`, on the master's side of the cam if a
-    /// cam is given. `turn` is the length of the master's turn (u).
+    /// The step of the master from the end of the last scan to `now`, on the master's side of the cam if a cam is
+    /// given. `turn` is the length of the master's turn (u).
     fn course(&mut self, now: &Seen, turn: Option<f64>, cams: &Cams<'_>) -> Option<Course> {
-        // What moved in the motion step itself was not seen before it.
+        // A move of coordinates within the motion step was not seen before it.
         let late = now.moved - self.was.moved;
         if let Work::Cam(camming) = self.entry.work {
             let cam = cams.cam(camming.cam)?;
@@ -306,7 +307,7 @@ impl<P: Planner> Axis<P> {
         self.follower.awaited.as_ref().map(|awaited| awaited.master)
     }
 
-    /// The same master, with the values of it that count.
+    /// The same master, with its values that are followed.
     pub(crate) fn awaited_values(&self) -> Option<Values> {
         self.follower
             .awaited
@@ -334,8 +335,8 @@ impl<P: Planner> Axis<P> {
     /// The master is at the start point of a waiting command. The command takes over, or it fails and the
     /// owner of the axis continues.
     ///
-    /// Cost: that of the plans tried in the search for a way onto a law, and for a start that is too late up
-    /// to 18 times that.
+    /// Cost: that of the plans tried in the search for a way onto a law. For a start that is too late, up to 18 times
+    /// that.
     pub(crate) fn start_at_point(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let Some(Awaited { entry, was, laid, .. }) = self.follower.awaited else {
             return;
@@ -408,8 +409,10 @@ impl<P: Planner> Axis<P> {
         self.lose_heir(entry.id, scope);
     }
 
-    /// Whether `entry` is in sync in time; its coupling is lent for this check. If not: the pin, its
-    /// value and limit, and the reason.
+    /// Checks that `entry` is in sync in time; its coupling is lent for this check.
+    ///
+    /// # Errors
+    /// The pin, its value, the limit, and the reason.
     fn way_at_start(&mut self, entry: &Entry, view: &View<'_, P::Plan>) -> Result<(), NotInTime> {
         let late = self.late_at_start(entry, view)?;
         let Some(coupling) = self.follower.coupling else {
@@ -428,7 +431,7 @@ impl<P: Planner> Axis<P> {
         let in_scan = (view.now.at.velocity * self.planner.cycle()).abs();
         let mut enough = distance.abs() + late;
         for _ in 0..TRIALS {
-            // A master that turns is at its sync point again after that way.
+            // A master with turns is at its sync point again after that distance.
             let exists = enough.is_finite() && view.turn.is_none_or(|length| enough < length);
             if !exists {
                 break;
@@ -438,7 +441,7 @@ impl<P: Planner> Axis<P> {
                 let enough = enough.copysign(distance);
                 return Err(("MasterStartDistance", distance, enough, ErrorId::SyncNotReachable));
             }
-            // From further away the slave may have a longer way, which takes less time than that of the master.
+            // From further away the slave may have a longer way that takes less time than that of the master.
             enough += 2.0 * late;
         }
         let (pin, value) = match sync.mode {
@@ -448,7 +451,7 @@ impl<P: Planner> Axis<P> {
         Err((pin, value, f64::NAN, ErrorId::SyncNotReachable))
     }
 
-    /// By how much (u of the master) `entry` would be late if its master were `further` (u) from its sync
+    /// The delay (u of the master) with which `entry` would be in sync if its master were `further` (u) from its sync
     /// point; `coupling` is lent for this check.
     fn late_from(
         &mut self,
@@ -472,8 +475,8 @@ impl<P: Planner> Axis<P> {
         self.late_at_start(entry, &shifted)
     }
 
-    /// By how much (u of the master) `entry` is late at its sync point; without end if no way leads onto
-    /// the law. A slave that would be late because it waits goes back, where its mode permits that.
+    /// The delay (u of the master) of `entry` at its sync point; infinite if no way leads onto the law. A slave that
+    /// would be late because it waits goes back, if its mode permits that.
     fn late_at_start(&mut self, entry: &Entry, view: &View<'_, P::Plan>) -> Result<f64, NotInTime> {
         self.lay_law(view);
         let late = self.late_on_way(entry, view)?;
@@ -614,8 +617,8 @@ impl<P: Planner> Axis<P> {
         };
         let here = self.place();
         let cycle = self.planner.cycle();
-        // The slave's place without the command when the master gets there, and its place with the
-        // command. If the master's way is not known, its place now counts.
+        // The slave's place without the command when the master gets there, and its place with the command. If the
+        // master's motion ahead is not known, its present place counts.
         let scans = self.scans_of_master(view, self.way_to_sync(view, anchor));
         let (kept, wanted) = match scans {
             Some(scans) => {
@@ -641,7 +644,7 @@ impl<P: Planner> Axis<P> {
             }
         };
         let turns = here.turns.wrapping_add(before).wrapping_add(further);
-        // The law is laid by its place at the sync point.
+        // The law is given by its place at the sync point.
         turns.wrapping_sub(wanted.turns).wrapping_add(anchor.slave.turns)
     }
 

@@ -11,7 +11,7 @@ pub(crate) struct Seen {
     pub place: Place,
     /// Its derivatives; the position is that of `place`.
     pub at: Setpoint,
-    /// Its own velocity (u/s) and acceleration (u/s^2), where it is seen with a shift.
+    /// Its own velocity (u/s) and acceleration (u/s^2), if it is seen with a shift.
     pub unshifted: Option<[f64; 2]>,
     /// The move of its coordinates in this scan (u).
     pub moved: f64,
@@ -80,7 +80,7 @@ impl<Plan> Part<'_, Plan> {
 /// The next motion of an axis.
 #[derive(Clone, Copy)]
 pub(crate) enum Course<'a, Plan> {
-    /// It stands.
+    /// It is at rest.
     Still,
     /// This plan, at this number of scans after its start.
     Plan(&'a Plan, u64),
@@ -179,8 +179,8 @@ pub(in crate::axis) fn end_of<Q: Plan>(lead: &Lead<'_, Q>) -> Setpoint {
     lead.plan.at(u64::from(lead.plan.scans()))
 }
 
-/// The way (u of the slave) on which the masters still lead it, from this many `scans` after the leads
-/// begin. `None` if one of them does not come to rest.
+/// The distance (u of the slave) over which the masters still lead it, from this many `scans` after the leads begin.
+/// `None` if one of them does not come to rest.
 pub(in crate::axis) fn way_to_rest<Q: Plan>(leads: &Leads<'_, Q>, scans: u64) -> Option<f64> {
     leads.iter().flatten().try_fold(0.0, |way, lead| {
         let end = end_of(lead);
@@ -399,9 +399,9 @@ impl<P: Planner> Axis<P> {
             // The motion along a curve through points ahead is not known.
             Motion::Run { plan, elapsed, .. } if self.planner.is_curve((plan, *elapsed)) => Course::Unknown,
             Motion::Run { plan, elapsed, .. } => Course::Plan(plan, *elapsed),
-            // Its slaves look along the plan of its master where it is in gear behind that.
+            // Slaves look along the plan of its master while it is in gear behind that plan.
             Motion::Geared if self.follower.stands && self.factor_in_gear().is_none() => Course::Still,
-            // In gear behind measured values it is no more even than they are.
+            // In gear behind measured values its motion is no more even than they are.
             Motion::Geared if self.follows_actual() => Course::Measured(UNKNOWN),
             Motion::Follow | Motion::Torque { .. } | Motion::Geared | Motion::Closing { .. } => {
                 Course::Unknown

@@ -129,10 +129,10 @@ impl<P: Planner> Axis<P> {
     /// Limits within which a shadow that is at `next` at the end of this scan comes to rest before the next corner.
     /// None if the corner is far away.
     ///
+    /// Cost: a check of each row on that way, and at most ten ramps if a corner is near.
+    ///
     /// # Errors
     /// The corner, if there are no such limits.
-    ///
-    /// Cost: a check of each row on that way, and at most ten ramps if a corner is near.
     fn stops_in_time(&self, curve: &Curve<'_>, next: &Shadow) -> Result<Option<Limits>, Corner> {
         let at = &next.at;
         let x = curve.unwound(next.place);
