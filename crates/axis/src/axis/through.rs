@@ -82,7 +82,7 @@ impl<P: Planner> Axis<P> {
             let to_rest = self.scans_to_rest(entry, start, behind.end, before);
             to_rest.saturating_add(self.scans_behind(&Setpoint::at_rest(behind.end), behind))
         };
-        // Without a usable ramp `passing` is taken as it is; nothing else is possible.
+        // A ramp behind which the next command can't be done is not used. `passing` is kept even then.
         let ramps = ramps.into_iter().flatten().map(counted);
         let ramps = ramps.filter(|(_, scans)| *scans < u64::MAX);
         let on_a_ramp = ramps.min_by_key(|(_, scans)| *scans);

@@ -175,7 +175,7 @@ struct Trials<'a, P: Planner> {
     below: &'a Below<'a, P::Plan>,
     /// Scans to the next switches of the owner's plan.
     switches: ([u64; SWITCHES], usize),
-    /// The part of the limits that the owner's plan uses. A faster motion does not get room sooner.
+    /// The part of the limits that the owner's plan uses. It does not make room faster than with these.
     used: Limits,
     start: &'a Setpoint,
     /// The limits at the start, until those of the motion apply; none at rest.
@@ -459,7 +459,6 @@ impl<P: Planner> Trials<'_, P> {
 
     /// Tries `count` times to continue a motion faster from a later switch of the owner's plan. `starts` is the
     /// motion, unless it is in progress.
-    /// it is in progress.
     fn faster_later(
         &mut self,
         (slow, elapsed): (&P::Plan, u64),
