@@ -34,7 +34,7 @@ iec_enum! {
 }
 
 impl CamCurve {
-    /// The same for the planner.
+    /// The same law for the planner.
     pub const fn shape(self) -> CamShape {
         match self {
             Self::Through => CamShape::Through,
@@ -48,8 +48,8 @@ impl CamCurve {
 }
 
 iec_enum! {
-    /// Where MC_CamIn lays a cam (MC_START_MODE, numbers in the standard's order). Whichever it is, the slave comes onto the
-    /// cam within its limits.
+    /// The place where MC_CamIn puts a cam (MC_START_MODE, numbers in the standard's order). In every mode the slave
+    /// comes onto the cam within its limits.
     StartMode = "MC_START_MODE" {
         /// As it was selected.
         Absolute = "mcAbsolute", 0;
@@ -108,7 +108,7 @@ pub struct CamSelection {
     pub slave_absolute: bool,
 }
 
-/// What a slot holds.
+/// The content of a slot.
 #[derive(Clone, Copy, Debug, Default)]
 enum Content {
     #[default]
@@ -199,7 +199,7 @@ impl<'a> Cams<'a> {
         matches!(slot.content, Content::Ready(_)).then_some(slot.selection)
     }
 
-    /// Its owner no longer needs it: it stays for the axes that are on it.
+    /// Its owner no longer needs it. It stays for the axes that are on it.
     pub fn retire(&mut self, id: CamId) {
         if let Some(slot) = self.slot_mut(id) {
             slot.retired = true;
@@ -305,7 +305,7 @@ impl<'a> Cams<'a> {
         }
     }
 
-    /// Frees the slot of a cam that was refused for another reason.
+    /// Frees the slot of a cam that was refused for a reason outside its rows.
     pub fn give_back(&mut self, id: CamId) {
         if let Some(slot) = self.slot_mut(id) {
             slot.content = Content::Free;
@@ -348,7 +348,7 @@ mod tests {
         assert!(cams.selection(first).is_none() && cams.cam(first).is_some());
         let second = select(&mut cams, 11, &[first]).unwrap();
         assert_eq!(cams.cam(first).unwrap().pieces.len(), 10);
-        // No axis is on it any more.
+        // No axis is on it now.
         let third = select(&mut cams, 11, &[]).unwrap();
         assert!(cams.cam(first).is_none() && cams.cam(second).is_some());
         assert_ne!(first, third);

@@ -1,4 +1,4 @@
-//! Couplings, seen from above all axes: which axis may follow which, and in which order they move.
+//! Couplings of all axes: which axis may follow which, and in which order they move.
 //!
 //! Masters move before their slaves, independent of their numbers and of the order of block calls. A
 //! command that would close a ring is refused.
@@ -58,8 +58,8 @@ pub fn update_coupled<P: Planner>(
     check(axes, slave, command, false, scope)?.update(id, command, scope)
 }
 
-/// The slave, if it may follow the masters of this command. Masters out of operation are accepted if it
-/// `takes` no command.
+/// Checks that the slave may follow the masters of this command, and returns it. Masters out of operation are
+/// accepted if it `takes` no command.
 fn check<'a, P: Planner>(
     axes: &'a mut [Axis<P>],
     slave: AxisId,
@@ -149,9 +149,9 @@ fn seen_before<P: Planner>(axes: &[Axis<P>], (master, source): Values, scan: u64
     })
 }
 
-/// Whether `upper` is among `lower`, its masters, and theirs. A command that waits for a place of a
-/// master counts: its slave already moves behind the master, and masters and slaves that wait for each
-/// other would have no order.
+/// Whether `upper` is among `lower`, its masters, and the masters above those. A command that waits for a place of a
+/// master counts, because its slave already moves behind the master. Masters and slaves that wait for each other
+/// would have no order.
 ///
 /// Cost: it visits all axes as many times as the longest chain has axes.
 fn is_above<P: Planner>(axes: &mut [Axis<P>], upper: AxisId, lower: AxisId) -> bool {
@@ -209,7 +209,7 @@ pub(crate) fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
     note_some_follow(axes, some_follow);
 }
 
-/// Some axis may follow another from now on, or none does. The first axis knows it for all.
+/// Sets whether some axis may follow another from now on. The first axis keeps this for all.
 fn note_some_follow<P: Planner>(axes: &mut [Axis<P>], some_follow: bool) {
     if let Some(first) = axes.first_mut() {
         first.links_mut().set_some_follow(some_follow);
@@ -340,7 +340,7 @@ fn set_ranks<P: Planner>(axes: &mut [Axis<P>]) -> u16 {
     highest
 }
 
-/// The rank of an axis, as those of its masters are now.
+/// The rank of an axis, from the present ranks of its masters.
 fn rank_below<P: Planner>(axes: &[Axis<P>], axis: &Axis<P>) -> u16 {
     if !axis.links().is_bound() {
         return 0;
@@ -350,8 +350,8 @@ fn rank_below<P: Planner>(axes: &[Axis<P>], axis: &Axis<P>) -> u16 {
     rank.unwrap_or(0)
 }
 
-/// A command that waits behind a motion may become active in this step. If it could not follow then, it
-/// gets the reason before.
+/// A command that waits behind a motion may become active in this step. If it could not follow its master then, it
+/// gets the reason before the step.
 fn bar_rings<P: Planner>(axes: &mut [Axis<P>], index: usize) {
     let Some(axis) = axes.get_mut(index).filter(|axis| axis.links().is_bound()) else {
         return;
@@ -477,7 +477,7 @@ fn look<P: Planner>(
     let Some((slave, after)) = rest.split_first_mut() else {
         return;
     };
-    // Never the slave itself: a ring was refused when it would have closed.
+    // Never the slave itself: a command that would close a ring was refused.
     let part = |root: &Root| {
         let own = before.get(root.axis);
         let axis = own.or_else(|| after.get(root.axis.checked_sub(index)?.checked_sub(1)?));

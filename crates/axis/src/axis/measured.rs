@@ -1,11 +1,11 @@
-//! Actual positions as a master: filtered, and a motion with a velocity, an acceleration, a jerk and a snap.
+//! Actual positions as a master. They are filtered into a motion with a velocity, an acceleration, a jerk and a snap.
 //!
-//! A change of one increment in a scan is thousands of times the snap of a machine. So slaves see the
-//! feedback through four moving averages in a row, each over the time `actual_filter`. The input is the
-//! position held from latch to latch. Four averages of a step make a motion in pieces of constant snap,
-//! each one scan long, so its derivatives are exact and not estimated. With L scans per average, a scan
-//! of T, and noise of at most q either way, the errors against the undisturbed motion are: snap at most
-//! 16 q / (L T)^4, jerk 8 q / (L T)^3, acceleration 4 q / (L T)^2, velocity 2 q / (L T).
+//! A change of one increment in a scan is thousands of times the snap of a machine. So slaves see the feedback
+//! through four moving averages in a row, each over the time `actual_filter`. The input is the position held from
+//! latch to latch. Four averages of a step make a motion in pieces of constant snap, each one scan long, so its
+//! derivatives are exact and not estimated. An average has L scans of T, and the noise is at most q in either
+//! direction. Then the largest errors against the undisturbed motion are: snap 16 q / (L T)^4, jerk 8 q / (L T)^3,
+//! acceleration 4 q / (L T)^2, velocity 2 q / (L T).
 //!
 //! All sums are integers. The averages at the ends of scans, times L^4, are running sums of running sums
 //! of increments. The part within a scan is a sum with the weights 1, 11, 11, 1 over 24. So nothing
@@ -42,8 +42,8 @@ pub(super) struct Measured {
     told: Option<Told>,
 }
 
-/// An encoder at rest that trembles by two increments either way seems to move by an increment in this many scans at most: the bound of
-/// the velocity above, with the filter of an axis that sets none.
+/// An encoder at rest that trembles by two increments in either direction seems to move by at most one increment in
+/// this number of scans. This is the bound of the velocity above, with the filter of an axis that sets none.
 const TREMBLE: i128 = 4;
 
 /// A place and its derivatives, per scan.
@@ -54,7 +54,7 @@ struct State {
     rates: [f64; 4],
 }
 
-/// A place of the averages: whole increments, and the rest ahead of them.
+/// A place of the averages: whole increments, and the remainder ahead of them.
 type AtIncrement = (i64, State);
 
 /// The filter for a drive that counts increments.
@@ -66,7 +66,7 @@ struct Counted {
     steps: [i32; RING],
     /// Index of the oldest of them.
     oldest: usize,
-    /// Sums over one, two, three and four averages of the steps; the last is the step of the output.
+    /// Sums of the steps over one, two, three and four averages; the last is the step of the output.
     sums: [i64; AVERAGES],
     /// The last steps of the output, the newest first (increments / `length`^4).
     out: [i64; OUTPUTS],
@@ -187,7 +187,7 @@ impl Counted {
         };
         let rest = REST.max(4 * self.length);
         let next = self.band.pass(told, rest);
-        // No axis moves 2^31 increments in a scan: such a jump is no motion.
+        // No axis moves 2^31 increments in a scan: such a jump is not a motion.
         let step = next.checked_sub(fed).and_then(|step| i32::try_from(step).ok());
         let Some(step) = step else {
             return self.start(told);
@@ -251,14 +251,14 @@ impl Counted {
         i128::from(self.out[0]).abs() * TREMBLE <= self.scale()
     }
 
-    /// The positions of this scan have new names: the last step counts as 0.
+    /// Renames the positions of this scan: the last step counts as 0.
     #[cold]
     fn rename(&mut self) {
         let (Some((told, fed)), Some((old, old_fed))) = (self.last, self.before) else {
             return;
         };
         let by = told.wrapping_sub(old);
-        // The step held back by the dead band is made up.
+        // The step that the dead band held back is added.
         let change = old.wrapping_sub(old_fed).wrapping_sub(fed.wrapping_sub(old_fed));
         let newest = self.in_ring(self.oldest + AVERAGES * self.length as usize - 1);
         if let Some(step) = self.steps.get_mut(newest) {
@@ -286,8 +286,8 @@ impl Counted {
             self.place
         };
         let scale = self.scale();
-        // Averages and weights delay by (4 * length - 1) / 2 scans. The lead is the velocity times this;
-        // here all of it is doubled.
+        // Averages and weights delay by (4 * length - 1) / 2 scans. The lead is the velocity times this delay. Here
+        // everything is doubled.
         let (scale, place, step) = if lead {
             let delay = 4 * i128::from(self.length) - 1;
             let step = |back| 2 * out(back) + delay * (out(back) - out(back + 1));
@@ -349,8 +349,7 @@ impl Told {
         self.places[0] = self.places[1];
     }
 
-    /// Renames positions: `old` (u) is called `name` (u) from now on, or a turn more or less. All others
-    /// become `by` (u) more.
+    /// Renames positions: `old` (u) becomes `name` (u), or a turn more or less. All others become `by` (u) more.
     fn rename(&mut self, old: f64, name: f64, by: f64, turn: Option<f64>) {
         let round = turn.filter(|length| (old + by - name).abs() > length / 2.0);
         let back = round.map_or(0.0, |length| length.copysign(old + by - name));
@@ -381,7 +380,7 @@ impl Told {
     fn state(&self, before: bool, lead: bool, length: f64) -> ((i64, f64), State) {
         let first = usize::from(before);
         let raw = |back: usize| self.step(first + back, length);
-        // As with averages of one scan.
+        // The same as for averages of one scan.
         let step = |back: usize| {
             if lead {
                 raw(back) + 1.5 * (raw(back) - raw(back + 1))
@@ -414,7 +413,7 @@ impl Measured {
         }
     }
 
-    /// Whether there is something to follow.
+    /// Whether there are values to follow.
     #[inline]
     pub fn is_there(&self) -> bool {
         self.counted.is_some() || self.told.is_some()
@@ -470,7 +469,7 @@ impl<P: Planner> Axis<P> {
         if let Some(counted) = counted {
             match told {
                 Some(DrivePosition::Increments(increments)) => counted.take(increments),
-                // A drive of the host that reports units although its axis has a scaling.
+                // A drive of the host that reports units, although its axis has a scaling.
                 Some(DrivePosition::Units(units)) => {
                     let scaling = self.config.scaling;
                     counted.take(scaling.map_or(0, |scaling| scaling.to_increments(units)));
