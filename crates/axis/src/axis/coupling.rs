@@ -60,7 +60,7 @@ pub(crate) type Values = (AxisId, ValueSource);
 /// The furthest place from 0 (u) for sync points and cams: beyond it numbers are too coarse.
 const FURTHEST: f64 = 1e15;
 
-/// The way in which a slave that is not in gear comes into gear.
+/// How a slave that is not in gear comes into gear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Rung {
     /// The next motion step decides.
@@ -93,13 +93,14 @@ pub struct Coupled {
     pub master: AxisId,
     /// Set position less that of the law (u); 0 in gear, and before it was in gear.
     pub deviation: f64,
-    /// The phase shift: how far ahead of its real place the master is seen (u of the master).
+    /// The phase shift: the distance by which the master is seen ahead of its real place (u of the master).
     pub phase: f64,
     /// The second master of MC_CombineAxes, and its phase shift.
     pub second: Option<(AxisId, f64)>,
-    /// The distance superimposed on the law since the law was laid (u).
+    /// The distance superimposed on the law since the law got its place (u).
     pub superimposed: f64,
-    /// On a cam: the place of the master at which the slave is (u of the master), if it is on the curve.
+    /// On a cam: the place of the slave on the curve as a place of the master (u of the master), if it is on the
+    /// curve.
     pub shadow: Option<f64>,
 }
 
@@ -112,7 +113,7 @@ pub(super) struct Follower<Plan> {
     on_cam: Option<OnCam>,
     /// The number of cam ends reached.
     cam_ends: u32,
-    /// In its last step it was on its law, and the law stood.
+    /// In its last step it was on its law, and the law was at rest.
     stands: bool,
     /// In its last step it was on its law, behind masters that tremble.
     trembles: bool,
@@ -122,7 +123,7 @@ pub(super) struct Follower<Plan> {
     awaited: Option<Awaited>,
     /// The part of its limits that its slaves leave.
     bound: Bound,
-    /// Whether anything is new, where some axis may follow another.
+    /// Whether anything is new, if some axis may follow another.
     steady: Steady,
 }
 
@@ -142,7 +143,7 @@ impl<P: Plan> Default for Follower<P> {
     }
 }
 
-/// What a command continues of the way in which the owner before it followed.
+/// The part of the last owner's following that a command continues.
 #[derive(Clone, Debug)]
 pub(super) struct Kept<Plan> {
     coupling: Option<Coupling>,
@@ -184,7 +185,7 @@ const COMBINED_PINS: [LegPins; 2] = [
 #[derive(Clone, Copy, Debug)]
 struct Coupling {
     gearing: Gearing,
-    /// The place of the law: where the slave was in gear first, or as given.
+    /// The place of the law: the first place of the slave in gear, or the given place.
     anchor: Option<Anchor>,
     /// It has been in gear.
     was_in_gear: bool,
@@ -193,9 +194,9 @@ struct Coupling {
     /// It is in time for its sync point only if it goes back to meet the law.
     goes_back: bool,
     rung: Rung,
-    /// The masters at the end of the scan before, in their coordinates of now.
+    /// The masters at the end of the last scan, in their present coordinates.
     was: SeenBoth,
-    /// The known part of their way ahead.
+    /// The known part of their motion ahead.
     known: view::Known,
     /// Scans until the way onto the law is searched again; the largest number for never.
     left: u64,
@@ -270,7 +271,7 @@ impl Coupling {
         self.anchor.map_or(0.0, |anchor| anchor.slave.phase)
     }
 
-    /// Whether it has a sync point and must not be faster than there.
+    /// Whether it has a sync point and must not be faster than at that point.
     fn goes_slowly(&self) -> bool {
         let slow = |sync: Sync| sync.mode == SyncMode::SlowDown;
         self.gearing.sync.is_some_and(slow)
@@ -281,7 +282,7 @@ impl Coupling {
         self.gearing.sync.is_some() && !self.was_in_gear
     }
 
-    /// Whether it waits for the law where it is ahead of it, and does not go to meet it.
+    /// Whether it waits for the law when it is ahead of it, and does not go to meet it.
     fn waits_ahead(&self) -> bool {
         self.is_syncing() && !self.goes_back
     }
@@ -309,7 +310,7 @@ impl Coupling {
 }
 
 impl<P: Planner> Axis<P> {
-    /// The owner follows a master.
+    /// Whether the owner follows a master.
     #[inline]
     pub(super) fn is_coupled(&self) -> bool {
         self.follower.coupling.is_some()
@@ -367,8 +368,8 @@ impl<P: Planner> Axis<P> {
         first.is_some_and(is_actual) || second.is_some_and(is_actual)
     }
 
-    /// The masters the owner follows, each with its ratio. The numerator is negative also if the way of
-    /// the master is subtracted.
+    /// The masters the owner follows, each with its ratio. The numerator is also negative if the master's motion is
+    /// subtracted.
     pub fn gears(&self) -> [Option<(AxisId, i32, u16)>; 2] {
         let Some(coupling) = &self.follower.coupling else {
             return [None; 2];
@@ -543,8 +544,9 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// What `entry`, which takes over now, continues of the present owner's way to follow, if that does. A command that
-    /// must not interrupt the motion starts beside a command that waits for its start point.
+    /// The part of the present owner's following that `entry`, which takes over now, continues; `None` if the owner
+    /// does not follow and no command waits for its start point. A command that must not interrupt the motion starts
+    /// beside one that waits for its start point.
     pub(super) fn lend_following(&mut self, entry: &Entry, mode: BufferMode) -> Option<Kept<P::Plan>> {
         let follows = self.follows() || self.follower.awaited.is_some();
         follows.then(|| Kept {
@@ -554,7 +556,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The owner before has ended; this goes on.
+    /// The last owner has ended; its following continues as `kept`.
     pub(super) fn keep_following(&mut self, kept: Option<Kept<P::Plan>>) {
         debug_assert!(self.follows() || self.follower.phasing.is_none());
         if let Some(kept) = kept {
@@ -572,7 +574,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A motion is added from the place (u) `added` of its layer on: the law counts from there.
+    /// A motion is added from the place (u) `added` of its layer: the law counts from there.
     pub(super) fn lay_layer_on_law(&mut self, added: f64) {
         if let Some(coupling) = &mut self.follower.coupling {
             coupling.lay_layer(added);

@@ -105,8 +105,8 @@ struct Told {
 }
 
 impl Band {
-    /// The part of `told` that is motion: `told` itself, or a constant place once `told` has been at rest
-    /// for `rest` scans.
+    /// The part of `told` that is motion: `told` itself, or a constant place after `told` has been at rest for `rest`
+    /// scans.
     fn pass(&mut self, told: i64, rest: u32) -> i64 {
         if let Some(held) = self.held
             && held.abs_diff(told) <= BAND / 2

@@ -189,7 +189,7 @@ impl<P: Plan> Layer<P> {
         self.moves() || matches!(&self.command, Some(command) if command.adds != Adds::Halt)
     }
 
-    /// Scans left of the motion of `command`; the largest number if it waits or stands.
+    /// Scans left of the motion of `command`; the largest number if it waits or is at rest.
     fn scans_in_progress(&self, command: &Added) -> u64 {
         match &self.motion {
             Motion::Run { elapsed, scans, .. } if command.runs() => scans.saturating_sub(*elapsed),

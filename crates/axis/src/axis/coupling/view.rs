@@ -119,10 +119,10 @@ pub(in crate::axis) enum Kind {
     Measured,
 }
 
-/// What a slave remembers of the next motions of its masters, in order to detect a change.
+/// The data of the masters' next motions that a slave keeps to detect a change.
 pub(super) type Known = [KnownPart; 2];
 
-/// What it remembers of one master.
+/// The data of one master.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct KnownPart {
     pub root: usize,
