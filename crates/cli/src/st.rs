@@ -45,7 +45,10 @@ fn sources(files: &[(String, Vec<u8>)]) -> Vec<Source<'_>> {
 /// The names and numbers of another system, if one is named.
 pub fn dialect(name: Option<&str>) -> Result<Dialect, Failure> {
     let Some(name) = name else {
-        return Ok(Dialect::default());
+        return Ok(Dialect {
+            elsewhere: pins_elsewhere(),
+            ..Dialect::default()
+        });
     };
     let known = standstill_export::Dialect::new(name).map_err(|error| Failure::usage(&error.to_string()))?;
     Ok(Dialect {
@@ -54,7 +57,26 @@ pub fn dialect(name: Option<&str>) -> Result<Dialect, Failure> {
         elements: known.names().to_vec(),
         numbers: known.numbers().to_vec(),
         pins: known.pins().to_vec(),
+        elsewhere: Vec::new(),
     })
+}
+
+/// The names that the dialects have for pins, for messages.
+fn pins_elsewhere() -> Vec<(String, String, String, String)> {
+    let known = standstill_export::Dialect::known();
+    let dialects = known.filter_map(|name| standstill_export::Dialect::new(name).ok());
+    let pins = dialects.flat_map(|dialect| {
+        let named = |(block, pin, there): &(String, String, String)| {
+            (
+                block.clone(),
+                pin.clone(),
+                there.clone(),
+                dialect.name().to_owned(),
+            )
+        };
+        dialect.pins().iter().map(named).collect::<Vec<_>>()
+    });
+    pins.collect()
 }
 
 /// Prints errors and warnings, with or without lints; a lint is a failure.

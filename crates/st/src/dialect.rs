@@ -14,6 +14,8 @@ pub struct Dialect {
     pub numbers: Vec<(String, i32, String)>,
     /// Our block, our pin, its name there.
     pub pins: Vec<(String, String, String)>,
+    /// Our block, our pin, its name in another dialect, the name of that dialect: for messages.
+    pub elsewhere: Vec<(String, String, String, String)>,
 }
 
 impl Dialect {
@@ -37,6 +39,20 @@ impl Dialect {
         let same =
             |(of, _, there): &&(String, String, String)| of == block && there.eq_ignore_ascii_case(name);
         self.pins.iter().find(same).map(|(_, pin, _)| pin.as_str())
+    }
+
+    /// Our pin for a name that it has in other dialects, as a help.
+    pub(crate) fn pin_elsewhere(&self, block: &str, name: &str) -> Option<String> {
+        let same = |(of, _, there, _): &&(String, String, String, String)| {
+            of == block && there.eq_ignore_ascii_case(name)
+        };
+        let found: Vec<_> = self.elsewhere.iter().filter(same).collect();
+        let (_, pin, ..) = found.first()?;
+        let dialects: Vec<_> = found.iter().map(|(.., dialect)| dialect.as_str()).collect();
+        Some(format!(
+            "here it is `{pin}`; --dialect {} takes the names of that system",
+            dialects.join(" or ")
+        ))
     }
 
     /// The element with a number in the dialect: `None` if the numbers are ours, `Some(None)` if no

@@ -179,6 +179,8 @@ pub(crate) struct Found {
     warnings: Vec<Diagnostic>,
     error_count: usize,
     warning_count: usize,
+    /// How many of the errors are those of reading, and not of names and types.
+    of_reading: usize,
 }
 
 impl Found {
@@ -197,6 +199,11 @@ impl Found {
         }
     }
 
+    /// All was read: what follows may have an error of reading as its cause.
+    pub(crate) const fn all_read(&mut self) {
+        self.of_reading = self.errors.len();
+    }
+
     pub(crate) const fn has_errors(&self) -> bool {
         self.error_count > 0
     }
@@ -206,12 +213,16 @@ impl Found {
         self.errors.len()
     }
 
-    /// All kept faults, in the order of the text.
+    /// All kept diagnostics: syntax errors first, then the others, each in the order of the text.
     pub(crate) fn report(self, sources: Sources) -> Report {
         let hidden = self.error_count - self.errors.len() + self.warning_count - self.warnings.len();
+        let in_text = |diagnostic: &Diagnostic| (diagnostic.span, diagnostic.severity);
         let mut diagnostics = self.errors;
-        diagnostics.extend(self.warnings);
-        diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.severity));
+        let mut others = diagnostics.split_off(self.of_reading.min(diagnostics.len()));
+        others.extend(self.warnings);
+        diagnostics.sort_by_key(in_text);
+        others.sort_by_key(in_text);
+        diagnostics.extend(others);
         Report {
             sources,
             diagnostics,
@@ -220,7 +231,7 @@ impl Found {
     }
 }
 
-/// The faults of the sources, in text order.
+/// The faults of the sources: those of reading first, because they cause others, each part in text order.
 #[derive(Clone, Debug)]
 pub struct Report {
     sources: Sources,
@@ -372,6 +383,11 @@ pub(crate) fn quoted(text: &str) -> String {
 /// The candidate nearest to `name` without regard to case, as a help, if it differs in at most one letter
 /// in three.
 pub(crate) fn did_you_mean<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
+    nearest(name, candidates).map(|candidate| format!("did you mean `{candidate}`?"))
+}
+
+/// The candidate nearest to `name`, if it is near enough.
+pub(crate) fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let wanted: String = name.to_ascii_lowercase().chars().take(100).collect();
     let letters = wanted.chars().count();
     // A name of one letter would have none left.
@@ -387,5 +403,5 @@ pub(crate) fn did_you_mean<'a>(name: &str, candidates: impl Iterator<Item = &'a 
         })
         .filter(|(distance, _)| *distance <= slips)
         .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| format!("did you mean `{candidate}`?"))
+        .map(|(_, candidate)| candidate)
 }

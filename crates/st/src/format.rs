@@ -17,6 +17,9 @@ pub fn format(name: &str, bytes: &[u8]) -> Result<String, Box<Report>> {
     let (sources, wrong) = Sources::new(&[Source { name, bytes }]);
     let mut found = Found::default();
     wrong.into_iter().for_each(|it| found.add(it));
+    if found.has_errors() {
+        return Err(Box::new(found.report(sources)));
+    }
     let _items = parse::parse(&sources, &mut found);
     if found.has_errors() {
         return Err(Box::new(found.report(sources)));

@@ -2,6 +2,7 @@
 
 use crate::error::{Code, Diagnostic, Found, quoted};
 use crate::source::Span;
+use std::collections::BTreeSet;
 
 macro_rules! keywords {
     ($($variant:ident = $text:literal,)*) => {
@@ -97,6 +98,8 @@ pub(crate) enum Token {
     Dot,
     Range,
     Caret,
+    /// A string that is not closed, or stands between other quotes, which has been reported.
+    Broken,
     /// Signs of other languages; the text says which.
     Foreign,
     End,
@@ -109,6 +112,8 @@ pub(crate) fn lex(text: &str, start: u32, found: &mut Found) -> Vec<(Token, Span
         bytes: text.as_bytes(),
         at: 0,
         start,
+        told_space: false,
+        told_names: BTreeSet::new(),
         found,
     };
     let mut tokens = Vec::with_capacity(text.len() / 4);
@@ -130,8 +135,17 @@ struct Lexer<'a> {
     bytes: &'a [u8],
     at: usize,
     start: u32,
+    /// Whether a space of a word processor was reported; there are usually many.
+    told_space: bool,
+    /// Names with other letters that were reported.
+    told_names: BTreeSet<&'a str>,
     found: &'a mut Found,
 }
+
+/// What word processors make of spaces, quotes and dashes.
+const SPACES: [char; 3] = ['\u{a0}', '\u{200b}', '\u{feff}'];
+const QUOTES: [char; 5] = ['‘', '’', '“', '”', '„'];
+const DASHES: [char; 2] = ['–', '—'];
 
 /// The sign that begins with these two bytes, and how many of them are its own.
 const fn sign(one: u8, two: u8) -> Option<(usize, Token)> {
@@ -187,7 +201,7 @@ const fn is_digit(byte: u8) -> bool {
     byte.is_ascii_digit() || byte == b'_'
 }
 
-impl Lexer<'_> {
+impl<'a> Lexer<'a> {
     fn span(&self, from: usize) -> Span {
         Span {
             start: self.start + from as u32,
@@ -224,9 +238,30 @@ impl Lexer<'_> {
                 self.nested(from, "/*", "*/");
             } else if self.peek(0) == b'{' {
                 self.pragma(from);
+            } else if let Some(space) = self.char_here().filter(|it| SPACES.contains(it)) {
+                self.foreign_space(space);
             } else {
                 return;
             }
+        }
+    }
+
+    fn char_here(&self) -> Option<char> {
+        self.text.get(self.at..)?.chars().next()
+    }
+
+    fn foreign_space(&mut self, space: char) {
+        let from = self.at;
+        self.at += space.len_utf8();
+        if !self.told_space {
+            self.told_space = true;
+            let message = format!(
+                "a space of a word processor (U+{:04X}) stands here",
+                u32::from(space)
+            );
+            let wrong = Diagnostic::error(Code::Syntax, self.span(from), message);
+            self.found
+                .add(wrong.help("replace it by a plain space, here and in the rest of the file"));
         }
     }
 
@@ -346,8 +381,31 @@ impl Lexer<'_> {
 
     fn name(&mut self) -> Option<Token> {
         let from = self.at;
-        self.skip_while(|byte| is_name(byte) || !byte.is_ascii());
-        let text = self.text.get(from..self.at).unwrap_or_default();
+        if let Some(sign) = self.char_here() {
+            if QUOTES.contains(&sign) {
+                return Some(self.foreign_quotes());
+            }
+            if DASHES.contains(&sign) {
+                self.at += sign.len_utf8();
+                let wrong = Diagnostic::error(
+                    Code::Syntax,
+                    self.span(from),
+                    format!("`{sign}` has no meaning in Structured Text"),
+                );
+                self.found
+                    .add(wrong.help("this dash comes from a word processor; minus is `-`"));
+                return Some(Token::Minus);
+            }
+        }
+        let ends = |letter: char| {
+            let plain = u8::try_from(letter).is_ok_and(|byte| byte.is_ascii() && !is_name(byte));
+            plain || SPACES.contains(&letter) || QUOTES.contains(&letter) || DASHES.contains(&letter)
+        };
+        let rest = self.text.get(from..).unwrap_or_default();
+        let text = rest
+            .get(..rest.find(ends).unwrap_or(rest.len()))
+            .unwrap_or_default();
+        self.at += text.len();
         if !text.is_ascii() {
             return self.foreign_letters(from);
         }
@@ -373,9 +431,27 @@ impl Lexer<'_> {
         }
     }
 
-    /// A word with letters that an identifier cannot have, or signs of a word processor.
+    /// A text between the quotes of a word processor.
+    fn foreign_quotes(&mut self) -> Token {
+        let from = self.at;
+        let rest = self.text.get(from..).unwrap_or_default();
+        let line = rest.lines().next().unwrap_or_default();
+        let inner = line.char_indices().skip(1);
+        let mut ends = inner.filter(|(_, letter)| QUOTES.contains(letter) || *letter == '\'');
+        let length = ends.next().map(|(at, letter)| at + letter.len_utf8());
+        self.at += length.unwrap_or_else(|| without_end(line));
+        let wrong = Diagnostic::error(
+            Code::Syntax,
+            self.span(from),
+            "these quotes come from a word processor",
+        );
+        self.found.add(wrong.help("strings stand between `'`"));
+        Token::Broken
+    }
+
+    /// A word with letters that an identifier cannot have.
     fn foreign_letters(&mut self, from: usize) -> Option<Token> {
-        let text = self.text.get(from..self.at).unwrap_or_default();
+        let text: &'a str = self.text.get(from..self.at).unwrap_or_default();
         let letter = text.chars().find(|c| !c.is_ascii()).unwrap_or(' ');
         let span = self.span(from);
         let wrong = Diagnostic::error(
@@ -391,16 +467,11 @@ impl Lexer<'_> {
             'ö' | 'Ö' => "write `oe`",
             'ü' | 'Ü' => "write `ue`",
             'ß' => "write `ss`",
-            '‘' | '’' | '“' | '”' | '„' => {
-                "these quotes come from a word processor; strings stand between `'`"
-            }
-            '–' | '—' => "this dash comes from a word processor; minus is `-`",
-            '\u{a0}' | '\u{200b}' | '\u{feff}' => {
-                "this is a space of a word processor; delete it and type a space"
-            }
             _ => "use other letters; comments and strings may have any",
         };
-        self.found.add(wrong.help(help));
+        if self.told_names.insert(text) {
+            self.found.add(wrong.help(help));
+        }
         // Except for its letters it is a name, so it is read as one, and only this is reported.
         text.starts_with(char::is_alphabetic).then_some(Token::Name)
     }
@@ -447,12 +518,21 @@ impl Lexer<'_> {
         while !self.text.is_char_boundary(self.at) {
             self.at += 1;
         }
+        // The `;` of the line is rather that of the statement.
+        let text = self.text.get(from..self.at).unwrap_or_default();
+        self.at = from + without_end(text).max(1);
         let span = self.span(from);
         let wrong = Diagnostic::error(Code::NotClosed, span, "a string is not closed in its line");
         self.found
             .add(wrong.help("a quote inside of a string is `$'`, a new line `$N`"));
-        Some(token)
+        Some(Token::Broken)
     }
+}
+
+/// The bytes of a line without the `;` at its end.
+fn without_end(line: &str) -> usize {
+    let line = line.trim_end();
+    line.strip_suffix(';').unwrap_or(line).len()
 }
 
 #[cfg(test)]

@@ -121,6 +121,7 @@ fn build(given: &[Source<'_>], options: &Options, module: bool) -> Result<Built,
         return Err(found.report(sources));
     }
     let items = parse::parse(&sources, &mut found);
+    found.all_read();
     let (program, mut found) = check::check(&sources, &items, options, found);
     let Some(mut program) = program else {
         return Err(found.report(sources));

@@ -79,6 +79,22 @@ pub struct Sources {
     files: Vec<File>,
 }
 
+/// The bytes of the first tag of a file of an IDE, and where the Structured Text is in it.
+fn markup(text: &str) -> Option<(u32, &'static str)> {
+    const BEGINNINGS: [&str; 3] = ["<?xml", "<TcPlcObject", "<project"];
+    let beginning = BEGINNINGS
+        .iter()
+        .find(|beginning| text.starts_with(**beginning))?;
+    let help = if text.contains("<TcPlcObject") {
+        "put what stands in its <Declaration> and <ST>, between `<![CDATA[` and `]]>`, into a file .st, and END_PROGRAM, \
+         END_FUNCTION_BLOCK or END_FUNCTION behind it"
+    } else {
+        "put the Structured Text in it into a file .st: the declarations, the statements from <ST>, and the end, such as \
+         END_PROGRAM"
+    };
+    Some((beginning.len() as u32, help))
+}
+
 impl Sources {
     /// Takes the files; a byte order mark is left out. Reports text that is no UTF-8, and too much text.
     pub(crate) fn new(sources: &[Source<'_>]) -> (Self, Vec<Diagnostic>) {
@@ -111,6 +127,14 @@ impl Sources {
                     )
                     .help("save the file as UTF-8: in most editors under Save As, Encoding"),
                 );
+            }
+            if let Some((length, help)) = markup(&text) {
+                let span = Span {
+                    start,
+                    end: start + length,
+                };
+                let message = "this file is XML, not Structured Text";
+                wrong.push(Diagnostic::error(Code::Syntax, span, message).help(help));
             }
             let starts = text.bytes().zip(1..).filter(|(byte, _)| *byte == b'\n');
             let lines = std::iter::once(0).chain(starts.map(|(_, at)| at)).collect();

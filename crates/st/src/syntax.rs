@@ -23,6 +23,8 @@ pub(crate) enum Item {
     Globals(Section),
     Unit(Unit),
     Configuration(Configuration),
+    /// The name of something that is refused or could not be read, which has been reported.
+    Damaged(Ident),
 }
 
 #[derive(Debug)]
@@ -30,6 +32,8 @@ pub(crate) struct TypeDeclaration {
     pub name: Ident,
     pub spec: TypeSpec,
     pub initial: Option<Initial>,
+    /// Whether parts of it could not be read, which has been reported.
+    pub damaged: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +56,8 @@ pub(crate) struct Unit {
     pub methods: Vec<Self>,
     /// Of a method: whether only its block calls it.
     pub private: bool,
+    /// Whether it has variables that could not be read or are refused, which has been reported.
+    pub damaged: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,6 +79,8 @@ pub(crate) struct Section {
     pub constant: bool,
     pub retain: bool,
     pub variables: Vec<Variables>,
+    /// Whether others of its variables could not be read, which has been reported.
+    pub damaged: bool,
 }
 
 /// Names that are declared together.
@@ -237,7 +245,7 @@ pub(crate) struct Call {
 pub(crate) struct Argument {
     pub name: Option<Ident>,
     pub way: Way,
-    /// Absent in `Out =>`, which assigns to nothing.
+    /// Absent in `Out =>`, which assigns to nothing, and in `In :=`, which gives nothing.
     pub value: Option<Expression>,
     pub span: Span,
 }

@@ -15,6 +15,7 @@ fn dialect() -> Dialect {
         elements: vec![three("MC_DIRECTION", "mcPositiveDirection", "Up")],
         numbers: vec![("MC_DIRECTION".to_owned(), -1, "mcNegativeDirection".to_owned())],
         pins: vec![three("MC_Power", "EnablePositive", "Enable_Positive")],
+        elsewhere: Vec::new(),
     }
 }
 
@@ -57,4 +58,30 @@ fn what_a_dialect_does_not_have_is_told() {
         let told = report.diagnostics().iter().any(|it| it.message.contains(message));
         assert!(told, "{body}\n{report}");
     }
+}
+
+/// Covers: ST42
+#[test]
+fn a_pin_of_another_dialect_is_told_with_ours() {
+    let four = |dialect: &str| ["CTU", "R", "RESET", dialect].map(str::to_owned);
+    let elsewhere = ["this", "that"].map(|dialect| {
+        let [block, pin, there, dialect] = four(dialect);
+        (block, pin, there, dialect)
+    });
+    let options = Options {
+        dialect: Dialect {
+            elsewhere: elsewhere.to_vec(),
+            ..Dialect::default()
+        },
+        ..Options::default()
+    };
+    let text = b"PROGRAM P VAR c : CTU; END_VAR c(RESET := TRUE); c.RESET := TRUE; END_PROGRAM";
+    let source = Source {
+        name: "prog.st",
+        bytes: text,
+    };
+    let report = compile(&[source], &options).unwrap_err();
+    let help = "here it is `R`; --dialect this or that takes the names of that system";
+    let helps: Vec<_> = report.diagnostics().iter().map(|it| it.help.as_deref()).collect();
+    assert_eq!(helps, [Some(help); 2], "{report}");
 }

@@ -78,8 +78,8 @@ const MISTAKES: &[(&str, Code, &str, &str)] = &[
     ),
     (
         "PROGRAM P VAR x : INT; x := 1; END_PROGRAM",
-        Code::Syntax,
-        "",
+        Code::NotClosed,
+        "x",
         "END_VAR",
     ),
     ("PROGRAM P VAR END_VAR ; ", Code::NotClosed, "", "END_PROGRAM"),
@@ -381,7 +381,7 @@ const MISTAKES: &[(&str, Code, &str, &str)] = &[
     (
         "PROGRAM P VAR x : DT := DT#2020-01-01-00:00:00; END_VAR END_PROGRAM",
         Code::Unsupported,
-        "DT",
+        "DT#",
         "TIME",
     ),
     (
@@ -820,9 +820,240 @@ fn reading_goes_on_behind_a_mistake() {
     let codes: Vec<_> = told.iter().map(|it| it.0).collect();
     assert_eq!(
         codes,
-        ["syntax", "unknown_type", "syntax", "unknown_name", "syntax"],
+        ["syntax", "syntax", "syntax", "unknown_type", "unknown_name"],
         "{told:#?}"
     );
+}
+
+/// Texts with one mistake each, a piece of its message and one of its help.
+const ONE_MISTAKE: &[(&str, &str, &str)] = &[
+    (
+        "TYPE E : ( a := 0 b, c ); END_TYPE PROGRAM P VAR s : E; END_VAR
+         CASE s OF E.a: s := E#b; b: s := c; END_CASE; s := E.c; END_PROGRAM",
+        "`,` is missing between elements",
+        "",
+    ),
+    (
+        "TYPE E : ( a, 5, c ); END_TYPE PROGRAM P VAR e : E; END_VAR e := E.c; e := E#c; e := c; END_PROGRAM",
+        "the name of an element is expected, not `5`",
+        "",
+    ),
+    (
+        "PROGRAM P VAR n INT; END_VAR n := 1; n := n + 1; END_PROGRAM",
+        "`:` is missing behind the name of a variable",
+        "",
+    ),
+    (
+        "PROGRAM P VAR n := 5; m : INT; END_VAR n := n + m; END_PROGRAM",
+        "`:` and a type are missing behind the name",
+        "",
+    ),
+    (
+        "PROGRAM P VAR a b : INT; END_VAR a := b; END_PROGRAM",
+        "`,` is missing between names",
+        "",
+    ),
+    (
+        "PROGRAM P VAR x, y : INT; x := 1; y := 2; IF x = 1 THEN y := x; END_IF; END_PROGRAM",
+        "`END_VAR` is missing before `x`",
+        "",
+    ),
+    (
+        "PROGRAM P x, y : INT; END_VAR x := y; END_PROGRAM",
+        "`VAR` is missing before `x`",
+        "",
+    ),
+    (
+        "TYPE S : STRUCT a : INT; 5 b : INT; END_STRUCT END_TYPE PROGRAM P VAR s : S; END_VAR s.b := s.a; END_PROGRAM",
+        "the name of a variable is expected, not `5`",
+        "",
+    ),
+    (
+        "FUNCTION_BLOCK B PROPERTY Pos : INT GET Pos := 1; END_GET END_PROPERTY END_FUNCTION_BLOCK
+         PROGRAM P VAR b : B; i : INT; END_VAR i := b.Pos; b.Pos := 1; END_PROGRAM",
+        "PROPERTY",
+        "two methods",
+    ),
+    (
+        "FUNCTION_BLOCK A VAR_INPUT x : INT; END_VAR END_FUNCTION_BLOCK
+         FUNCTION_BLOCK B EXTENDS A x := x + 1; END_FUNCTION_BLOCK
+         PROGRAM P VAR b : B := (x := 1); END_VAR b(x := 5); b.x := b.y; b.Go(); END_PROGRAM",
+        "EXTENDS",
+        "",
+    ),
+    (
+        "TYPE A : STRUCT x : INT; END_STRUCT B EXTENDS A : STRUCT y : INT; END_STRUCT END_TYPE
+         PROGRAM P VAR b : B; END_VAR b.x := b.y; END_PROGRAM",
+        "EXTENDS",
+        "",
+    ),
+    (
+        "INTERFACE I METHOD Go END_METHOD END_INTERFACE PROGRAM P VAR i : I; END_VAR i.Go(); END_PROGRAM",
+        "INTERFACE",
+        "",
+    ),
+    (
+        "NAMESPACE N FUNCTION_BLOCK B VAR_INPUT x : INT; END_VAR END_FUNCTION_BLOCK END_NAMESPACE
+         PROGRAM P VAR b : N.B; END_VAR b(x := 1); END_PROGRAM",
+        "NAMESPACE",
+        "",
+    ),
+    (
+        "PROGRAM P A_Do(); END_PROGRAM ACTION A_Do: ; END_ACTION PROGRAM Q P.A_Do(); END_PROGRAM",
+        "ACTION",
+        "METHOD",
+    ),
+    (
+        "FUNCTION_BLOCK B A_Do(); ACTION A_Do: ; END_ACTION END_FUNCTION_BLOCK
+         PROGRAM P VAR b : B; END_VAR b.A_Do(); END_PROGRAM",
+        "ACTION",
+        "METHOD",
+    ),
+    (
+        "TYPE U : UNION a : INT; END_UNION END_TYPE PROGRAM P VAR u : U; END_VAR u.a := 1; END_PROGRAM",
+        "UNION",
+        "",
+    ),
+    (
+        "PROGRAM P VAR t : TON; END_VAR t(EN := TRUE, IN := TRUE); END_PROGRAM",
+        "a pin EN or ENO",
+        "",
+    ),
+    (
+        "PROGRAM P VAR a : ARRAY [0..2] OF INT := 1, 2, 3; b : INT; END_VAR a[0] := b; END_PROGRAM",
+        "one first value",
+        "[1, 2, 3]",
+    ),
+    (
+        "PROGRAM P VAR a : ARRAY [0..2] OF INT := 3(0); b : INT; END_VAR a[0] := b; END_PROGRAM",
+        "one first value",
+        "[1, 2, 3]",
+    ),
+    (
+        "PROGRAM P VAR b : BOOL; i : INT; END_VAR CASE b OF 0: i := 1; 1: i := 2; END_CASE; END_PROGRAM",
+        "not by BOOL",
+        "use IF",
+    ),
+    (
+        "PROGRAM P VAR s : STRING; i : INT; END_VAR CASE s OF 1: i := 1; 2: i := 2; END_CASE; END_PROGRAM",
+        "not by STRING[80]",
+        "use IF",
+    ),
+    (
+        "PROGRAM P VAR s : STRING; i : INT; END_VAR\n s := 'abc;\n i := LEN(s);\n END_PROGRAM",
+        "not closed",
+        "",
+    ),
+    (
+        "PROGRAM P VAR s : STRING; i : INT; END_VAR\n i := LEN('abc);\n i := 2;\n END_PROGRAM",
+        "not closed",
+        "",
+    ),
+    (
+        "PROGRAM P VAR s : STRING := 'abc;\n i : INT; END_VAR\n i := LEN(s);\n END_PROGRAM",
+        "not closed",
+        "",
+    ),
+    (
+        "PROGRAM P VAR s : STRING; END_VAR s := ‘one two’; s := 'x'; END_PROGRAM",
+        "these quotes",
+        "between `'`",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR x\u{a0}:=\u{a0}1; x\u{a0}:=\u{a0}x + 1; END_PROGRAM",
+        "a space of a word processor",
+        "plain space",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR x := x – 1; END_PROGRAM",
+        "`–` has no meaning",
+        "minus is `-`",
+    ),
+    (
+        "PROGRAM P VAR Zähler : INT; END_VAR Zähler := Zähler + 1; END_PROGRAM",
+        "`Zähler` has `ä`",
+        "`ae`",
+    ),
+    (
+        "<?xml version=\"1.0\"?>\n<TcPlcObject><POU><Declaration><![CDATA[PROGRAM Main]]></Declaration></POU></TcPlcObject>",
+        "is XML",
+        "<![CDATA[",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR IF x = 1 THEN x := 2; ELSEIF x = 2 THEN x := 3; ELSE x := 4; END_IF; END_PROGRAM",
+        "no keyword `ELSEIF`",
+        "`ELSIF`",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR IF x = 1 THEN x := 2; END_FI; x := 3; END_PROGRAM",
+        "no keyword `END_FI`",
+        "`END_IF`",
+    ),
+    (
+        "FUNCTION F : INT VAR_INPUT a : INT; END_VAR RETURN a; END_FUNCTION",
+        "RETURN takes no value",
+        "the function's name",
+    ),
+    (
+        "TYPE S : STRUCT i : INT; END_STRUCT END_TYPE
+         PROGRAM P VAR s : S; END_VAR FOR s.i := 1 TO 5 DO s.i := 2; EXIT; END_FOR; END_PROGRAM",
+        "a plain variable",
+        "",
+    ),
+    (
+        "FUNCTOIN_BLOCK B VAR_INPUT x : INT; END_VAR END_FUNCTION_BLOCK PROGRAM P VAR b : B; END_VAR b(x := 1); END_PROGRAM",
+        "no keyword `FUNCTOIN_BLOCK`",
+        "`FUNCTION_BLOCK`",
+    ),
+    (
+        "FUNCTION_BLOCK VAR_INPUT x : INT; END_VAR END_FUNCTION_BLOCK PROGRAM P VAR b : B; END_VAR b(x := 1); END_PROGRAM",
+        "the name of a function block is expected",
+        "",
+    ),
+];
+
+/// One mistake has one message, with what it takes away from others.
+#[test]
+fn one_mistake_has_one_message() {
+    let mut failures = Vec::new();
+    for (text, message, help) in ONE_MISTAKE {
+        let source = Source {
+            name: "prog.st",
+            bytes: text.as_bytes(),
+        };
+        let options = Options {
+            library: true,
+            ..Options::default()
+        };
+        let report = standstill_st::check(&[source], &options);
+        let mut errors = report
+            .diagnostics()
+            .iter()
+            .filter(|it| it.severity == Severity::Error);
+        let good = errors.next().is_some_and(|it| {
+            it.message.contains(message) && it.help.as_deref().unwrap_or_default().contains(help)
+        });
+        if !good || errors.next().is_some() {
+            failures.push(format!("{text}\n{}\n", report.render()));
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// The cause is told before what follows from it, also if it stands in a later file.
+#[test]
+fn mistakes_of_reading_are_told_first() {
+    let file = |name, text: &'static str| Source {
+        name,
+        bytes: text.as_bytes(),
+    };
+    let files = [
+        file("a.st", "PROGRAM P VAR x : INT; END_VAR x := y; END_PROGRAM"),
+        file("b.st", "TYPE E : (a, b) END_TYPE"),
+    ];
+    let report = standstill_st::check(&files, &Options::default());
+    let told: Vec<_> = report.diagnostics().iter().map(|it| it.code).collect();
+    assert_eq!(told, [Code::Syntax, Code::UnknownName], "{report}");
 }
 
 #[test]
@@ -1088,6 +1319,53 @@ fn time_grows_with_the_text_and_not_with_its_square() {
     };
     let (short, long) = (time(2000), time(20_000));
     assert!(long < short * 60.0, "{short} {long}");
+}
+
+#[test]
+fn one_other_missing_semicolon_is_one_place() {
+    let told = wrong("PROGRAM P VAR x : INT; END_VAR IF x > 1 THEN END_IF IF x > 1 THEN END_IF END_PROGRAM");
+    let message = "`;` is missing behind END_IF, and in one more place of this file";
+    assert_eq!(told, [("portability", message.to_owned())]);
+}
+
+/// A valid program in which a token is omitted, doubled, or swapped with the next one rarely has many messages.
+#[test]
+fn few_messages_follow_from_one_wrong_token() {
+    const MANY: usize = 5;
+    let whole = include_str!("mistakes.st");
+    assert!(common::compile(whole).is_ok(), "{:?}", wrong(whole));
+    let tokens: Vec<&str> = whole.split_inclusive([' ', '\n']).collect();
+    let (mut wrongs, mut many) = (0, Vec::new());
+    let changes = (0..tokens.len()).flat_map(|at| (0..3).map(move |kind| (at, kind)));
+    for (at, kind) in changes.step_by(standstill_testkit::stride()) {
+        let mut tokens = tokens.clone();
+        match kind {
+            0 => tokens[at] = "\n",
+            1 => tokens.insert(at, tokens[at]),
+            _ => {
+                let next = (at + 1).min(tokens.len() - 1);
+                tokens.swap(at, next);
+            }
+        }
+        let told = wrong(&tokens.concat());
+        let errors = told
+            .iter()
+            .filter(|it| it.0 != "portability" && it.0 != "doubtful");
+        let errors: Vec<_> = errors.collect();
+        wrongs += usize::from(!errors.is_empty());
+        if errors.len() >= MANY {
+            let around = tokens[at.saturating_sub(3)..(at + 3).min(tokens.len())].concat();
+            many.push(format!("{around}\n{errors:#?}\n"));
+        }
+    }
+    // Of all changes it is one in 39.
+    let most = wrongs / 30 + 2;
+    assert!(
+        many.len() <= most,
+        "{} of {wrongs}\n{}",
+        many.len(),
+        many.join("\n")
+    );
 }
 
 /// Covers: ST30

@@ -103,6 +103,7 @@ const ROWS: &[Row] = &[
     row(STATEMENTS, "no `;` behind END_IF and its kin", "END_IF r := 2;", "", "r : INT;", "IF r = 0 THEN r := 1; @", 2),
     row(STATEMENTS, "calls by name and by place", "F(b := 1, a := 2) + F(1, 2)", "FUNCTION F : INT VAR_INPUT a, b : INT; END_VAR F := 10 * a + b; END_FUNCTION", "r : INT;", "r := @;", 33),
     row(STATEMENTS, "outputs by `=>` and `NOT =>`", "t(CLK := TRUE, NOT Q => r)", "", "t : R_TRIG; r : BOOL;", "@;", 0),
+    row(STATEMENTS, "pins left open in a call", "c(CU := TRUE, R := , CV => )", "", "c : CTU; r : INT;", "@; r := c.CV;", 1),
     row(STATEMENTS, "inputs of instances as variables", "t.CLK := TRUE", "", "t : R_TRIG; r : BOOL;", "@; t(); r := t.Q;", 1),
     row(OPERATORS, "`-`, `*`, `/`, MOD, `+`", "-7 / 2 * 10 + -7 MOD 3", "", "r : INT;", "r := @;", -31),
     row(OPERATORS, "`**`", "2.0 ** 3.0", "", "r : INT;", "r := LREAL_TO_INT(@);", 8),

@@ -63,6 +63,9 @@ impl<'a> Checker<'a> {
             self.error(Code::Unsupported, name.span, message, instead);
             return wrong;
         }
+        if self.may_be_lost(&key) {
+            return wrong;
+        }
         let names = self.declared_units();
         let guess = self.guess(&key, names.chain(Function::ALL.iter().map(|it| it.name())));
         let block = blocks::find(&key).map(|_| {
@@ -164,7 +167,10 @@ impl<'a> Checker<'a> {
                 );
                 continue;
             }
-            matched.push((place, argument));
+            // `In :=` leaves the input out.
+            if argument.way == Way::Out || argument.way == Way::OutInverted || argument.value.is_some() {
+                matched.push((place, argument));
+            }
         }
         matched
     }
@@ -218,6 +224,9 @@ impl<'a> Checker<'a> {
     }
 
     fn no_such_argument(&mut self, unit: UnitId, argument: &syntax::Argument) {
+        if self.is_damaged(unit) {
+            return;
+        }
         let info = self.unit(unit);
         match &argument.name {
             None => {
@@ -229,7 +238,8 @@ impl<'a> Checker<'a> {
             Some(name) => {
                 let names = info.members.list.iter().map(|member| member.name.as_str());
                 let guess = self.guess(&name.text, names);
-                let guess = guess.or_else(|| self.pins_for(unit, argument.way));
+                let elsewhere = self.options.dialect.pin_elsewhere(&info.name, &name.text);
+                let guess = elsewhere.or(guess).or_else(|| self.pins_for(unit, argument.way));
                 let message = format!("{} has no pin `{}`", info.name, name.text);
                 self.tell(Diagnostic::error(Code::BadArgument, name.span, message).maybe_help(guess));
             }

@@ -106,7 +106,8 @@ impl<'a> Checker<'a> {
 
     fn only_program(&mut self) -> (Vec<Task>, Vec<Instance<'a>>) {
         match self.programs().as_slice() {
-            [] if self.options.library => (Vec::new(), Vec::new()),
+            // It may be the one that could not be read.
+            [] if self.options.library || self.found.has_errors() => (Vec::new(), Vec::new()),
             [] => {
                 let message = "there is no PROGRAM to run";
                 self.error(
@@ -175,8 +176,10 @@ impl<'a> Checker<'a> {
             let unit = self.unit_names.get(&program.program.key()).copied();
             let unit = unit.filter(|unit| self.unit(*unit).kind == UnitKind::Program);
             let Some(unit) = unit else {
-                let message = format!("there is no PROGRAM {}", quoted(&program.program.text));
-                self.error(Code::UnknownName, program.program.span, message, "");
+                if !self.may_be_damaged(&program.program.key()) {
+                    let message = format!("there is no PROGRAM {}", quoted(&program.program.text));
+                    self.error(Code::UnknownName, program.program.span, message, "");
+                }
                 continue;
             };
             self.look_at_unit(program.program.span, unit);

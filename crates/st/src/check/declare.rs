@@ -54,6 +54,10 @@ impl<'a> Checker<'a> {
                     self.new_top_name(&unit.name, &mut taken);
                     self.declare_unit(unit);
                 }
+                Item::Damaged(name) if name.text.is_empty() => self.names_lost = true,
+                Item::Damaged(name) => {
+                    self.damaged.insert(name.key());
+                }
                 Item::Globals(section) => self.declare_globals(section),
                 Item::Configuration(configuration) => {
                     for section in &configuration.globals {
@@ -144,6 +148,7 @@ impl<'a> Checker<'a> {
     fn declare_type(&mut self, ty: &'a syntax::TypeDeclaration) {
         let key = ty.name.key();
         if let SpecKind::Enumeration { elements, .. } = &ty.spec.kind {
+            self.names_lost |= ty.damaged;
             for (element, _) in elements {
                 let owners = self.elements.entry(element.key()).or_default();
                 let owner = ElementOf::Named(key.clone());
@@ -223,6 +228,7 @@ impl<'a> Checker<'a> {
 
     fn declare_globals(&mut self, section: &'a Section) {
         debug_assert_eq!(section.kind, SectionKind::Global);
+        self.names_lost |= section.damaged;
         for variables in &section.variables {
             for (name, address) in &variables.names {
                 self.check_name(name);

@@ -29,7 +29,7 @@ use crate::typed::Stmt;
 use crate::types::{Constant, Member, Members, TypeId, Types, UnitId};
 use crate::{Options, parse::NESTING_MOST};
 use standstill_fb::BlockInfo;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 pub(crate) use configuration::{Instance, Task};
 pub(crate) use look::Look;
@@ -168,6 +168,10 @@ pub(crate) struct Checker<'a> {
     methods: BTreeMap<(UnitId, String), UnitId>,
     globals: Vec<Global<'a>>,
     global_names: BTreeMap<String, usize>,
+    /// Names at the top of files that are refused or could not be read, in upper case.
+    damaged: BTreeSet<String>,
+    /// Whether further such names are not known.
+    names_lost: bool,
     constants: BTreeMap<(Option<UnitId>, String), ConstantEntry<'a>>,
     elements: BTreeMap<String, Vec<ElementOf>>,
     /// Stems of files with global variables.
@@ -251,6 +255,8 @@ fn checked<'a>(
         methods: BTreeMap::new(),
         globals: Vec::new(),
         global_names: BTreeMap::new(),
+        damaged: BTreeSet::new(),
+        names_lost: false,
         constants: BTreeMap::new(),
         elements: BTreeMap::new(),
         files: BTreeMap::new(),
@@ -309,6 +315,23 @@ impl<'a> Checker<'a> {
     fn declared_units(&self) -> impl Iterator<Item = &str> {
         let units = self.units.iter().filter(|unit| unit.owner.is_none());
         units.map(|unit| unit.name.as_str())
+    }
+
+    /// Whether a name at the top of a file may be one whose declaration has been reported.
+    fn may_be_damaged(&self, key: &str) -> bool {
+        self.names_lost || self.damaged.contains(key)
+    }
+
+    /// Whether an unknown name in statements may be one whose declaration has been reported.
+    fn may_be_lost(&self, key: &str) -> bool {
+        let block = self.scope.and_then(|unit| self.unit(unit).owner);
+        let mut units = [self.scope, block].into_iter().flatten();
+        self.may_be_damaged(key) || units.any(|unit| self.is_damaged(unit))
+    }
+
+    /// Whether a unit has variables that are not known.
+    fn is_damaged(&self, unit: UnitId) -> bool {
+        self.unit(unit).syntax.is_some_and(|syntax| syntax.damaged)
     }
 
     /// Whether a place is in the library's own text, which is the last file.

@@ -87,6 +87,9 @@ impl<'a> Checker<'a> {
             return Named::Nothing;
         };
         let Some((place, _)) = self.unit(block).members.find(&path.root.key()) else {
+            if self.is_damaged(block) {
+                return Named::Nothing;
+            }
             let info = self.unit(block);
             let names = info.members.list.iter().map(|member| member.name.as_str());
             let guess = self.guess(&path.root.text, names);
@@ -333,7 +336,17 @@ impl<'a> Checker<'a> {
             }
         };
         let Some((_, member)) = members.find(&key) else {
+            if let Type::Block(unit) = *self.types.get(place.ty)
+                && self.is_damaged(unit)
+            {
+                return false;
+            }
             let guess = self.guess(&name.text, members.list.iter().map(|member| member.name.as_str()));
+            let elsewhere = self
+                .options
+                .dialect
+                .pin_elsewhere(&self.type_name(place.ty), &name.text);
+            let guess = elsewhere.or(guess);
             let axis = matches!(self.types.get(place.ty), Type::Structure(it) if it.name == "AXIS_REF");
             let guess = guess.or_else(|| axis.then(|| OF_AN_AXIS.to_owned()));
             let message = format!("{} has no member `{}`", self.type_name(place.ty), name.text);
@@ -491,6 +504,9 @@ impl<'a> Checker<'a> {
                     || self.library_types.contains_key(key)
                     || self.options.dialect.type_called(key).is_some();
                 let (ty, _) = known.then(|| self.find_type(key, path.root.span)).flatten()?;
+                if ty == crate::types::WRONG {
+                    return Some(Named::Nothing);
+                }
                 if !self.types.is_enumeration(ty) {
                     return None;
                 }
@@ -538,6 +554,9 @@ impl<'a> Checker<'a> {
 
     /// The element of this name; reports an unknown name.
     pub(super) fn element_of(&mut self, ty: TypeId, name: &Ident) -> Option<Expr> {
+        if ty == crate::types::WRONG {
+            return None;
+        }
         let Type::Enumeration(of) = self.types.get(ty) else {
             let message = format!("{} is no enumeration", self.type_name(ty));
             self.error(Code::WrongType, name.span, message, "");
@@ -584,6 +603,9 @@ impl<'a> Checker<'a> {
     fn unknown(&mut self, path: &Path) {
         let name = &path.root;
         let key = name.key();
+        if self.may_be_lost(&key) {
+            return;
+        }
         let function = self
             .unit_names
             .get(&key)

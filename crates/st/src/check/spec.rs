@@ -48,6 +48,9 @@ impl<'a> Checker<'a> {
             self.error(Code::Unsupported, name.span, message, instead);
             return (WRONG, Start::Default);
         }
+        if self.may_be_damaged(&key) {
+            return (WRONG, Start::Default);
+        }
         let mut help = None;
         if let Some(unit) = self.unit_names.get(&key)
             && self.unit(*unit).kind == UnitKind::Function
@@ -131,6 +134,8 @@ impl<'a> Checker<'a> {
             checker.in_scope(None, |checker| {
                 let name = Some(&syntax.name);
                 let (ty, default) = match &syntax.spec.kind {
+                    // Nobody may complain about the members that are missing.
+                    _ if syntax.damaged => (WRONG, Start::Default),
                     SpecKind::Subrange { base, low, high } => {
                         (checker.subrange(base, low, high, name), Start::Default)
                     }

@@ -80,6 +80,11 @@ impl<'a> Checker<'a> {
                 }
             };
             let Some((place, member)) = members.find(&name.key()) else {
+                if let Type::Block(unit) = *self.types.get(ty)
+                    && self.is_damaged(unit)
+                {
+                    continue;
+                }
                 let names = members.list.iter().map(|member| member.name.as_str());
                 let guess = self.guess(&name.text, names);
                 let message = format!("{} has no member `{}`", self.type_name(ty), name.text);

@@ -146,11 +146,16 @@ impl<'a> Checker<'a> {
             .types
             .elementary(selector.ty)
             .filter(|it| !it.is_real() && *it != Elementary::Bool);
-        let ty = selector.ty;
+        // Of a selector that is refused the labels cannot be right.
+        let ty = if of.is_some() {
+            selector.ty
+        } else {
+            crate::types::WRONG
+        };
         if of.is_none() && !selector.is_wrong() {
             let message = format!(
                 "CASE goes by whole numbers and enumerations, not by {}",
-                self.type_name(ty)
+                self.type_name(selector.ty)
             );
             self.error(Code::WrongType, selector.span, message, "use IF");
         }
@@ -286,6 +291,7 @@ impl<'a> Checker<'a> {
                     control = Some((None, place));
                     Some(self.global_place(place))
                 }
+                None if self.may_be_lost(&key) => None,
                 None => {
                     let message = format!("there is no variable `{}`", each.variable.text);
                     self.error(

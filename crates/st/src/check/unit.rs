@@ -221,7 +221,20 @@ impl<'a> Checker<'a> {
     fn externals(&mut self, id: UnitId, variables: &'a Variables) {
         let (ty, _) = self.spec(&variables.spec);
         for (name, _) in &variables.names {
-            let Some(place) = self.global_names.get(&name.key()).copied() else {
+            let known = self.global_names.get(&name.key()).copied();
+            if known.is_none() && self.may_be_damaged(&name.key()) {
+                self.add_member(
+                    id,
+                    name,
+                    WRONG,
+                    MemberKind::Var,
+                    Start::Default,
+                    (false, false),
+                    None,
+                );
+                continue;
+            }
+            let Some(place) = known else {
                 let guess = self.guess(&name.text, self.declared_globals());
                 let message = format!("there is no global variable {}", quoted(&name.text));
                 let wrong = Diagnostic::error(Code::UnknownName, name.span, message);

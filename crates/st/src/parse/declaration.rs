@@ -5,18 +5,27 @@ use crate::error::{Code, Diagnostic};
 use crate::lex::{Token, Word};
 use crate::source::Span;
 use crate::syntax::{
-    Configuration, Instance, Item, Section, SectionKind, Task, TypeDeclaration, Unit, UnitKind, Variables,
+    Configuration, Ident, Instance, Item, Section, SectionKind, SpecKind, Task, TypeDeclaration, TypeSpec,
+    Unit, UnitKind, Variables,
 };
 
 /// The replacement for an ACTION.
 pub(super) const ACTION: &str =
     "write a METHOD of a FUNCTION_BLOCK, or put the statements where it is called";
 
+/// Whether a section of variables begins with it.
+fn opens_section(word: Word) -> bool {
+    skip::is_section(word) && word != Word::EndVar && word != Word::EndStruct
+}
+
 pub(super) const FLAT: &str = "write FUNCTION_BLOCKs that hold instances of others, and FUNCTIONs";
 
 impl Parser<'_> {
     pub(super) fn item(&mut self, items: &mut Vec<Item>) {
         let from = self.span();
+        if matches!(self.ahead(1), Token::Name | Token::Word(_)) {
+            self.misspelt(skip::ITEMS);
+        }
         let Token::Word(word) = self.token() else {
             // A `;` between two programs does no harm.
             if self.take(Token::Semicolon) {
@@ -25,6 +34,9 @@ impl Parser<'_> {
             if self.is_name("ACTION") {
                 self.unsupported(from, "ACTION", ACTION);
                 self.skip_action();
+                if let Some(Item::Unit(unit)) = items.last_mut() {
+                    self.add_refused(unit);
+                }
                 return;
             }
             let message = format!(
@@ -36,7 +48,11 @@ impl Parser<'_> {
                 message,
                 "statements stand in a PROGRAM .. END_PROGRAM",
             );
+            items.extend(self.name_of_damaged());
+            self.next();
+            items.extend(self.name_of_damaged());
             self.skip_to_item();
+            self.pass_end();
             return;
         };
         match word {
@@ -49,14 +65,28 @@ impl Parser<'_> {
             Word::FunctionBlock => items.extend(self.unit(UnitKind::FunctionBlock, Word::EndFunctionBlock)),
             Word::Function => items.extend(self.unit(UnitKind::Function, Word::EndFunction)),
             Word::Configuration => items.extend(self.configuration()),
-            Word::Class | Word::Interface | Word::Namespace => {
+            Word::Class | Word::Interface => {
                 self.unsupported(from, word.text(), FLAT);
                 self.next();
+                while self.is_access() {
+                    self.next();
+                }
+                items.extend(self.name_of_damaged());
                 self.skip_past(match word {
                     Word::Class => Word::EndClass,
-                    Word::Interface => Word::EndInterface,
-                    _ => Word::EndNamespace,
+                    _ => Word::EndInterface,
                 });
+            }
+            // What is in it is read, so that its names are known.
+            Word::Namespace => {
+                self.unsupported(from, word.text(), FLAT);
+                self.next();
+                while matches!(self.token(), Token::Name | Token::Dot) {
+                    self.next();
+                }
+            }
+            Word::EndNamespace => {
+                self.next();
             }
             Word::VarAccess | Word::VarConfig => self.refused_section(word),
             _ => {
@@ -70,7 +100,58 @@ impl Parser<'_> {
                 self.tell_here(Code::Syntax, message, "");
                 self.next();
                 self.skip_to_item();
+                self.pass_end();
             }
+        }
+    }
+
+    /// The name here, of something at the top of a file that is refused or cannot be read.
+    fn name_of_damaged(&self) -> Option<Item> {
+        let span = self.span();
+        let text = self.text_of(span).to_owned();
+        (self.token() == Token::Name).then_some(Item::Damaged(Ident { text, span }))
+    }
+
+    /// Behind the end of a unit whose beginning could not be read.
+    fn pass_end(&mut self) {
+        let ends = [
+            Word::EndProgram,
+            Word::EndFunction,
+            Word::EndFunctionBlock,
+            Word::EndType,
+        ];
+        if let Token::Word(word) = self.token()
+            && ends.contains(&word)
+        {
+            self.next();
+        }
+    }
+
+    /// Actions and properties that were read in a unit: they are refused, and known to be no mistake of those who use them.
+    fn add_refused(&mut self, unit: &mut Unit) {
+        let kind = match unit.kind {
+            UnitKind::Function | UnitKind::Method => SectionKind::Var,
+            UnitKind::Program | UnitKind::FunctionBlock => SectionKind::Input,
+        };
+        let names = std::mem::take(&mut self.refused);
+        unit.sections.extend(names.into_iter().map(|name| Section {
+            kind,
+            constant: false,
+            retain: false,
+            variables: vec![Self::of_unknown_type(vec![(name, None)])],
+            damaged: false,
+        }));
+    }
+
+    /// Notes the name here as that of a part of a unit that is refused.
+    pub(super) fn note_refused(&mut self) {
+        while self.is_access() {
+            self.next();
+        }
+        if self.token() == Token::Name {
+            let span = self.span();
+            let text = self.text_of(span).to_owned();
+            self.refused.push(Ident { text, span });
         }
     }
 
@@ -104,6 +185,7 @@ impl Parser<'_> {
 
     fn type_declaration(&mut self) -> Option<Item> {
         let name = self.new_name("a type")?;
+        let mut damaged = false;
         if self.token() == Token::Word(Word::Extends) {
             let span = self.span();
             self.unsupported(
@@ -113,25 +195,36 @@ impl Parser<'_> {
             );
             self.next();
             self.ident("a type");
+            damaged = true;
         }
-        if !self.expect(Token::Colon, ":", "behind the name of a type") {
+        let begins_type = matches!(
+            self.token(),
+            Token::Open | Token::Name | Token::Word(Word::Struct | Word::Array)
+        );
+        if !self.expect(Token::Colon, ":", "behind the name of a type") && !begins_type {
             self.skip_to_semicolon();
-            return None;
+            return Some(Item::Damaged(name));
         }
         let mut initial = None;
-        let spec = self.type_spec(&mut initial);
+        let (spec, lost) = self.losing(|parser| parser.type_spec(&mut initial));
         if self.take(Token::Assign) {
             initial = Some(self.initial());
         }
-        // Behind END_STRUCT and an enumeration it may be absent, as in CODESYS.
-        let may_miss = matches!(spec.kind, crate::syntax::SpecKind::Structure(_));
+        // Behind END_STRUCT and END_UNION it may be absent, as in CODESYS.
+        let closed = self.at.checked_sub(1).and_then(|place| self.tokens.get(place));
+        let may_miss = matches!(closed, Some((Token::Word(Word::EndStruct | Word::EndUnion), _)));
         if !self.take(Token::Semicolon) && !may_miss {
             self.expect(Token::Semicolon, ";", "behind the declaration of a type");
             if !matches!(self.token(), Token::Name) {
                 self.skip_to_semicolon();
             }
         }
-        Some(Item::Type(TypeDeclaration { name, spec, initial }))
+        Some(Item::Type(TypeDeclaration {
+            name,
+            spec,
+            initial,
+            damaged: damaged || lost,
+        }))
     }
 
     /// Reports an open part at a place where it cannot continue.
@@ -168,20 +261,23 @@ impl Parser<'_> {
             UnitKind::Function => "a function",
             UnitKind::Method => "a method",
         };
-        let Some(name) = self.new_name(what).or_else(|| {
+        let Some(name) = self.new_name(what) else {
             self.next();
-            None
-        }) else {
             self.skip_to_item();
-            if self.token() == Token::Word(end) {
-                self.next();
-            }
-            return None;
+            self.pass_end();
+            // Whatever is unknown may be its name.
+            return Some(Item::Damaged(Ident {
+                text: String::new(),
+                span: open,
+            }));
         };
+        let mut damaged = false;
         while let Token::Word(word @ (Word::Extends | Word::Implements)) = self.token() {
             let span = self.next();
             self.unsupported(span, word.text(), FLAT);
             while self.ident("a name").is_some() && self.take(Token::Comma) {}
+            // Its base has more members.
+            damaged |= word == Word::Extends;
         }
         let mut result = None;
         if kind == UnitKind::Function {
@@ -195,20 +291,31 @@ impl Parser<'_> {
             self.type_spec(&mut None);
         }
         self.take(Token::Semicolon);
-        self.open.push(end);
-        let sections = self.sections();
-        let mut methods = Vec::new();
-        let body = self.body(kind, open, &name.text, &mut methods);
-        self.open.pop();
-        Some(Item::Unit(Unit {
+        let mut unit = Unit {
             kind,
             name,
             result,
-            sections,
-            body,
-            methods,
+            sections: Vec::new(),
+            body: Vec::new(),
+            methods: Vec::new(),
             private: false,
-        }))
+            damaged,
+        };
+        self.rest_of_unit(&mut unit, end, open);
+        Some(Item::Unit(unit))
+    }
+
+    /// Variables, statements and the end.
+    fn rest_of_unit(&mut self, unit: &mut Unit, end: Word, open: Span) {
+        let outer = std::mem::take(&mut self.refused);
+        self.open.push(end);
+        let sections = self.sections();
+        unit.damaged |= sections.iter().any(|section| section.damaged);
+        unit.sections = sections;
+        self.body(unit, end, open);
+        self.open.pop();
+        self.add_refused(unit);
+        self.refused = outer;
     }
 
     /// Whether an access word (such as PRIVATE) is here.
@@ -237,28 +344,30 @@ impl Parser<'_> {
         };
         let result = self.take(Token::Colon).then(|| self.type_spec(&mut None));
         self.take(Token::Semicolon);
-        self.open.push(Word::EndMethod);
-        let sections = self.sections();
-        let body = self.body(UnitKind::Method, open, &name.text, &mut Vec::new());
-        self.open.pop();
-        Some(Unit {
+        let mut method = Unit {
             kind: UnitKind::Method,
             name,
             result,
-            sections,
-            body,
+            sections: Vec::new(),
+            body: Vec::new(),
             methods: Vec::new(),
             private,
-        })
+            damaged: false,
+        };
+        self.rest_of_unit(&mut method, Word::EndMethod, open);
+        Some(method)
     }
 
     /// The sections of variables of a unit.
     fn sections(&mut self) -> Vec<Section> {
         let mut sections = Vec::new();
-        while let Token::Word(word) = self.token() {
-            match word {
-                Word::VarAccess | Word::VarConfig => self.refused_section(word),
-                Word::VarGlobal => {
+        loop {
+            if self.ahead(1) == Token::Name && matches!(self.ahead(2), Token::Colon | Token::Comma) {
+                self.misspelt(skip::SECTIONS);
+            }
+            match self.token() {
+                Token::Word(word @ (Word::VarAccess | Word::VarConfig)) => self.refused_section(word),
+                Token::Word(Word::VarGlobal) => {
                     let span = self.span();
                     let wrong = Diagnostic::error(
                         Code::Misplaced,
@@ -269,69 +378,90 @@ impl Parser<'_> {
                         wrong
                             .help("move it to the top of the file; here VAR_EXTERNAL names global variables"),
                     );
-                    self.section();
+                    sections.extend(self.section().map(Self::as_var));
                 }
-                _ if skip::is_section(word) && word != Word::EndVar && word != Word::EndStruct => {
-                    sections.extend(self.section());
+                Token::Word(word) if opens_section(word) => sections.extend(self.section()),
+                Token::Name if matches!(self.ahead(1), Token::Colon | Token::Comma) && self.is_closed() => {
+                    let message = format!("`VAR` is missing before {}", self.shown());
+                    self.tell_here(Code::Syntax, message, "");
+                    let span = self.span();
+                    let (variables, damaged) =
+                        self.losing(|parser| parser.variables(Word::EndVar, span, "VAR"));
+                    sections.push(Section {
+                        kind: SectionKind::Var,
+                        constant: false,
+                        retain: false,
+                        variables,
+                        damaged,
+                    });
                 }
-                _ => break,
+                _ => return sections,
             }
         }
-        sections
+    }
+
+    /// A section in a wrong place, so that only this is reported.
+    fn as_var(section: Section) -> Section {
+        Section {
+            kind: SectionKind::Var,
+            ..section
+        }
+    }
+
+    /// Whether END_VAR is before whatever cannot be among declarations.
+    fn is_closed(&self) -> bool {
+        let rest = self.tokens.get(self.at..).unwrap_or_default();
+        let words = rest.iter().filter_map(|(token, _)| match token {
+            Token::Word(word) => Some(*word),
+            _ => None,
+        });
+        let mut ends = words.filter(|word| {
+            *word != Word::EndStruct
+                && (skip::is_section(*word) || skip::is_item(*word) || skip::is_statement(*word))
+        });
+        ends.next() == Some(Word::EndVar)
     }
 
     /// The statements of a unit, up to and with its end; methods are between them.
-    fn body(
-        &mut self,
-        kind: UnitKind,
-        open: Span,
-        name: &str,
-        methods: &mut Vec<Unit>,
-    ) -> Vec<crate::syntax::Statement> {
-        let end = match kind {
-            UnitKind::Program => Word::EndProgram,
-            UnitKind::FunctionBlock => Word::EndFunctionBlock,
-            UnitKind::Function => Word::EndFunction,
-            UnitKind::Method => Word::EndMethod,
-        };
-        let mut body = Vec::new();
+    fn body(&mut self, unit: &mut Unit, end: Word, open: Span) {
         loop {
-            body.extend(self.statements());
+            unit.body.extend(self.statements());
             match self.token() {
                 Token::Word(word) if word == end => {
                     self.next();
-                    return body;
+                    return;
                 }
-                Token::Word(Word::Method) if kind == UnitKind::FunctionBlock => {
-                    methods.extend(self.method());
+                Token::Word(Word::Method) if unit.kind == UnitKind::FunctionBlock => {
+                    unit.methods.extend(self.method());
                 }
-                Token::Word(Word::Method) if kind != UnitKind::Method => {
+                Token::Word(Word::Method) if unit.kind != UnitKind::Method => {
                     self.tell_here(
                         Code::Misplaced,
                         "a METHOD belongs to a FUNCTION_BLOCK",
                         "make it a FUNCTION, or the program a FUNCTION_BLOCK",
                     );
+                    self.next();
+                    self.note_refused();
                     self.skip_past(Word::EndMethod);
                 }
                 Token::Word(Word::Property) => {
                     let span = self.next();
                     self.unsupported(span, "PROPERTY", "write two methods, or VAR_INPUT and VAR_OUTPUT");
+                    self.note_refused();
                     self.skip_past(Word::EndProperty);
                 }
-                Token::Word(word)
-                    if skip::is_section(word) && word != Word::EndVar && word != Word::EndStruct =>
-                {
+                Token::Word(word) if opens_section(word) => {
                     let message = format!("{} stands behind a statement", word.text());
                     self.tell_here(
                         Code::Misplaced,
                         message,
                         "declare variables before the first statement",
                     );
-                    self.section();
+                    unit.sections.extend(self.section().map(Self::as_var));
                 }
                 _ => {
-                    self.not_closed(end, open, name);
-                    return body;
+                    self.not_closed(end, open, &unit.name.text);
+                    return;
                 }
             }
         }
@@ -378,20 +508,25 @@ impl Parser<'_> {
             self.next();
         }
         self.open.push(Word::EndVar);
-        let variables = self.variables(Word::EndVar, open, word.text());
+        let (variables, damaged) = self.losing(|parser| parser.variables(Word::EndVar, open, word.text()));
         self.open.pop();
         Some(Section {
             kind,
             constant,
             retain,
             variables,
+            damaged,
         })
     }
 
     /// Declarations up to and with `end`.
     pub(super) fn variables(&mut self, end: Word, open: Span, what: &str) -> Vec<Variables> {
         let mut list = Vec::new();
+        let closed = end != Word::EndVar || self.is_closed();
         loop {
+            if !matches!(self.ahead(1), Token::Colon | Token::Comma | Token::Word(Word::At)) {
+                self.misspelt(&[end]);
+            }
             match self.token() {
                 Token::Word(word) if word == end => {
                     self.next();
@@ -404,6 +539,18 @@ impl Parser<'_> {
                 Token::Semicolon => {
                     self.next();
                 }
+                // A statement: declarations ended without END_VAR.
+                Token::Name
+                    if end == Word::EndVar
+                        && !closed
+                        && matches!(
+                            self.ahead(1),
+                            Token::Assign | Token::Open | Token::Dot | Token::OpenBracket
+                        ) =>
+                {
+                    self.not_closed(end, open, what);
+                    return list;
+                }
                 Token::Name => list.extend(self.variable()),
                 Token::Word(_) if matches!(self.ahead(1), Token::Colon | Token::Comma) => {
                     list.extend(self.variable())
@@ -412,7 +559,7 @@ impl Parser<'_> {
                     if !skip::is_section(word) && !skip::is_item(word) && !skip::is_statement(word) =>
                 {
                     self.new_name("a variable");
-                    self.next();
+                    self.pass();
                     self.skip_to_semicolon();
                 }
                 Token::End | Token::Word(_) => {
@@ -434,7 +581,7 @@ impl Parser<'_> {
         loop {
             let Some(name) = self.new_name("a variable") else {
                 self.skip_to_semicolon();
-                return None;
+                return Some(Self::of_unknown_type(names));
             };
             let address = if self.take_word(Word::At) {
                 self.address()
@@ -442,15 +589,22 @@ impl Parser<'_> {
                 None
             };
             names.push((name, address));
-            if !self.take(Token::Comma) {
+            // `a b : INT`
+            if self.token() == Token::Name && matches!(self.ahead(1), Token::Comma | Token::Colon) {
+                self.expect(Token::Comma, ",", "between names");
+            } else if !self.take(Token::Comma) {
                 break;
             }
         }
-        if self.token() == Token::Assign
-            || self.token() == Token::Equal
-            || self.token() == Token::Semicolon
-            || self.token() == Token::Name
-        {
+        let begins_type = match self.token() {
+            Token::Name => true,
+            Token::Word(word) => matches!(
+                word,
+                Word::Array | Word::Struct | Word::Pointer | Word::Reference | Word::RefTo
+            ),
+            _ => false,
+        };
+        if matches!(self.token(), Token::Assign | Token::Equal | Token::Semicolon) {
             let message = format!(
                 "`:` and a type are missing behind the name, before {}",
                 self.shown()
@@ -458,11 +612,12 @@ impl Parser<'_> {
             let wrong = Diagnostic::error(Code::Syntax, self.before().after(), message);
             self.tell(wrong.help("declare as `Name : INT := 5;`, or close the declarations with END_VAR"));
             self.skip_to_semicolon();
-            return None;
+            return Some(Self::of_unknown_type(names));
         }
-        if !self.expect(Token::Colon, ":", "behind the name of a variable") {
+        // With a type behind the name only the `:` is missing.
+        if !self.expect(Token::Colon, ":", "behind the name of a variable") && !begins_type {
             self.skip_to_semicolon();
-            return None;
+            return Some(Self::of_unknown_type(names));
         }
         let mut initial = None;
         let spec = self.type_spec(&mut initial);
@@ -477,7 +632,15 @@ impl Parser<'_> {
         } else if self.take(Token::Assign) {
             initial = Some(self.initial());
         }
-        if !self.take(Token::Semicolon) {
+        if initial.is_some() && matches!(self.token(), Token::Comma | Token::Open) {
+            self.tell_here(
+                Code::Syntax,
+                "a variable has one first value",
+                "the values of an array stand in brackets: [1, 2, 3]",
+            );
+            initial = None;
+            self.skip_to_semicolon();
+        } else if !self.take(Token::Semicolon) {
             self.expect(Token::Semicolon, ";", "behind the declaration");
             if !matches!(self.token(), Token::Name) {
                 self.skip_to_semicolon();
@@ -486,8 +649,22 @@ impl Parser<'_> {
         Some(Variables { names, spec, initial })
     }
 
+    /// Names whose type could not be read, so that only their declaration is reported.
+    fn of_unknown_type(names: Vec<(Ident, Option<Ident>)>) -> Variables {
+        let span = names.last().map_or_else(Span::default, |(name, _)| name.span);
+        let spec = TypeSpec {
+            kind: SpecKind::Wrong,
+            span,
+        };
+        Variables {
+            names,
+            spec,
+            initial: None,
+        }
+    }
+
     /// The address behind AT.
-    fn address(&mut self) -> Option<crate::syntax::Ident> {
+    fn address(&mut self) -> Option<Ident> {
         let span = self.span();
         if self.token() != Token::Address {
             let message = format!(
@@ -513,7 +690,7 @@ impl Parser<'_> {
                 wrong.help("write %IX0.0, %QW2 or %MD4: I, Q or M, then X, B, W, D or L, then numbers"),
             );
         }
-        Some(crate::syntax::Ident { text, span })
+        Some(Ident { text, span })
     }
 
     fn configuration(&mut self) -> Option<Item> {
@@ -604,11 +781,7 @@ impl Parser<'_> {
         };
         if self.token() == Token::Open {
             for argument in self.arguments() {
-                let key = argument
-                    .name
-                    .as_ref()
-                    .map(crate::syntax::Ident::key)
-                    .unwrap_or_default();
+                let key = argument.name.as_ref().map(Ident::key).unwrap_or_default();
                 match key.as_str() {
                     "INTERVAL" => task.interval = argument.value,
                     "PRIORITY" => task.priority = argument.value,

@@ -191,6 +191,12 @@ impl Parser<'_> {
                 return self.call_expression(callee);
             }
             Token::Text => self.text(),
+            Token::Broken => {
+                self.next();
+                // Its end is unknown, so that what is missing behind it is no other mistake.
+                self.told_at = Some(self.at);
+                Kind::Wrong
+            }
             Token::WideText => {
                 self.unsupported(from, "WSTRING", STRINGS);
                 self.next();
@@ -443,12 +449,18 @@ impl Parser<'_> {
             Token::Output if named => (self.argument_name(), Way::Out),
             _ => (None, Way::In),
         };
-        if let Some(name) = &name
-            && ["EN", "ENO"].contains(&name.key().as_str())
-        {
+        let enables = name
+            .as_ref()
+            .filter(|name| ["EN", "ENO"].contains(&name.key().as_str()));
+        if let Some(name) = enables {
             self.unsupported(name.span, "a pin EN or ENO", "put the call into an IF");
+            if !matches!(self.token(), Token::Comma | Token::Close) {
+                self.expression();
+            }
+            return None;
         }
-        if way != Way::In && matches!(self.token(), Token::Comma | Token::Close) {
+        // Assistants of editors leave pins open: `Jerk := , Done => `.
+        if name.is_some() && matches!(self.token(), Token::Comma | Token::Close) {
             return Some(Argument {
                 name,
                 way,

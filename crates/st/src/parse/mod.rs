@@ -7,7 +7,7 @@ mod skip;
 mod statement;
 mod type_spec;
 
-use crate::error::{Code, Diagnostic, Found, quoted};
+use crate::error::{Code, Diagnostic, Found, nearest, quoted};
 use crate::lex::{Token, Word, lex};
 use crate::source::{Sources, Span};
 use crate::syntax::{Expression, Ident, Item};
@@ -47,6 +47,10 @@ struct Parser<'a> {
     /// The token of the last message, because one mistake has one message.
     told_at: Option<usize>,
     depth: usize,
+    /// Whether the name of a declaration or element was skipped behind a mistake.
+    lost: bool,
+    /// Actions and properties of the unit that is being read.
+    refused: Vec<Ident>,
     /// Whether an address may take the place of a member: `cell.%IX0.0`, a signal of a script.
     addresses: bool,
     /// The words that close the open parts, from the outside in.
@@ -67,6 +71,8 @@ impl<'a> Parser<'a> {
             at: 0,
             told_at: None,
             depth: 0,
+            lost: false,
+            refused: Vec::new(),
             addresses: false,
             open: Vec::new(),
             unended: Vec::new(),
@@ -118,6 +124,20 @@ impl<'a> Parser<'a> {
         span
     }
 
+    /// Passes a token behind a mistake; a name in front of `:` or `,` was probably a declaration.
+    fn pass(&mut self) {
+        self.lost |= self.token() == Token::Name && matches!(self.ahead(1), Token::Colon | Token::Comma);
+        self.next();
+    }
+
+    /// Does something, and whether names were lost in it.
+    fn losing<T>(&mut self, inner: impl FnOnce(&mut Self) -> T) -> (T, bool) {
+        let before = std::mem::replace(&mut self.lost, false);
+        let result = inner(self);
+        let lost = std::mem::replace(&mut self.lost, before);
+        (result, lost)
+    }
+
     fn take(&mut self, token: Token) -> bool {
         let there = self.token() == token;
         if there {
@@ -141,6 +161,25 @@ impl<'a> Parser<'a> {
 
     fn is_name(&self, name: &str) -> bool {
         self.token() == Token::Name && self.text_of(self.span()).eq_ignore_ascii_case(name)
+    }
+
+    /// Whether a misspelt one of these words is here, which is reported and read as the word.
+    fn misspelt(&mut self, words: &[Word]) -> bool {
+        const LETTERS_LEAST: usize = 4;
+        let text = self.text_of(self.span());
+        if self.token() != Token::Name || text.len() < LETTERS_LEAST {
+            return false;
+        }
+        let meant = nearest(text, words.iter().map(|word| word.text()));
+        let Some(word) = meant.and_then(Word::find) else {
+            return false;
+        };
+        let message = format!("there is no keyword {}", self.shown());
+        self.tell_here(Code::Syntax, message, &format!("did you mean `{}`?", word.text()));
+        if let Some((token, _)) = self.tokens.get_mut(self.at) {
+            *token = Token::Word(word);
+        }
+        true
     }
 
     /// Reports a mistake, unless one was reported at this token.

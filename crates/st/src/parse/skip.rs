@@ -4,7 +4,7 @@ use super::Parser;
 use crate::lex::{Token, Word};
 
 /// Words that open an item at the top level of a file.
-const ITEMS: &[Word] = &[
+pub(super) const ITEMS: &[Word] = &[
     Word::Program,
     Word::FunctionBlock,
     Word::Function,
@@ -22,7 +22,7 @@ const ITEMS: &[Word] = &[
 ];
 
 /// Words that begin or end a statement.
-const STATEMENTS: &[Word] = &[
+pub(super) const STATEMENTS: &[Word] = &[
     Word::If,
     Word::Case,
     Word::For,
@@ -42,7 +42,7 @@ const STATEMENTS: &[Word] = &[
 ];
 
 /// Words that begin or end a section of variables.
-const SECTIONS: &[Word] = &[
+pub(super) const SECTIONS: &[Word] = &[
     Word::Var,
     Word::VarInput,
     Word::VarOutput,
@@ -82,9 +82,7 @@ impl Parser<'_> {
                 }
                 Token::End => return,
                 Token::Word(word) if is_item(word) || is_statement(word) || is_section(word) => return,
-                _ => {
-                    self.next();
-                }
+                _ => self.pass(),
             }
         }
     }
@@ -107,6 +105,8 @@ impl Parser<'_> {
 
     /// Behind the end of an ACTION, which is no keyword.
     pub(super) fn skip_action(&mut self) {
+        self.next();
+        self.note_refused();
         loop {
             match self.token() {
                 Token::End => return,

@@ -10,7 +10,17 @@ impl Parser<'_> {
     /// Statements up to a word that begins none and that closes an open construct.
     pub(super) fn statements(&mut self) -> Vec<Statement> {
         let mut list = Vec::new();
-        while !self.at_end() {
+        loop {
+            // The words of other languages for ELSIF.
+            let other = ["ELSEIF", "ELSE_IF", "ELIF"]
+                .iter()
+                .any(|word| self.is_name(word));
+            if other && self.ahead(1) != Token::Assign && self.is_open(&[Word::EndIf]) {
+                self.misspelt(&[Word::Elsif]);
+            }
+            if self.at_end() {
+                break;
+            }
             let from = self.at;
             list.extend(self.statement());
             if self.at == from && !self.at_end() {
@@ -133,6 +143,17 @@ impl Parser<'_> {
         let kind = match word {
             Word::Exit => Kind::Exit,
             Word::Continue => Kind::Continue,
+            Word::Return if self.has_value() => {
+                self.next();
+                self.tell_here(
+                    Code::Syntax,
+                    "RETURN takes no value",
+                    "assign to the function's name, then RETURN;",
+                );
+                self.expression();
+                self.skip_to_semicolon();
+                return Some(Kind::Return);
+            }
             Word::Return => Kind::Return,
             Word::Jmp | Word::Goto => {
                 self.unsupported(from, word.text(), "use IF, CASE, EXIT and CONTINUE");
@@ -189,6 +210,24 @@ impl Parser<'_> {
         Some(kind)
     }
 
+    /// Whether an expression begins behind this word, on its line.
+    fn has_value(&self) -> bool {
+        let begins = matches!(
+            self.ahead(1),
+            Token::Name
+                | Token::Integer
+                | Token::Based
+                | Token::Real
+                | Token::Duration
+                | Token::Typed
+                | Token::Text
+                | Token::Open
+                | Token::Minus
+                | Token::Word(Word::True | Word::False | Word::Not | Word::This)
+        );
+        begins && self.same_line(self.span(), self.ahead_span(1))
+    }
+
     /// The `;` of a statement.
     fn semicolon(&mut self, after: &str) {
         if self.take(Token::Semicolon) {
@@ -217,6 +256,7 @@ impl Parser<'_> {
         let word = self.text_of(*first).to_ascii_uppercase();
         let more = match self.unended.len() - 1 {
             0 => String::new(),
+            1 => ", and in one more place of this file".to_owned(),
             more => format!(", and in {more} more places of this file"),
         };
         let message = format!("`;` is missing behind {word}{more}");
@@ -377,7 +417,26 @@ impl Parser<'_> {
 
     fn for_(&mut self) -> Option<Kind> {
         let open = self.next();
-        let variable = self.ident("the control variable of FOR");
+        let mut variable = self.ident("the control variable of FOR");
+        if matches!(self.token(), Token::Dot | Token::OpenBracket) {
+            self.tell_here(
+                Code::Syntax,
+                "the control variable of FOR is a plain variable",
+                "count with a variable of its own, and assign it to the member within the loop",
+            );
+            while matches!(
+                self.token(),
+                Token::Dot
+                    | Token::OpenBracket
+                    | Token::CloseBracket
+                    | Token::Name
+                    | Token::Integer
+                    | Token::Comma
+            ) {
+                self.next();
+            }
+            variable = None;
+        }
         if self.token() == Token::Equal {
             self.tell_here(Code::Syntax, "`=` compares", "FOR i := 1 TO 10 DO");
             self.next();
@@ -452,6 +511,19 @@ impl Parser<'_> {
                 self.unsupported(span, "SFC", "write the steps as CASE State OF ..");
                 self.skip_to_item();
                 return None;
+            }
+        }
+        if matches!(
+            self.ahead(1),
+            Token::Semicolon | Token::Name | Token::Word(_) | Token::End
+        ) {
+            let mut words = skip::STATEMENTS.to_vec();
+            words.extend(&self.open);
+            if self.misspelt(&words) {
+                return match self.token() {
+                    Token::Word(word) if !self.at_end() => self.keyword_statement(word),
+                    _ => None,
+                };
             }
         }
         let Some(path) = self.path() else {

@@ -168,12 +168,15 @@ impl Parser<'_> {
         let mut elements: Vec<(Ident, Option<Expression>)> = Vec::new();
         loop {
             let Some(name) = self.new_name("an element") else {
+                self.lost |= self.token() != Token::Close;
                 self.skip_to_semicolon_or_close();
                 break;
             };
             let value = self.take(Token::Assign).then(|| self.expression());
             elements.push((name, value));
-            if !self.take(Token::Comma) {
+            if self.token() == Token::Name {
+                self.expect(Token::Comma, ",", "between elements");
+            } else if !self.take(Token::Comma) {
                 break;
             }
             if self.token() == Token::Close {
@@ -184,6 +187,7 @@ impl Parser<'_> {
             let message = format!("`,` or `)` is missing between elements, before {}", self.shown());
             let wrong = Diagnostic::error(Code::Syntax, self.before().after(), message);
             self.tell(wrong.related(open, "the enumeration begins here"));
+            self.lost |= !matches!(self.token(), Token::Semicolon | Token::Word(_));
             self.skip_to_semicolon_or_close();
             self.take(Token::Close);
         }
@@ -204,7 +208,7 @@ impl Parser<'_> {
             {
                 return;
             }
-            self.next();
+            self.pass();
         }
     }
 
