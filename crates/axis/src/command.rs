@@ -196,16 +196,16 @@ iec_enum! {
 iec_enum! {
     /// When an administrative command takes effect (MC_EXECUTION_MODE).
     ExecutionMode = "MC_EXECUTION_MODE" {
-        /// In the call that gives it.
+        /// In the call itself.
         Immediately = "mcImmediately", 0;
-        /// Like a buffered motion: when what was commanded before has finished.
+        /// Like a buffered motion: when the earlier commands have finished.
         Queued = "mcQueued", 1;
     }
 }
 
 iec_enum! {
-    /// Which of the places that mean the same on a modulo slave MC_GearInPos leads to (MC_SYNC_MODE, numbers in the standard's
-    /// order).
+    /// Which repetition of its sync position MC_GearInPos takes on a modulo slave (MC_SYNC_MODE, numbers in the
+    /// standard's order).
     SyncMode = "MC_SYNC_MODE" {
         /// The nearest to where the slave would be without it.
         Shortest = "mcShortest", 0;
@@ -217,11 +217,11 @@ iec_enum! {
 }
 
 iec_enum! {
-    /// How MC_CombineAxes puts two masters together (MC_COMBINE_MODE, numbers in the standard's order).
+    /// How MC_CombineAxes combines two masters (MC_COMBINE_MODE, numbers in the standard's order).
     CombineMode = "MC_COMBINE_MODE" {
-        /// The ways of both are added.
+        /// The travels of both are added.
         Add = "mcAddAxes", 0;
-        /// The way of the second is taken away from that of the first.
+        /// The travel of the second is subtracted from that of the first.
         Subtract = "mcSubAxes", 1;
     }
 }
@@ -282,7 +282,7 @@ pub enum Command {
         position: f64,
         /// Dynamic values.
         dynamics: Dynamics,
-        /// Way round on a modulo axis; ignored on a linear one.
+        /// Direction on a modulo axis; ignored on a linear one.
         direction: Raw<Direction>,
     },
     /// By a distance from the set position at the start; the velocity must be positive.
@@ -308,7 +308,7 @@ pub enum Command {
         end_velocity: f64,
         /// Dynamic values.
         dynamics: Dynamics,
-        /// Way round on a modulo axis; ignored on a linear one.
+        /// Direction on a modulo axis; ignored on a linear one.
         direction: Raw<Direction>,
     },
     /// The same by a distance from the set position at the start.
@@ -358,9 +358,9 @@ pub enum Command {
         /// Dynamic values.
         dynamics: Dynamics,
     },
-    /// Names the present position `position` from now on.
+    /// MC_Home: the reference gets the position `position`.
     Home {
-        /// New name of the present position (u).
+        /// Position of the reference (u).
         position: f64,
     },
     /// MC_GearIn and MC_GearInPos: follows a master. Give this command through [`couple`](crate::couple),
@@ -368,19 +368,19 @@ pub enum Command {
     GearIn {
         /// The master, and how it is followed.
         followed: Followed,
-        /// MC_GearInPos: the places that belong together. None for MC_GearIn, which uses the places where
-        /// it comes into gear.
+        /// MC_GearInPos: the sync positions. None for MC_GearIn, which takes the positions at which it
+        /// comes into gear.
         sync: Option<SyncPoint>,
         /// Dynamic values until the slave is in gear. The velocity is read only with a sync point; 0
         /// takes the axis limit.
         dynamics: Dynamics,
     },
-    /// MC_CombineAxes: follows two masters, whose ways are added after their gear ratios. Give it through
-    /// [`couple`](crate::couple).
+    /// MC_CombineAxes: follows the sum or the difference of two masters, each after its gear ratio. Give it
+    /// through [`couple`](crate::couple).
     CombineAxes {
         /// The masters, and how each is followed.
         masters: [Followed; 2],
-        /// Whether the way of the second is added or subtracted.
+        /// Whether the travel of the second is added or subtracted.
         mode: Raw<CombineMode>,
     },
     /// MC_GearOut: no longer follows its master; keeps the velocity.
@@ -446,7 +446,7 @@ impl CamIn {
 pub struct Followed {
     /// The master.
     pub master: Master,
-    /// Way of the slave for one of the master, as a ratio: numerator, signed, 0 allowed.
+    /// Gear ratio, travel of the slave per travel of the master: numerator, signed, 0 allowed.
     pub numerator: i16,
     /// Denominator, above 0.
     pub denominator: i32,
@@ -470,16 +470,17 @@ pub struct Master {
     pub turn: Option<f64>,
 }
 
-/// Places of a master and its slave that belong together, and the way there: pins of MC_GearInPos.
+/// The sync positions of a master and its slave, and the approach to them: pins of MC_GearInPos.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SyncPoint {
     /// Of the master (u).
     pub master: f64,
     /// Of the slave (u).
     pub slave: f64,
-    /// Which of the places that mean the same on a modulo slave.
+    /// Which repetition of the slave's sync position, on a modulo slave.
     pub mode: Raw<SyncMode>,
-    /// How far before its place the master is where the slave sets off (u), with the sign of its direction; 0 for at once.
+    /// Distance of the master before its sync position at which the slave starts (u), with the sign of the
+    /// master's direction; 0 starts at once.
     pub start_distance: f64,
 }
 

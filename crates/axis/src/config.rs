@@ -232,7 +232,7 @@ pub struct AxisConfig {
     pub modulo_targets: ModuloTargets,
     /// What a rising edge of Execute does while the instance is Busy.
     pub edge_while_busy: EdgeWhileBusy,
-    /// How its load swings, and what keeps it from that.
+    /// The vibration modes of its load, and the shaper against each.
     pub vibration: [Option<VibrationMode>; MODES],
 }
 

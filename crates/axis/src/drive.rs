@@ -99,13 +99,12 @@ pub struct DriveCommand {
     pub position: DrivePosition,
     /// Velocity feed-forward (u/s).
     pub velocity: f64,
-    /// For drives that use units: the present commanded position, that of the command before, is called
-    /// this (u) from now on, and every other position shifts by the same amount (MC_Home,
-    /// MC_SetPosition). Increments never change their names.
+    /// For drives that use units: the new value (u) of the position in the command before (MC_Home,
+    /// MC_SetPosition). Every other position shifts by the same amount. Increments are never shifted.
     pub rename: Option<f64>,
 }
 
-/// Digital inputs, and outputs, of a drive: numbered from 0 to one less, a bit each (V26).
+/// Number of digital inputs of a drive, and of its outputs (V26). They are numbered from 0, one bit each.
 pub const DIGITAL: u32 = u32::BITS;
 
 /// Touch probes of a drive.
@@ -161,7 +160,7 @@ pub enum DriveHoming {
     Off,
     /// It moves by itself, is about to, or has not returned to the command yet.
     Busy,
-    /// The same, and its positions have been named anew: from this scan on the reference is here.
+    /// Like `Busy`, but its positions have shifted: from this scan on the reference is here.
     Attained(DrivePosition),
     /// It is at rest, and the reference is here. It stays in this state until homing is no longer
     /// requested.

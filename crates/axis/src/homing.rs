@@ -92,7 +92,7 @@ pub struct BlockDetection {
 /// The homing of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Homing {
-    /// What is looked for.
+    /// The procedure.
     pub procedure: Procedure,
     /// Where the search begins.
     pub direction: HomeDirection,
@@ -108,7 +108,7 @@ pub struct Homing {
     pub block: Option<BlockDetection>,
     /// Scans the search may take; `None` for no limit.
     pub time_limit: Option<u64>,
-    /// Way the axis may go in the search (u), all parts added; `None` for no limit.
+    /// Distance the axis may travel in the search (u), all parts added; `None` for no limit.
     pub distance_limit: Option<f64>,
 }
 

@@ -15,7 +15,7 @@ pub struct IdealDrive {
     delay: usize,
     power_on: Option<u32>,
     enabled: bool,
-    /// Scans since Enable was asked for without being confirmed.
+    /// Scans since Enable was requested; it is not confirmed yet.
     waited: u32,
     fault: Option<Fault>,
     voltage: bool,

@@ -22,7 +22,7 @@ pub enum Goal {
     },
 }
 
-/// The way in which a slave comes onto the law of its gear.
+/// How a slave gets onto the law of its gear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Approach {
     /// Beside the law, until the difference is 0.
@@ -64,7 +64,7 @@ pub enum Event {
         /// The error the block shows.
         error: ErrorId,
     },
-    /// A profile was refused because of a point of its table, or of the way to it.
+    /// A profile was refused because of a point of its table, or of the curve to that point.
     PointRefused {
         /// The point, from 1.
         point: u16,
@@ -106,8 +106,8 @@ pub enum Event {
     },
     /// The start state forces the plan beyond its limits by this much.
     Unavoidable(Excess),
-    /// The coordinates were moved: from this scan on the same place is called this much more (u). No
-    /// motion.
+    /// The coordinates were shifted, without motion: from this scan on the same place has a position that
+    /// is larger by this amount (u).
     Shifted {
         /// By how much (u).
         by: f64,
@@ -139,9 +139,9 @@ pub enum Event {
     Orphaned,
     /// The axis follows a master.
     Coupled {
-        /// Which.
+        /// The master.
         master: AxisId,
-        /// Way of the slave for one of the master: numerator.
+        /// Gear ratio, travel of the slave per travel of the master: numerator.
         numerator: i32,
         /// Denominator.
         denominator: u16,
@@ -178,7 +178,7 @@ pub enum Event {
         /// The limit.
         limit: f64,
     },
-    /// The masters of a slave in gear are commanded to a place where it must not go.
+    /// The commands of its masters lead a slave in gear outside its software limits.
     LeadsOutside {
         /// The rest position that the slave would have (u).
         position: f64,
@@ -188,13 +188,13 @@ pub enum Event {
     /// A cam was selected: the highest constant velocity of its master with which the slave can follow
     /// it.
     CamSelected {
-        /// That (u/s of the master).
+        /// This velocity (u/s of the master).
         velocity: f64,
         /// The velocity limit of the master.
         limit: f64,
     },
-    /// A cam was selected at one of whose rows the slave comes to rest, because its limits do not let a
-    /// derivative jump.
+    /// A cam was selected on which the slave comes to rest at a row, because its limits do not let a
+    /// derivative jump there.
     CamStops {
         /// The row with the largest jump, from 1.
         row: u16,
@@ -205,9 +205,9 @@ pub enum Event {
     },
     /// The axis goes onto a cam.
     OnCam {
-        /// Behind which master.
+        /// Its master.
         master: AxisId,
-        /// Which cam.
+        /// The cam.
         cam: CamId,
     },
     /// The slave goes onto its cam, or along it into step with its master.
@@ -233,7 +233,7 @@ pub enum Event {
     },
     /// More than one end of the cam was passed in one scan.
     CamPassed {
-        /// So many.
+        /// The number of ends.
         periods: u32,
     },
     /// The axis entered ErrorStop.

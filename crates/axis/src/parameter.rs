@@ -41,7 +41,7 @@ pub enum Parameter {
     MaxJerkAppl,
     /// 1000: the drive's own code of the axis error; 0 without one.
     DriveErrorCode = 1000,
-    /// 1001: the set position published in the scan before less the actual position (u).
+    /// 1001: following error: the set position published in the scan before, minus the actual position (u).
     PositionLag,
     /// 1002: frequency of the first mode of `vibration` (Hz); 0 without one.
     Vibration1Frequency,
@@ -49,7 +49,7 @@ pub enum Parameter {
     Vibration1Damping,
     /// 1004: its shaper: 1 `period`, 2 `zv`, 3 `zvd`, 4 `ei`.
     Vibration1Shaper,
-    /// 1005: the same three of the second mode.
+    /// 1005: frequency of the second mode (Hz); 0 without one.
     Vibration2Frequency,
     /// 1006: its damping ratio.
     Vibration2Damping,

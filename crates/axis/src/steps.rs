@@ -5,7 +5,8 @@
 
 use crate::{Axis, AxisId, AxisState, Drive, DriveFeedback, Planner, Scope, couple};
 
-/// After every drive was read, in axis order: takes the report of its drive beside its motion, then updates its state.
+/// In axis order: takes the report of the drive, then updates the state of the axis. Call it
+/// after every drive was read.
 #[inline]
 pub fn follow<P: Planner, D: Drive>(
     axes: &mut [Axis<P>],
@@ -49,7 +50,7 @@ pub fn advance_and_publish<P: Planner, D: Drive>(
 }
 
 /// [`advance`]; `then` takes every axis with its new set-point, in the order of their numbers.
-// In one pass: of thousands of axes each comes from far away, and half as often.
+// One pass: with thousands of axes each access is a cache miss, and a second pass would double them.
 #[inline]
 pub fn advance_each<P: Planner>(
     axes: &mut [Axis<P>],
