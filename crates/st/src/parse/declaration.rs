@@ -48,9 +48,7 @@ impl Parser<'_> {
                 message,
                 "statements stand in a PROGRAM .. END_PROGRAM",
             );
-            items.extend(self.name_of_damaged());
-            self.next();
-            items.extend(self.name_of_damaged());
+            items.push(Self::unknown_item(from));
             self.skip_to_item();
             self.pass_end();
             return;
@@ -110,6 +108,12 @@ impl Parser<'_> {
         let span = self.span();
         let text = self.text_of(span).to_owned();
         (self.token() == Token::Name).then_some(Item::Damaged(Ident { text, span }))
+    }
+
+    /// Something that could not be read: any unknown name may be its name.
+    const fn unknown_item(span: Span) -> Item {
+        let text = String::new();
+        Item::Damaged(Ident { text, span })
     }
 
     /// Behind the end of a unit whose beginning could not be read.
@@ -265,11 +269,7 @@ impl Parser<'_> {
             self.next();
             self.skip_to_item();
             self.pass_end();
-            // Whatever is unknown may be its name.
-            return Some(Item::Damaged(Ident {
-                text: String::new(),
-                span: open,
-            }));
+            return Some(Self::unknown_item(open));
         };
         let mut damaged = false;
         while let Token::Word(word @ (Word::Extends | Word::Implements)) = self.token() {
@@ -457,7 +457,9 @@ impl Parser<'_> {
                         message,
                         "declare variables before the first statement",
                     );
-                    unit.sections.extend(self.section().map(Self::as_var));
+                    let section = self.section();
+                    unit.damaged |= section.as_ref().is_some_and(|section| section.damaged);
+                    unit.sections.extend(section);
                 }
                 _ => {
                     self.not_closed(end, open, &unit.name.text);
@@ -569,6 +571,8 @@ impl Parser<'_> {
                 _ => {
                     let message = format!("the name of a variable is expected, not {}", self.shown());
                     self.tell_here(Code::Syntax, message, "declare as `Name : INT := 5;`");
+                    // Its name is missing: any unknown name may be it.
+                    self.lost = true;
                     self.next();
                     self.skip_to_semicolon();
                 }
