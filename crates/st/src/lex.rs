@@ -381,7 +381,7 @@ impl<'a> Lexer<'a> {
 
     fn name(&mut self) -> Option<Token> {
         let from = self.at;
-        if let Some(sign) = self.char_here() {
+        if let Some(sign) = self.char_here().filter(|sign| !sign.is_ascii()) {
             if QUOTES.contains(&sign) {
                 return Some(self.foreign_quotes());
             }
@@ -401,11 +401,12 @@ impl<'a> Lexer<'a> {
             let plain = u8::try_from(letter).is_ok_and(|byte| byte.is_ascii() && !is_name(byte));
             plain || SPACES.contains(&letter) || QUOTES.contains(&letter) || DASHES.contains(&letter)
         };
-        let rest = self.text.get(from..).unwrap_or_default();
-        let text = rest
-            .get(..rest.find(ends).unwrap_or(rest.len()))
-            .unwrap_or_default();
-        self.at += text.len();
+        self.skip_while(is_name);
+        if !self.peek(0).is_ascii() {
+            let rest = self.text.get(self.at..).unwrap_or_default();
+            self.at += rest.find(ends).unwrap_or(rest.len());
+        }
+        let text = self.text.get(from..self.at).unwrap_or_default();
         if !text.is_ascii() {
             return self.foreign_letters(from);
         }

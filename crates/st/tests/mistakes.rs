@@ -839,6 +839,11 @@ const ONE_MISTAKE: &[(&str, &str, &str)] = &[
         "",
     ),
     (
+        "TYPE E : a, b, c ); END_TYPE PROGRAM P VAR v : E; END_VAR v := b; v := E.c; END_PROGRAM",
+        "`;` is missing behind the declaration of a type",
+        "",
+    ),
+    (
         "PROGRAM P VAR n INT; END_VAR n := 1; n := n + 1; END_PROGRAM",
         "`:` is missing behind the name of a variable",
         "",

@@ -147,8 +147,9 @@ impl<'a> Checker<'a> {
 
     fn declare_type(&mut self, ty: &'a syntax::TypeDeclaration) {
         let key = ty.name.key();
+        // The members of a structure are named behind it; elements are not.
+        self.names_lost |= ty.damaged && !matches!(ty.spec.kind, SpecKind::Structure(_));
         if let SpecKind::Enumeration { elements, .. } = &ty.spec.kind {
-            self.names_lost |= ty.damaged;
             for (element, _) in elements {
                 let owners = self.elements.entry(element.key()).or_default();
                 let owner = ElementOf::Named(key.clone());

@@ -214,6 +214,8 @@ impl Parser<'_> {
         if self.take(Token::Assign) {
             initial = Some(self.initial());
         }
+        // `E : a, b);` was to be an enumeration.
+        damaged |= lost || self.token() == Token::Comma;
         // Behind END_STRUCT and END_UNION it may be absent, as in CODESYS.
         let closed = self.at.checked_sub(1).and_then(|place| self.tokens.get(place));
         let may_miss = matches!(closed, Some((Token::Word(Word::EndStruct | Word::EndUnion), _)));
@@ -227,7 +229,7 @@ impl Parser<'_> {
             name,
             spec,
             initial,
-            damaged: damaged || lost,
+            damaged,
         }))
     }
 
