@@ -44,39 +44,27 @@ fn sources(files: &[(String, Vec<u8>)]) -> Vec<Source<'_>> {
 
 /// The names and numbers of another system, if one is named.
 pub fn dialect(name: Option<&str>) -> Result<Dialect, Failure> {
+    use standstill_export::Dialect as Known;
     let Some(name) = name else {
+        let others = Known::known().filter_map(|name| Known::new(name).ok());
         return Ok(Dialect {
-            elsewhere: pins_elsewhere(),
+            others: others.map(|known| names_of(&known)).collect(),
             ..Dialect::default()
         });
     };
-    let known = standstill_export::Dialect::new(name).map_err(|error| Failure::usage(&error.to_string()))?;
-    Ok(Dialect {
-        name: name.to_owned(),
+    let known = Known::new(name).map_err(|error| Failure::usage(&error.to_string()))?;
+    Ok(names_of(&known))
+}
+
+fn names_of(known: &standstill_export::Dialect) -> Dialect {
+    Dialect {
+        name: known.name().to_owned(),
         types: known.types().to_vec(),
         elements: known.names().to_vec(),
         numbers: known.numbers().to_vec(),
         pins: known.pins().to_vec(),
-        elsewhere: Vec::new(),
-    })
-}
-
-/// The names that the dialects have for pins, for messages.
-fn pins_elsewhere() -> Vec<(String, String, String, String)> {
-    let known = standstill_export::Dialect::known();
-    let dialects = known.filter_map(|name| standstill_export::Dialect::new(name).ok());
-    let pins = dialects.flat_map(|dialect| {
-        let named = |(block, pin, there): &(String, String, String)| {
-            (
-                block.clone(),
-                pin.clone(),
-                there.clone(),
-                dialect.name().to_owned(),
-            )
-        };
-        dialect.pins().iter().map(named).collect::<Vec<_>>()
-    });
-    pins.collect()
+        others: Vec::new(),
+    }
 }
 
 /// Prints errors and warnings, with or without lints; a lint is a failure.

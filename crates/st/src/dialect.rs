@@ -14,8 +14,8 @@ pub struct Dialect {
     pub numbers: Vec<(String, i32, String)>,
     /// Our block, our pin, its name there.
     pub pins: Vec<(String, String, String)>,
-    /// Our block, our pin, its name in another dialect, the name of that dialect: for messages.
-    pub elsewhere: Vec<(String, String, String, String)>,
+    /// Dialects that could have been chosen, for messages.
+    pub others: Vec<Dialect>,
 }
 
 impl Dialect {
@@ -43,12 +43,13 @@ impl Dialect {
 
     /// Our pin for a name that it has in other dialects, as a help.
     pub(crate) fn pin_elsewhere(&self, block: &str, name: &str) -> Option<String> {
-        let same = |(of, _, there, _): &&(String, String, String, String)| {
-            of == block && there.eq_ignore_ascii_case(name)
-        };
-        let found: Vec<_> = self.elsewhere.iter().filter(same).collect();
-        let (_, pin, ..) = found.first()?;
-        let dialects: Vec<_> = found.iter().map(|(.., dialect)| dialect.as_str()).collect();
+        let called = |other: &Self| other.pin_called(block, name).is_some();
+        let found = self.others.iter().filter(|other| called(other));
+        let dialects: Vec<&str> = found.map(|other| other.name.as_str()).collect();
+        let pin = self
+            .others
+            .iter()
+            .find_map(|other| other.pin_called(block, name))?;
         Some(format!(
             "here it is `{pin}`; --dialect {} takes the names of that system",
             dialects.join(" or ")

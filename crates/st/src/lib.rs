@@ -146,8 +146,7 @@ fn build(given: &[Source<'_>], options: &Options, module: bool) -> Result<Built,
     if !options.axes.is_empty() {
         lint::without_axis(&program, &image, &sources, &mut found);
     }
-    let (_, library) = sources.text_of(sources.count() - 1);
-    match emit::emit(&program, &image, &counters, library) {
+    match emit::emit(&program, &image, &counters, &sources) {
         Ok(emitted) => {
             let symbols = Symbols::new(program, emitted.sites, counters.list(&sources), &sources);
             Ok((Some((emitted.wasm, symbols)), found.report(sources)))

@@ -172,6 +172,11 @@ impl Sources {
         self.files.len()
     }
 
+    /// Whether a place is in the library's own text, which is the last file.
+    pub(crate) fn in_library(&self, span: Span) -> bool {
+        self.file_index(span) + 1 == self.count()
+    }
+
     /// The text of a file, and the place of its first byte.
     pub(crate) fn text_of(&self, file: usize) -> (&str, u32) {
         self.files

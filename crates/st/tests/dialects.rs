@@ -15,7 +15,7 @@ fn dialect() -> Dialect {
         elements: vec![three("MC_DIRECTION", "mcPositiveDirection", "Up")],
         numbers: vec![("MC_DIRECTION".to_owned(), -1, "mcNegativeDirection".to_owned())],
         pins: vec![three("MC_Power", "EnablePositive", "Enable_Positive")],
-        elsewhere: Vec::new(),
+        others: Vec::new(),
     }
 }
 
@@ -63,14 +63,14 @@ fn what_a_dialect_does_not_have_is_told() {
 /// Covers: ST42
 #[test]
 fn a_pin_of_another_dialect_is_told_with_ours() {
-    let four = |dialect: &str| ["CTU", "R", "RESET", dialect].map(str::to_owned);
-    let elsewhere = ["this", "that"].map(|dialect| {
-        let [block, pin, there, dialect] = four(dialect);
-        (block, pin, there, dialect)
+    let others = ["this", "that"].map(|name| Dialect {
+        name: name.to_owned(),
+        pins: vec![("CTU".to_owned(), "R".to_owned(), "RESET".to_owned())],
+        ..Dialect::default()
     });
     let options = Options {
         dialect: Dialect {
-            elsewhere: elsewhere.to_vec(),
+            others: others.to_vec(),
             ..Dialect::default()
         },
         ..Options::default()

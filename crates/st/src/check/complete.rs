@@ -288,7 +288,7 @@ impl Checker<'_> {
         };
         found.declared = found
             .declared
-            .filter(|span| *span != Span::default() && !self.in_prelude(*span));
+            .filter(|span| *span != Span::default() && !self.sources.in_library(*span));
         Some(found)
     }
 
@@ -539,7 +539,7 @@ impl Checker<'_> {
         };
         let mut offered = Vec::new();
         for (named, syntax) in self.named.values().map(|it| (it.found.0, it.syntax)) {
-            if !self.in_prelude(syntax.name.span) {
+            if !self.sources.in_library(syntax.name.span) {
                 let detail = match self.types.get(named) {
                     Type::Structure(_) => "STRUCT".to_owned(),
                     Type::Enumeration(_) => "an enumeration".to_owned(),
@@ -550,7 +550,7 @@ impl Checker<'_> {
             }
         }
         for (index, info) in self.units.iter().enumerate() {
-            if info.kind == UnitKind::Block && !self.in_prelude(info.span) {
+            if info.kind == UnitKind::Block && !self.sources.in_library(info.span) {
                 let id = UnitId(index as u32);
                 offered.push(self.unit_offered(id, CompletionKind::Block, "FUNCTION_BLOCK"));
             }
@@ -590,7 +590,7 @@ impl Checker<'_> {
         }
         for (index, info) in self.units.iter().enumerate() {
             let id = UnitId(index as u32);
-            if info.kind == UnitKind::Function && !self.in_prelude(info.span) {
+            if info.kind == UnitKind::Function && !self.sources.in_library(info.span) {
                 offered.push(self.unit_offered(id, CompletionKind::Function, "FUNCTION"));
             }
             let other = info.kind == UnitKind::Program && self.scope != Some(id);

@@ -249,7 +249,7 @@ impl<'a> Checker<'a> {
         for place in 0..self.units.len() {
             let unit = &self.units[place];
             let (span, bytes) = (unit.span, unit.members.size);
-            if unit.kind.has_frame() && self.in_prelude(span) == prelude {
+            if unit.kind.has_frame() && self.sources.in_library(span) == prelude {
                 self.units[place].frame = self.layout.take(bytes);
                 self.check_memory(span);
             }

@@ -94,7 +94,7 @@ impl<'a> Checker<'a> {
         let function = Function::find(&key).is_some()
             || conversion(&key).is_some()
             || OPERATORS.iter().any(|(name, _)| *name == key);
-        if (library || function) && !self.in_prelude(name.span) {
+        if (library || function) && !self.sources.in_library(name.span) {
             let message = format!("`{}` has that name in the library", name.text);
             self.error(
                 Code::DuplicateName,

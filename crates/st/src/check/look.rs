@@ -46,7 +46,7 @@ impl Checker<'_> {
         let mut found = self.look.found.take()?;
         found.declared = found
             .declared
-            .filter(|span| *span != Span::default() && !self.in_prelude(*span));
+            .filter(|span| *span != Span::default() && !self.sources.in_library(*span));
         Some(found)
     }
 
@@ -298,7 +298,7 @@ impl Checker<'_> {
 
     /// The comment behind a declaration, or on the lines before it.
     pub(super) fn remark(&self, span: Span) -> String {
-        if span == Span::default() || self.in_prelude(span) {
+        if span == Span::default() || self.sources.in_library(span) {
             return String::new();
         }
         self.sources.remark(span)

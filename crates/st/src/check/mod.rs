@@ -334,11 +334,6 @@ impl<'a> Checker<'a> {
         self.unit(unit).syntax.is_some_and(|syntax| syntax.damaged)
     }
 
-    /// Whether a place is in the library's own text, which is the last file.
-    fn in_prelude(&self, span: Span) -> bool {
-        self.sources.file_index(span) + 1 == self.sources.count()
-    }
-
     fn unit(&self, id: UnitId) -> &UnitInfo<'a> {
         &self.units[id.0 as usize]
     }

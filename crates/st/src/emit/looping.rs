@@ -37,8 +37,7 @@ impl Emitter<'_, '_, '_> {
             start: span.start,
             end: (span.start + 6).min(span.end),
         };
-        let library = span.start >= self.context.library;
-        let site = (!library).then(|| self.site(keyword, FaultKind::Loop));
+        let site = (!self.context.sources.in_library(span)).then(|| self.site(keyword, FaultKind::Loop));
         self.note_loop(site);
         (site, self.function.block())
     }

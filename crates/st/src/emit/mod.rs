@@ -18,7 +18,7 @@ use crate::check::{Body, Program, UnitKind};
 use crate::coverage::Counters;
 use crate::error::{Code, Diagnostic};
 use crate::layout;
-use crate::source::Span;
+use crate::source::{Sources, Span};
 use crate::types::UnitId;
 use function::Function;
 use std::collections::BTreeMap;
@@ -114,8 +114,7 @@ struct Context<'p, 'a> {
     /// Initial values of variables that are created at every call, behind everything else.
     templates: Vec<u8>,
     templates_at: u32,
-    /// Where the library's own text begins.
-    library: u32,
+    sources: &'p Sources,
 }
 
 impl Context<'_, '_> {
@@ -141,13 +140,12 @@ pub(crate) struct Emitted {
     pub sites: Vec<Site>,
 }
 
-/// Writes the module; `image` is the memory before the first scan, and `library` the place where the library's own text
-/// begins.
+/// Writes the module; `image` is the memory before the first scan.
 pub(crate) fn emit(
     program: &Program<'_>,
     image: &[u8],
     counters: &Counters,
-    library: u32,
+    sources: &Sources,
 ) -> Result<Emitted, Diagnostic> {
     let mut context = Context {
         program,
@@ -158,7 +156,7 @@ pub(crate) fn emit(
         counters,
         templates: Vec::new(),
         templates_at: program.layout.end.next_multiple_of(8),
-        library,
+        sources,
     };
     context.want(Target::Fault);
     let mut exported = vec![("plc_scan".to_owned(), statement::scan(&mut context, None))];

@@ -577,9 +577,11 @@ impl<P: Planner> Axis<P> {
         let mut is_told = false;
         if let Some(on_cam) = &mut self.follower.on_cam {
             // Behind a master whose motion is not known, the same way along the curve is found many times.
-            let is_along = |rung: Rung| {
-                let beside = matches!(rung, Rung::BesideLine { .. } | Rung::BesideMaster);
-                beside || matches!(rung, Rung::BesideMeasured { .. })
+            let is_along = |rung| {
+                matches!(
+                    rung,
+                    Rung::BesideLine { .. } | Rung::BesideMaster | Rung::BesideMeasured { .. }
+                )
             };
             let goes_on = is_along(on_cam.rung) && is_along(way.rung) && on_cam.told == Some(way.name);
             is_told = goes_on && !on_cam.known[0].is_foreseen();
