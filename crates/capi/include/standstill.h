@@ -216,7 +216,7 @@ typedef struct standstill_runtime_config {
   uint32_t instances;
   /**
    * Number of set-points kept for axes with vibration, in all, up to 2^24. For each mode of an axis: twice its
-   * period in ticks, but at most 4096, and 4. Each takes 40 bytes of storage.
+   * period in ticks, divided by 1 - damping^2, but at most 4096, and 4. Each takes 40 bytes of storage.
    */
   uint32_t history;
   /**

@@ -68,7 +68,7 @@ pub struct RuntimeConfig {
     /// Largest number of block instances, up to 65534.
     pub instances: u32,
     /// Number of set-points kept for axes with vibration, in all, up to 2^24. For each mode of an axis: twice its
-    /// period in ticks, but at most 4096, and 4. Each takes 40 bytes of storage.
+    /// period in ticks, divided by 1 - damping^2, but at most 4096, and 4. Each takes 40 bytes of storage.
     pub history: u32,
     /// Nominal time between ticks (ns), above 0. Every tick_end advances motion by this time, even if it is late.
     pub cycle_ns: i64,
