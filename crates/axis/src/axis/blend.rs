@@ -1,7 +1,7 @@
-//! Blending: how fast a positioning command passes its end when a blended one waits behind it.
+//! Blending: the velocity at which a positioning command passes its end when a blended command waits behind it.
 //!
-//! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; rules B1 to B17. What the
-//! standard leaves open is told in `docs/buffering.md`. The maths is the planner's.
+//! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; rules B1 to B17.
+//! `docs/buffering.md` states what the standard leaves open. The planner does the calculation.
 
 use super::commands::{Entry, REST, ROUNDING, Run, Work};
 use super::power::Reaction;
@@ -10,26 +10,29 @@ use super::{Axis, Motion};
 use crate::{BufferMode, ErrorId, Fate, QUEUE_MAX, Scope};
 use standstill_planner::{Limits, Passage, Plan, Planner, Setpoint};
 
-/// Scans of a way that leave room for its ramps in a plan.
+/// The longest distance that can be planned takes this number of scans at constant velocity. The rest of a plan's
+/// scans is for the ramps.
 const SCANS: f64 = 1_073_741_824.0;
 
-/// The part of the highest speed that an end is passed with, however much is added: one that cannot stop there may pass.
+/// The share of its velocity that an end keeps at least, however fast the superimposed motion is. Then the next
+/// command may be unable to stop in its distance.
 const AT_LEAST: f64 = 0.1;
 
-/// A command of a chain: the owner to be, or one that waits.
+/// A command of a chain: the one that is or becomes the owner, or one that waits.
 #[derive(Clone, Copy)]
 struct Leg<'a> {
     entry: &'a Entry,
-    /// How far it leads (u), with its direction as the sign; `None` if it leads nowhere.
+    /// The distance to its end (u), with its sign; `None` if it has no end.
     way: Option<f64>,
-    /// Where it ends (u), if anywhere.
+    /// The position of its end (u), if it has one.
     end: Option<f64>,
 }
 
 impl<P: Planner> Axis<P> {
-    /// A command has been queued with `mode`: if it is to blend, the owner may have to pass its end at
-    /// another speed, and is planned anew from the last set-point (B15). Failing that, its plan stays, and so does one that passes its
-    /// end on a ramp if no other is sooner, and one motion whose next command could not come to rest behind the new plan.
+    /// A command has been queued with `mode`. If it is blended, the velocity at the end of the owner may change, and
+    /// the owner is planned anew from the last set-point (B15). If no new plan is found, the present one stays. It
+    /// also stays if it passes its end on a ramp and the new plan is not sooner, or if it is one motion and the next
+    /// command could not come to rest behind the new plan.
     pub(super) fn arm(&mut self, mode: BufferMode, scope: &mut Scope<'_>) {
         if mode.blends() {
             self.arm_owner_if(
@@ -42,14 +45,15 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the owner is one motion with others, and along `plan`, which `owner` would have, passes its own end too fast for the next.
+    /// Whether the owner is one motion with others now, would no longer be with `plan` (of `owner`), and would pass
+    /// its own end too fast for the next command.
     fn splits_too_fast(&self, owner: &Entry, plan: &P::Plan) -> bool {
         let is_split = owner.run.count == 0 && self.owner.is_some_and(|was| was.run.count > 0);
         let speed = plan.at(u64::from(plan.scans())).velocity.abs();
         is_split && speed > owner.passage.most * (1.0 + ROUNDING)
     }
 
-    /// The same for whatever has changed behind the owner.
+    /// The same after any change behind the owner.
     pub(super) fn arm_owner(&mut self, scope: &mut Scope<'_>) {
         self.arm_owner_if(|_, _, _| true, scope);
     }
@@ -58,7 +62,7 @@ impl<P: Planner> Axis<P> {
         let Some(was) = self.owner else { return };
         let mut owner = was;
         self.look_through(&mut owner, self.mover.setpoint().position, 0);
-        // What the next command can begin with at most matters only to a new plan.
+        // The highest velocity with which the next command can begin matters only to a new plan.
         let asked = |entry: &Entry| (entry.passage.wanted, entry.passage.brake, entry.run);
         let changed = asked(&owner) != asked(&was);
         if !changed
@@ -69,7 +73,7 @@ impl<P: Planner> Axis<P> {
             return;
         }
         if self.mover.layer().is_some() {
-            // It goes on as planned below what moves; what has been added only moves its end.
+            // Under a superimposed motion it continues as planned. After that the added distance only moves its end.
             let passes = !self.is_superimposing() && owner.passage.wanted > 0.0;
             if !passes || self.plan_anew(owner, scope).is_err() {
                 self.end_run();
@@ -78,7 +82,8 @@ impl<P: Planner> Axis<P> {
         }
         let (start, before) = (self.mover.setpoint(), self.mover.before());
         let planned = match self.ahead(&mut owner, start, before) {
-            // What was to go on as one motion with something that is another one now does not come to rest as planned.
+            // If one motion can't continue because the next command is another one, the owner comes to rest at its
+            // end.
             None if was.run.count > 0 => self.at_rest_ahead(&owner, start, before),
             planned => {
                 let moves = |plan: &P::Plan| !plan.at(self.along(&owner, *plan).scans()).is_at_rest();
@@ -87,12 +92,13 @@ impl<P: Planner> Axis<P> {
         };
         match planned.filter(|plan| is_good(self, &owner, plan)) {
             Some(plan) => self.adopt(owner, self.along(&owner, plan), scope),
-            // It goes on as planned. What was one motion passes its end like that, and the next takes over there.
+            // It continues as planned. An owner of one motion passes its end like that, and the next command takes
+            // over there.
             None => self.end_run(),
         }
     }
 
-    /// The plan of `entry` to rest at its end, unless it has to turn or to leave a limit of the axis for that.
+    /// The plan of `entry` to rest at its end; `None` if it would turn or exceed a limit of the axis.
     fn at_rest_ahead(&self, entry: &Entry, start: &Setpoint, before: &Limits) -> Option<P::Plan> {
         let (end, profile) = (entry.end?, self.config.profile);
         let planned = self.planner.move_to(profile, start, end, &entry.limits, before);
@@ -101,21 +107,22 @@ impl<P: Planner> Axis<P> {
             .filter(|plan| self.beyond_bound(plan).is_none() && !self.turns(plan, end > start.position))
     }
 
-    /// The plan of `entry` that leads on with what waits behind it: one motion with it, or past its end. `None` if it is to come to
-    /// rest there from where it need not be blended, or can't do without turning.
+    /// The plan of `entry` that continues with the commands behind it: as one motion, or past its end. `None` if it
+    /// is to come to rest there from a state in which it need not be blended, or can't do it without turning.
     pub(super) fn ahead(&self, entry: &mut Entry, start: &Setpoint, before: &Limits) -> Option<P::Plan> {
         if let Some(plan) = self.in_one_motion(entry, start, before) {
             return Some(plan);
         }
         entry.run = Run::NONE;
         if entry.is_behind {
-            // All there is to be passed is here: it goes back and comes to rest.
+            // There is nothing else to pass: it goes back and comes to rest.
             (entry.is_behind, entry.passage) = (false, REST);
         }
         self.blended(entry, start, entry.end?, &entry.passage, before)
     }
 
-    /// The plan that passes `end`, that of `entry` or of what is one motion with it, as `passage` says.
+    /// The plan that passes `end` with `passage`. `end` is that of `entry`, or of the last command that is one motion
+    /// with it.
     pub(super) fn blended(
         &self,
         entry: &Entry,
@@ -131,9 +138,9 @@ impl<P: Planner> Axis<P> {
             return None;
         }
         let planned = self.planner.blend(start, end, passage, &entry.limits, before);
-        // What can't be planned blended is planned as a move to rest, whose error would be the same. So is what comes
-        // out faster than it may because the limits were lowered too late: it passes its end, turns and comes back. And none
-        // is worth exceeding a limit of the axis.
+        // If there is no blended plan, the caller plans a move to rest, which would return the same error. The same
+        // applies to a plan that is too fast at its end because the limits were lowered too late: it passes its end,
+        // turns and comes back. No plan may exceed a limit of the axis.
         let planned = planned.ok().flatten();
         let passing = planned
             .filter(|plan| passage.wanted <= 0.0 || self.beyond_bound(plan).is_none())
@@ -151,10 +158,10 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the command after `entry` is done sooner if that passes its `end` along `passing` than if it comes to rest
-    /// there. Where it need not let go of a brake for the speed it is told to have, it certainly is.
+    /// Whether the command after `entry` is done sooner if `entry` passes its `end` along `passing` than if it comes
+    /// to rest there. This is certain if `entry` reaches the wanted velocity and does not brake now.
     ///
-    /// Cost: at most three plans, for one that is told late.
+    /// Cost: at most three plans, if `entry` brakes or does not reach that velocity.
     fn is_worth_it(
         &self,
         entry: &Entry,
@@ -174,7 +181,7 @@ impl<P: Planner> Axis<P> {
             return true;
         };
         let target = self.end_of_leg(next, end, end > start.position);
-        // What has no end has none that could come sooner.
+        // A command without an end can't be done sooner.
         let after = |from: &Setpoint| match target {
             Some(target) => self
                 .planner
@@ -190,12 +197,12 @@ impl<P: Planner> Axis<P> {
         in_motion < to_rest.saturating_add(after(&Setpoint::at_rest(end)))
     }
 
-    /// Scans of `entry` until it rests at its `end`, planned anew or as planned already.
+    /// Scans until `entry` is at rest at its `end`, by a new plan or by the present one.
     pub(super) fn scans_to_rest(&self, entry: &Entry, start: &Setpoint, end: f64, before: &Limits) -> u64 {
         let planned = self
             .planner
             .move_to(self.config.profile, start, end, &entry.limits, before);
-        // Coming to rest by way of a turn is none.
+        // A plan that turns does not count.
         let planned = planned
             .ok()
             .filter(|plan| start.is_at_rest() || !self.turns(plan, end > start.position));
@@ -213,18 +220,18 @@ impl<P: Planner> Axis<P> {
         anew.min(present)
     }
 
-    /// The command behind `entry` and what is one motion with it.
+    /// The command behind `entry`, or behind the last command that is one motion with it.
     pub(super) fn next_behind(&self, entry: &Entry) -> Option<&Entry> {
         self.queue.iter().nth(self.number_behind(entry))
     }
 
-    /// Its number in the queue, in which `entry` may still be the first.
+    /// Its number in the queue. `entry` may still be the first there.
     pub(super) fn number_behind(&self, entry: &Entry) -> usize {
         let is_first = self.queue.first().is_some_and(|first| first.id == entry.id);
         entry.run.count + usize::from(is_first)
     }
 
-    /// `limits` of a motion, with the velocity its plan ends with, should that be larger (B3).
+    /// `limits` of a motion, with the velocity at the end of its plan if that is higher (B3).
     pub(super) fn limits_of(limits: &Limits, motion: &Motion<P::Plan>) -> Limits {
         match motion {
             Motion::Run { plan, .. } => raised(limits, plan),
@@ -236,8 +243,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The owner has passed its end in motion: Done, and the next takes over from the set-point (B2). Should
-    /// the next have to wait for a superimposed motion, so does the owner, with the velocity it has.
+    /// The owner has passed its end in motion: it is Done, and the next command takes over from the set-point (B2).
+    /// If the next command has to wait for a superimposed motion, the owner waits too, and keeps its velocity.
     pub(super) fn pass_on(&mut self, scope: &mut Scope<'_>) {
         let follows = self.owner.as_ref().is_some_and(|owner| !owner.passage.rests());
         if follows || !self.is_turning() {
@@ -251,8 +258,8 @@ impl<P: Planner> Axis<P> {
             && self.goal_reached()
             && self.passes_on()
         {
-            // What waited was refused: it was too late to come to rest when coordinates moved, a way was barred or its
-            // values changed.
+            // The waiting command was refused, too late to come to rest: coordinates moved, a direction was barred,
+            // or its values changed.
             match self.allowed(self.mover.setpoint().position) {
                 Ok(_) => self.halt_behind_end(scope),
                 Err(_) => {
@@ -263,8 +270,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the owner is at its end in motion, for `next` to take over within its own limits alone (B5). What goes on behind that end,
-    /// as a ramp does, may be too steep for that. Cost: at most one ramp.
+    /// Whether the owner is at its end in motion, and `next` can take over within its own limits alone (B5). A plan
+    /// that continues behind that end, such as a ramp, may be too steep for them. Cost: at most one ramp.
     pub(super) fn passes_its_end(&self, next: &Limits) -> bool {
         let here = self.mover.setpoint();
         let keeps = || {
@@ -278,7 +285,8 @@ impl<P: Planner> Axis<P> {
             && (!self.mover.motion().goes_on() || keeps())
     }
 
-    /// What becomes of the owner when another takes over in motion: what has an end has passed it.
+    /// The fate of the owner when another command takes over in motion. An owner with an end has passed it, so it is
+    /// Done.
     pub(super) fn fate_at_hand_over(&self) -> Fate {
         if self.passes_on() {
             Fate::Done
@@ -287,7 +295,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the owner is to pass its end, and does.
+    /// Whether the owner passes its end, and in motion.
     pub(super) fn passes_in_motion(&self) -> bool {
         self.passes_on() && !self.mover.base().is_at_rest()
     }
@@ -298,8 +306,8 @@ impl<P: Planner> Axis<P> {
             .is_some_and(|owner| owner.work.manner().blends)
     }
 
-    /// Where distances of the next command count from (u): the owner's end if it was passed in this scan, with
-    /// what is superimposed there, else the set position (B10).
+    /// The position from which distances of the next command count (u). It is the owner's end, plus what is
+    /// superimposed, if that end was passed in this scan; otherwise the set position (B10).
     pub(super) fn passed_end(&self) -> f64 {
         let now = self.mover.setpoint().position;
         let end = self.owner.as_ref().and_then(|owner| owner.end);
@@ -316,21 +324,22 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// How `entry`, which leads from `start` (u) to a known end, is to pass it, and what of the queue behind it is one motion with
-    /// it; `skip` of that have had their turn. From the last to the first, because no command may begin faster than it can end.
-    /// While something is superimposed all ends are passed at rest: where the axis is then, is not where they are.
+    /// Finds how `entry` passes its end, which is known, and which commands of the queue are one motion with it.
+    /// `entry` starts at `start` (u); the first `skip` commands of the queue are no longer behind it. The search runs
+    /// from the last command to the first, because no command may begin faster than it can end. Under a superimposed
+    /// motion there is no chain as one motion, because the axis is not at the ends of its commands.
     ///
     /// Cost: at most two ramps or roots of ramps for each command that waits.
     pub(super) fn look_through(&self, entry: &mut Entry, start: f64, skip: usize) {
         (entry.passage, entry.run) = self.chain(entry, start, skip, 0.0);
     }
 
-    /// How `first` is to pass its end, as [`Axis::look_through`].
+    /// How `first` passes its end, see [`Axis::look_through`].
     pub(super) fn passage(&self, first: &Entry, start: f64, skip: usize) -> Passage {
         self.chain(first, start, skip, 0.0).0
     }
 
-    /// The same, with ways of at least `shortest` (u) in one motion.
+    /// The same, with distances of at least `shortest` (u) in one motion.
     pub(super) fn chain(&self, first: &Entry, start: f64, skip: usize, shortest: f64) -> (Passage, Run) {
         const NONE: Option<Leg<'_>> = None;
         let mut legs = [NONE; QUEUE_MAX];
@@ -338,7 +347,7 @@ impl<P: Planner> Axis<P> {
             .end
             .map(|end| if first.is_behind { start - end } else { end - start });
         let mut forward = way.is_none_or(|way| way > 0.0);
-        // What is added may all be there when the next begins, or not yet: the shorter way is looked at.
+        // When the next command begins, the added distance may be complete or not. The shorter distance counts.
         let farthest = first.end.map(|end| match self.mover.layer() {
             Some(layer) => layer.farthest_above(end, forward, skip == 0),
             None => end,
@@ -383,7 +392,7 @@ impl<P: Planner> Axis<P> {
         (passage, if count > 0 { run } else { Run::NONE })
     }
 
-    /// How many of `legs` are one motion with `first`, and where the last of them ends (u).
+    /// The number of `legs` that are one motion with `first`, and the end of the last of them (u).
     fn joined(&self, first: &Leg<'_>, legs: &[Option<Leg<'_>>], shortest: f64) -> (usize, f64) {
         let none = (0, 0.0);
         let Some(way) = first.way.filter(|_| first.entry.work.manner().blends) else {
@@ -392,7 +401,7 @@ impl<P: Planner> Axis<P> {
         if self.way_barred(way).is_some() || self.mover.layer().is_some() {
             return none;
         }
-        // What must not turn back has to have a plan.
+        // On a modulo axis, where a command must not turn back, one motion must always have a plan.
         let shortest = if self.modulo.is_some() {
             self.longest_scan(first.entry)
         } else {
@@ -409,21 +418,22 @@ impl<P: Planner> Axis<P> {
         joined.fold(none, |(count, end), leg| (count + 1, leg.end.unwrap_or(end)))
     }
 
-    /// Whether a way is one that can be planned; a longer one is refused when its turn comes, at rest.
+    /// Whether a distance can be planned. A longer one is refused when its command becomes active, at rest.
     fn is_countable(&self, way: f64, entry: &Entry) -> bool {
         way.abs() <= entry.limits.velocity * self.planner.cycle() * SCANS
     }
 
-    /// How `leg` is to pass its end, if `next` passes its own as `after` says.
+    /// How `leg` passes its end if `next` passes its own with `after`.
     fn between(&self, leg: &Leg<'_>, next: &Leg<'_>, after: &Passage) -> Passage {
         let (entry, mode) = (leg.entry, next.entry.mode);
         let direction = match leg.way {
             Some(way) if entry.work.manner().blends && way != 0.0 => way.signum(),
-            // Anything else comes to rest, or hands over with the velocity it has (B12).
+            // Any other command comes to rest, or hands over with its present velocity (B12).
             _ => return REST,
         };
         let limits = &next.entry.limits;
-        // What is commanded next, and the speeds it passes its end with as asked and at most; None if it has no end to overshoot.
+        // The direction and velocity of the next command, and the velocity at its end: as commanded, and the highest.
+        // None if it has no end to overshoot.
         let (towards, velocity, exit) = match next.entry.work {
             Work::Position(_) | Work::Distance(_) => match next.way {
                 Some(way) => (way, limits.velocity, Some((after.wanted, after.most))),
@@ -442,15 +452,16 @@ impl<P: Planner> Axis<P> {
                 (towards, velocity.abs(), None)
             }
             Work::Halt => (direction, 0.0, None),
-            // Nothing else takes over in motion.
+            // No other command takes over in motion.
             _ => return REST,
         };
-        // What MC_Power bars would be refused at the end, too late to stop there. A continuous move may need a run-up.
+        // A command that MC_Power bars would be refused at the end, too late to stop there. A continuous move may
+        // need a run-up.
         let runs_up = matches!(next.entry.work, Work::Through { end_velocity, .. } if end_velocity != 0.0);
         if self.way_barred(towards).is_some() || (runs_up && self.bars_any()) {
             return REST;
         }
-        // Reversed, or nowhere: without velocity (B13). To the velocity 0 leads no direction.
+        // The next command reverses or has no distance: velocity 0 at the end (B13). Velocity 0 has no direction.
         if towards * direction <= 0.0 && velocity != 0.0 {
             return self.at_turn(leg.entry, next.entry, leg.end, direction);
         }
@@ -461,13 +472,13 @@ impl<P: Planner> Axis<P> {
                 let down_to =
                     |exit, wanted| self.planner.entry_speed(wanted, 0.0, towards.abs(), exit, limits);
                 let alone = down_to(exit, wanted);
-                // What is too short for the speed asked for is too short for more.
+                // A distance too short for the wanted velocity is too short for a higher one, too.
                 let most = if alone < wanted {
                     alone
                 } else {
                     down_to(most_exit, self.fastest()).max(alone)
                 };
-                // The next command may have to take over the velocity of what is added, too.
+                // The next command may have to take over the velocity of the superimposed motion, too.
                 let added = self.superimposed_speed();
                 let wanted = if added > 0.0 {
                     alone.min((down_to(exit, wanted + added) - added).max(AT_LEAST * alone))
@@ -489,8 +500,8 @@ impl<P: Planner> Axis<P> {
         self.stoppable(passage, leg.end, direction)
     }
 
-    /// `passage` at `end`, but no faster than the stop dynamics can keep inside a software limit behind it, whatever
-    /// comes next.
+    /// `passage` at `end`, but only as fast as the stop dynamics can stop before the software limit behind it, for
+    /// any next command.
     pub(super) fn stoppable(&self, passage: Passage, end: Option<f64>, direction: f64) -> Passage {
         let (Some((min, max)), Some(end)) = (self.parameters.software_limits, end) else {
             return passage;
@@ -499,7 +510,7 @@ impl<P: Planner> Axis<P> {
         if !room.is_finite() || passage.wanted <= 0.0 {
             return passage;
         }
-        // Both together have to stop.
+        // Both motions together have to stop.
         let added = self.superimposed_speed();
         let stoppable = |speed| (self.stoppable_speed(speed + added, room) - added).max(0.0);
         Passage {
@@ -509,7 +520,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The velocity (u/s) that the axis may have at most, whatever a command asks for.
+    /// The highest velocity (u/s) of the axis, for any command.
     fn fastest(&self) -> f64 {
         self.slowed(&self.config.limits).velocity
     }
@@ -520,8 +531,9 @@ impl<P: Planner> Axis<P> {
         self.planner.entry_speed(wanted, 0.0, room.max(0.0), 0.0, &limits)
     }
 
-    /// Whether the stop dynamics keep an axis inside the software limits from the end of the plan `rest` on, if that is passed at speed,
-    /// `shift` (u) beside it, and a distance `left` (u) is still being superimposed with a speed of `added` (u/s).
+    /// Whether the stop dynamics keep an axis inside the software limits behind the end of the plan `rest`. The axis
+    /// passes that end at its velocity, `shift` (u) beside it, while a distance `left` (u) is still superimposed with
+    /// a speed of `added` (u/s).
     pub(super) fn stops_beside(&self, (rest, _): (&P::Plan, u64), shift: f64, left: f64, added: f64) -> bool {
         let mut end = rest.at(u64::from(rest.scans()));
         end.position += shift;
@@ -539,7 +551,7 @@ impl<P: Planner> Axis<P> {
     }
 }
 
-/// `limits` with the velocity `plan` ends with, should it be larger (B3).
+/// `limits` with the velocity at the end of `plan` if that is higher (B3).
 fn raised<P: Plan>(limits: &Limits, plan: &P) -> Limits {
     let end = plan.at(u64::from(plan.scans())).velocity.abs();
     Limits {

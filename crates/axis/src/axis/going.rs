@@ -1,27 +1,28 @@
-//! Scans in which an axis only goes on, for hosts that leave out calls of blocks which would do nothing new.
+//! Scans in which an axis only continues. A host may omit calls of blocks that would do nothing new in them.
 
 use super::mover::Motion;
 use super::{Axis, Calm};
 use crate::Scope;
 use standstill_planner::Planner;
 
-/// What an axis does in the next scan if nothing comes to it: no command, and from its drive no news but a position.
+/// The next scan of an axis if nothing happens: no command is given, and its drive reports nothing new but a
+/// position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Going {
     /// It is not in operation, or something is pending, supervised or superimposed.
     Unknown,
-    /// In operation with nothing pending, it comes to a goal, or does what is not told here.
+    /// In operation with nothing pending: it reaches a goal, or does anything else that is not listed here.
     Arrives,
-    /// It goes on along its plan, short of the goal.
+    /// It continues along its plan and does not reach the goal.
     ToGoal,
-    /// Its endless motion has come to its velocity, and goes on.
+    /// Its endless motion has reached its velocity and continues.
     AtVelocity,
-    /// It rests, and nobody has commanded anything.
+    /// It is at rest without a command.
     Rests,
 }
 
 impl Going {
-    /// Its next scan changes its set-point and its actual position, and nothing else that blocks see.
+    /// Whether its next scan changes only its set-point and its actual position, and nothing else that blocks see.
     #[must_use]
     pub fn is_onward(self) -> bool {
         matches!(self, Self::ToGoal | Self::AtVelocity | Self::Rests)
@@ -29,7 +30,7 @@ impl Going {
 }
 
 impl<P: Planner> Axis<P> {
-    /// What it does in the next scan, told after a motion step. Cost: a few comparisons.
+    /// What the axis does in the next scan. Call it after a motion step. Cost: a few comparisons.
     #[must_use]
     #[inline]
     pub fn going(&self) -> Going {
@@ -56,7 +57,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// For how many scans it is going on as it is now, if nothing comes to it; see [`Axis::going`].
+    /// The number of scans for which it continues like this if nothing happens; see [`Axis::going`].
     #[must_use]
     pub fn goes_on_for(&self) -> u64 {
         match (self.going(), self.mover.motion()) {
@@ -68,7 +69,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The motion step of an axis without masters and slaves, as [`steps::advance`](crate::steps::advance) does it.
+    /// The motion step of an axis without masters and slaves, the same as in
+    /// [`steps::advance`](crate::steps::advance).
     // See `follow_feedback`.
     #[inline(always)]
     pub fn step_alone(&mut self, scope: &mut Scope<'_>) {

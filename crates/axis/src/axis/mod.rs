@@ -9,9 +9,9 @@
 //! | [`queue`] | commands that wait |
 //! | [`stage`] | the power stage: what is requested, and what the drive reports |
 //! | [`failure`] | the error shown, whether its cause persists, the reset under way |
-//! | [`feedback`] | actual positions, and which can be compared |
-//! | [`frame`] | the names of positions, at the axis and at the drive |
-//! | [`modulo`] | turns, and the shorter way round |
+//! | [`feedback`] | actual positions, and which of them can be compared |
+//! | [`frame`] | the coordinates of the axis and of its drive |
+//! | [`modulo`] | turns, and the direction with the shorter travel |
 //! | [`measured`] | actual positions as slaves see them: filtered |
 //! | [`coupling`] | how it follows others and is followed, which only that folder writes |
 //!
@@ -21,9 +21,9 @@
 //! | --- | --- |
 //! | [`accept`], [`queued`], [`update`], [`retrigger`] | commands: taken or refused, administrative ones that wait, new values, replaced ones |
 //! | [`dynamics`], [`factors`], [`parameters`] | limits from pins, the override, what can be written by number |
-//! | [`step`], [`replan`], [`blend`], [`run`], [`turn`], [`inside`], [`guard`] | the motion step and hand-over, the owner's motion changed while it runs, how fast it passes its end, chains as one motion, turns between commands, take-overs within the limits, no jump |
+//! | [`step`], [`replan`], [`blend`], [`run`], [`turn`], [`inside`], [`guard`] | the motion step and hand-over, changes of the owner's motion while it runs, the velocity at its end, chains as one motion, turns between commands, take-overs within the limits, no step of the set-point |
 //! | [`superimposed`] | a second motion on top |
-//! | [`coupling`] | behind a master |
+//! | [`coupling`] | slaves |
 //! | [`profile`], [`torque`], [`jog`], [`homing`] | curves through points, torques, MC_Jog, the search for the reference |
 //! | [`power`], [`permission`], [`limit_switches`], [`software_limits`], [`supervision`] | feedback, power, faults and resets; directions, switches, limits, following error |
 //! | [`coordinates`], [`reading`], [`outputs`], [`probe`] | moved coordinates, values for reading blocks, inputs and outputs, positions at edges |
@@ -96,7 +96,7 @@ pub use reading::{MotionState, Pace, Way};
 use stage::Power;
 use standstill_planner::{Planner, Setpoint, Standard};
 
-/// The values exchanged with a drive beside its motion.
+/// The values exchanged with a drive in addition to its motion.
 #[derive(Clone, Copy, Debug, Default)]
 struct BesideMotion {
     report: DriveReport,
@@ -106,8 +106,7 @@ struct BesideMotion {
     cam_tracks: [CamTrack; DIGITAL as usize],
 }
 
-/// How little must be checked in a scan, see [`Axis::calmness`]. `No` may be out of date, the others
-/// never are.
+/// How little a scan must check, see [`Axis::calmness`]. `No` may be out of date; the others never are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Calm {
     /// Something is pending, or may be.
@@ -220,24 +219,24 @@ impl Outlook {
 }
 
 /// One axis.
-// Hosts with thousands of axes wait for memory. So what every scan of a motion looks at lies together, in the order of
-// the fields: the beginning of `owner`, and the end of `feedback` up to the beginning of the plan in `mover`. What some
-// axes need in every scan stands in between.
+// With thousands of axes the time of a scan is that of memory. So the fields that every scan of a motion reads are
+// next to each other, in this order: the beginning of `owner`, and the end of `feedback` up to the beginning of the
+// plan in `mover`. Fields that some axes need in every scan are in between.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub struct Axis<P: Planner = Standard> {
     owner: Option<Entry>,
-    /// What positions are called.
+    /// The coordinates.
     frame: Frame,
     modulo: Option<Modulo>,
     power: Power,
     /// Actual positions.
     feedback: Feedback,
-    /// How little must be checked in a scan.
+    /// How little a scan must check.
     calm: Calm,
     state: AxisState,
-    /// Positions are taken and told as they are: no increments, no turns, no shift, and no measured values that
-    /// slaves could follow.
+    /// Positions are taken and reported without conversion: no increments, no turns, no shift, and no measured values
+    /// that slaves could follow.
     is_plain: bool,
     /// The owner is MC_Stop, at rest, and held by its Execute.
     stop_held: bool,
@@ -247,15 +246,15 @@ pub struct Axis<P: Planner = Standard> {
     /// A queued MC_SetPosition takes effect at the next latch.
     shift_due: bool,
     homed: bool,
-    /// Switches, as told last.
+    /// Switches, as last reported.
     signals: DriveSignals,
     id: AxisId,
     planner: P,
     /// Its place among axes that follow each other.
     links: coupling::Links,
-    /// What moves it.
+    /// Its motion.
     mover: Mover<P::Plan>,
-    /// How it follows others, and is followed.
+    /// How it follows others and is followed.
     follower: coupling::Follower<P::Plan>,
     /// The peripherals of the drive.
     beside: BesideMotion,
@@ -275,7 +274,7 @@ pub struct Axis<P: Planner = Standard> {
     fates: Fates,
 }
 
-// Whatever comes in between costs every scan of many axes.
+// Every field in between costs time in each scan of many axes.
 const _: () = assert!(offset_of!(Axis, mover) - offset_of!(Axis, feedback) <= 104);
 
 impl<P: Planner> Axis<P> {
@@ -349,7 +348,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The same where it lies, if it need not be computed.
+    /// The same as a reference, if it need not be computed.
     #[inline]
     pub fn setpoint_in_place(&self) -> Option<&Setpoint> {
         (self.modulo.is_none() && !self.mover.is_shaped()).then(|| self.mover.setpoint())
@@ -361,8 +360,8 @@ impl<P: Planner> Axis<P> {
         self.feedback.position()
     }
 
-    /// By how much positions are called more from `scan` on (u), if that is the last scan in which coordinates moved; else
-    /// 0. Unlike the records of it, which a ring of [`LOG_KEPT`](crate::LOG_KEPT) may lose, it is there for every axis.
+    /// The shift of coordinates in `scan` (u), if that is the last scan with a shift; otherwise 0. Records of it may
+    /// be lost from their ring of [`LOG_KEPT`](crate::LOG_KEPT) entries; this value is there for every axis.
     pub fn coordinates_moved(&self, scan: u64) -> f64 {
         self.frame.moved_in(scan)
     }
@@ -378,25 +377,25 @@ impl<P: Planner> Axis<P> {
         self.power.is_unconfirmed().then_some(ErrorId::PowerNotConfirmed)
     }
 
-    /// Set-points of the past that its shaper needs; 0 without one. The host lends so many places of
-    /// [`Scope::history`], the first of which [`Axis::set_history`] tells.
+    /// Number of past set-points that its shaper needs; 0 without one. The host lends this number of places of
+    /// [`Scope::history`]. [`Axis::set_history`] sets the first of them.
     pub fn history_needed(&self) -> usize {
         self.mover.history_needed()
     }
 
-    /// Its part of [`Scope::history`] begins at this place. Before that, and where less is lent than it needs, the
+    /// Its part of [`Scope::history`] begins at this place. Before this call, or with fewer places than it needs, the
     /// axis is not shaped.
     pub fn set_history(&mut self, first: usize) {
         self.mover.set_history(first);
     }
 
-    /// A shaper stands between its motion and its drive.
+    /// Whether there is a shaper between its motion and its drive.
     #[inline(always)]
     pub(crate) fn is_shaped(&self) -> bool {
         self.mover.is_shaped()
     }
 
-    /// The end of a motion step: what is published follows the motion.
+    /// The end of a motion step: computes the published set-point.
     #[inline(always)]
     pub(crate) fn shape(&mut self, scope: &mut Scope<'_>) {
         self.mover.shape(scope.history);
@@ -495,8 +494,9 @@ impl<P: Planner> Axis<P> {
         self.fates.find(id).unwrap_or(Fate::Failed(ErrorId::FateLost))
     }
 
-    /// The future behaviour of the axis: everything but positions, results of ended commands and the
-    /// configuration. Two axes of equal outlook and set-point behave alike from now on, unless a shaper still holds what was.
+    /// The future behaviour of the axis: everything except positions, results of ended commands and the
+    /// configuration. Two axes of equal outlook and set-point behave alike from now on, unless a shaper still holds
+    /// past motion.
     pub fn outlook(&self) -> Outlook {
         let mut waiting = [None; QUEUE_MAX];
         for (slot, entry) in waiting.iter_mut().zip(self.queue.iter()) {
@@ -573,8 +573,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    // Calls return only plain numbers: an enum from a call passes through memory, which takes longer than
-    // the rest of the scan's drive command.
+    // Calls return only plain numbers. An enum from a call passes through memory, which takes longer than the rest of
+    // the scan's drive command.
     #[inline]
     fn position_at_drive(&self, position: f64) -> DrivePosition {
         if self.is_plain {
@@ -589,14 +589,15 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A motion at its goal has come to it for whoever waits: its own part has come out of the shaper, or it hands over in
+    /// Whether a motion at its goal counts as there: its own part has come out of the shaper, or it hands over in
     /// motion.
     #[inline(always)]
     fn is_goal_published(&self) -> bool {
         self.mover.is_base_through() || self.passes_in_motion()
     }
 
-    /// The running plan has reached its goal; a motion without a plan has.
+    /// Whether the motion has reached its goal. A motion that holds or is in gear has; one that follows the feedback has
+    /// not.
     #[inline]
     fn goal_reached(&self) -> bool {
         match self.mover.motion() {
@@ -607,7 +608,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the owner's present motion does not lead to its goal. Its end is then not the goal.
+    /// Whether the owner's present motion does not lead to its goal. The end of that motion is then not the goal.
     fn is_held_up(&self) -> bool {
         self.replan_due
             || self
@@ -634,18 +635,18 @@ impl<P: Planner> Axis<P> {
         self.fates.new_id()
     }
 
-    /// Ends the owner, what is superimposed on it and everything that waits.
+    /// Ends the owner, the superimposed motion and all waiting commands.
     fn end_all(&mut self, owner: Fate, waiting: Fate) {
         self.end_superimposed(owner);
         self.end_owner(owner);
-        // Bounded by QUEUE_MAX: each round takes one out.
+        // Bounded by QUEUE_MAX: each pass removes one.
         while let Some(entry) = self.queue.pop() {
             self.decide(entry.id, waiting);
         }
         self.end_awaited(waiting);
     }
 
-    /// `entry` is the owner, or its values are.
+    /// Makes `entry` the owner, or gives the owner its values.
     fn own(&mut self, entry: Entry) {
         self.owner = Some(entry);
     }
@@ -653,8 +654,7 @@ impl<P: Planner> Axis<P> {
     fn end_owner(&mut self, fate: Fate) {
         let is_over = self.profile_is_over();
         if let Some(owner) = self.owner.take() {
-            // A stop at rest has completed, for every reason that ends its hold; so has a profile at its
-            // end.
+            // A stop at rest is done, whatever ends its hold. So is a profile at its end.
             let over = match owner.work {
                 // In every case the coupling has ended.
                 Work::Release(_) => self.is_released(&owner) || fate == Fate::Aborted,

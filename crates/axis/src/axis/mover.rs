@@ -15,43 +15,43 @@ use shaping::Shaping;
 pub(super) use shaping::even_scans;
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
 
-/// The set-point of an axis and what determines the next one. What every scan looks at comes first.
+/// The set-point of an axis and everything that determines the next one. Fields that every scan reads come first.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(super) struct Mover<P: Plan> {
-    /// There is `shaping`.
+    /// `shaping` exists.
     is_shaped: bool,
     /// The motion may leave the software limits, so every set-point is checked.
     is_watched: bool,
-    /// Of the motion; on a modulo axis its position may be some turns away from the one shown.
+    /// Set-point of the motion. On a modulo axis its position may be some turns away from the published one.
     setpoint: Setpoint,
     /// The last velocity that was not zero (u/s): its sign is mcCurrentDirection.
     last_velocity: f64,
     /// Limits of the present motion, for the command that takes over from it.
     in_force: Limits,
     motion: Motion<P>,
-    /// Limits of the motion before, for planning the present one anew.
+    /// Limits of the motion before. They are needed to plan the present one anew.
     before: Limits,
-    /// The largest magnitude (u) that coordinates moved under the plan in progress gave its positions; see
+    /// The largest magnitude (u) that a shift of coordinates gave to positions of the plan in progress; see
     /// [`guard`](super::guard).
     coarsest: f64,
-    /// What is between the motion and what is published.
+    /// The shaper between the motion and the published set-point.
     shaping: Option<Shaping>,
     /// A second motion on top of it.
     layer: Option<Layer<P>>,
 }
 
-// The plan has in front what most of its scans look at.
+// The fields before the plan are those that most of its scans read.
 const _: () = assert!(offset_of!(Mover<<Standard as Planner>::Plan>, motion) <= 96);
 
-/// The names of the places of a [`Mover`], to go back to.
+/// Positions of a [`Mover`] before a shift of coordinates, to undo it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Names<P: Plan> {
     setpoint: Setpoint,
     layer: Option<Layer<P>>,
 }
 
-/// A scan of a plan beside something that moves.
+/// A scan of a plan beside a moving reference.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepBeside {
     /// The set-point of the plan.
@@ -70,7 +70,8 @@ impl StepBeside {
 }
 
 impl<P: Plan> Mover<P> {
-    /// At rest at the position of `config`, with scans of `cycle` (s); it holds that or follows the feedback.
+    /// An axis at rest at the position of `config`, with scans of `cycle` (s). It holds that position or follows the
+    /// feedback.
     ///
     /// # Errors
     /// [`ConfigError::Vibration`] names the mode.
@@ -90,14 +91,14 @@ impl<P: Plan> Mover<P> {
         })
     }
 
-    /// The set-point of the motion, with what is superimposed.
-    // All that is asked in every scan is in line, so that set-points stay in registers.
+    /// The set-point of the motion, including the superimposed motion.
+    // Everything that every scan reads is inlined, so that set-points stay in registers.
     #[inline(always)]
     pub fn setpoint(&self) -> &Setpoint {
         &self.setpoint
     }
 
-    /// The set-point without what is superimposed.
+    /// The set-point without the superimposed motion.
     pub fn base(&self) -> Setpoint {
         self.layer.as_ref().map_or(self.setpoint, |layer| *layer.base())
     }
@@ -118,7 +119,7 @@ impl<P: Plan> Mover<P> {
         Some(plan.at(self.motion.scans()))
     }
 
-    /// Where the plan in progress has its end (u).
+    /// The position at the end of the plan in progress (u).
     pub fn end_of_plan(&self) -> f64 {
         self.plan().map_or(self.setpoint.position, |(plan, _)| {
             plan.at(u64::from(plan.scans())).position
@@ -131,7 +132,7 @@ impl<P: Plan> Mover<P> {
         matches!(&self.motion, Motion::Run { elapsed, scans, .. } if elapsed.wrapping_add(1) < *scans)
     }
 
-    /// What is superimposed.
+    /// The superimposed motion.
     #[inline(always)]
     pub fn layer(&self) -> Option<&Layer<P>> {
         self.layer.as_ref()
@@ -152,7 +153,7 @@ impl<P: Plan> Mover<P> {
         &self.before
     }
 
-    /// The largest magnitude (u) that its plan has had.
+    /// The largest magnitude (u) of positions of its plan, see the field.
     pub fn coarsest(&self) -> f64 {
         self.coarsest
     }
@@ -173,7 +174,7 @@ impl<P: Plan> Mover<P> {
         self.is_watched = is_watched;
     }
 
-    /// It stays where it is.
+    /// Holds the present position.
     pub fn hold(&mut self) {
         self.motion = Motion::Hold;
     }
@@ -183,17 +184,17 @@ impl<P: Plan> Mover<P> {
         self.motion = Motion::Follow;
     }
 
-    /// It goes where its coupling says.
+    /// Follows the coupling.
     pub fn gear(&mut self) {
         self.motion = Motion::Geared;
     }
 
-    /// `motion` from now on, within the limits in force.
+    /// Continues with `motion`, within the limits in force.
     pub fn go_on(&mut self, motion: Motion<P>) {
         self.motion = motion;
     }
 
-    /// `motion` from now on, within `limits`.
+    /// Starts `motion` within `limits`.
     pub fn start(&mut self, motion: Motion<P>, limits: Limits) {
         (self.motion, self.in_force) = (motion, limits);
     }
@@ -204,7 +205,7 @@ impl<P: Plan> Mover<P> {
         self.coarsest = 0.0;
     }
 
-    /// The motion keeps `limits`.
+    /// From now on the motion keeps `limits`.
     pub fn keep(&mut self, limits: Limits) {
         self.in_force = limits;
     }
@@ -214,7 +215,7 @@ impl<P: Plan> Mover<P> {
         self.before = limits;
     }
 
-    /// The motion keeps `limits`, and so did the one before.
+    /// Both the motion and the one before keep `limits`.
     pub fn keep_only(&mut self, limits: Limits) {
         (self.in_force, self.before) = (limits, limits);
     }
@@ -228,7 +229,7 @@ impl<P: Plan> Mover<P> {
         Some(plan.next(elapsed.wrapping_add(1)))
     }
 
-    /// The plan goes on by a scan.
+    /// Advances the plan by a scan.
     #[inline(always)]
     pub fn count_scan(&mut self) {
         if let Motion::Run { elapsed, .. } = &mut self.motion {
@@ -237,7 +238,7 @@ impl<P: Plan> Mover<P> {
         }
     }
 
-    /// The first set-point of the plan, which goes on from there.
+    /// The first set-point of the plan. The plan continues from there.
     pub fn begin_plan(&mut self) -> Option<Setpoint> {
         let Motion::Run { plan, elapsed, .. } = &mut self.motion else {
             return None;
@@ -246,7 +247,7 @@ impl<P: Plan> Mover<P> {
         Some(plan.at(1))
     }
 
-    /// A plan beside something that moves goes on by a scan.
+    /// Advances a plan beside a moving reference by a scan.
     pub fn step_beside(&mut self) -> Option<StepBeside> {
         let Motion::Closing { plan, elapsed, scans } = &mut self.motion else {
             return None;
@@ -259,8 +260,8 @@ impl<P: Plan> Mover<P> {
         })
     }
 
-    /// The motion and what is superimposed go on by a scan. Returns their sum; what follows the feedback is at
-    /// `actual` (u).
+    /// Advances the motion and the superimposed motion by a scan. Returns their sum. A motion that follows the
+    /// feedback is at `actual` (u).
     pub fn step_both(&mut self, actual: f64) -> Option<Setpoint> {
         let layer = self.layer.as_mut()?;
         let base = match &mut self.motion {
@@ -281,7 +282,7 @@ impl<P: Plan> Mover<P> {
         Some(layer.step(base))
     }
 
-    /// Under a torque: `torque` is ordered in this scan.
+    /// Under a torque: the drive gets `ordered` in this scan.
     pub fn step_torque(&mut self, ordered: f64) {
         if let Motion::Torque { elapsed, torque, .. } = &mut self.motion {
             *elapsed = elapsed.saturating_add(1);
@@ -289,7 +290,7 @@ impl<P: Plan> Mover<P> {
         }
     }
 
-    /// `next` is the set-point.
+    /// Makes `next` the set-point.
     // Inlined, so that a set-point goes from registers to its place and is not copied through memory, which
     // takes longer than computing it.
     #[inline(always)]
@@ -305,7 +306,7 @@ impl<P: Plan> Mover<P> {
         }
     }
 
-    /// The set-point is the actual state: `velocity` (u/s) at `position` (u).
+    /// Takes the actual state as the set-point: `velocity` (u/s) at `position` (u).
     pub fn take_actual(&mut self, position: f64, velocity: f64) {
         self.setpoint = Setpoint {
             velocity,
@@ -313,34 +314,34 @@ impl<P: Plan> Mover<P> {
         };
     }
 
-    /// The set-point is at rest at `position` (u), or is called that.
+    /// Sets the set-point to rest at `position` (u): after a motion, or after a shift of coordinates.
     pub fn stand_at(&mut self, position: f64) {
         self.setpoint = Setpoint::at_rest(position);
     }
 
-    /// The plan has its goal `scans` after its start.
+    /// Sets the goal of the plan to `goal` scans after its start.
     pub fn set_goal(&mut self, goal: u64) {
         if let Motion::Run { scans, .. } = &mut self.motion {
             *scans = goal;
         }
     }
 
-    /// The positions of the plan are `by` (u) larger.
+    /// Shifts the positions of the plan by `by` (u).
     pub fn shift_plan(&mut self, by: f64) {
         if let Motion::Run { plan, .. } = &mut self.motion {
             plan.shift(by);
         }
     }
 
-    /// The same for a plan beside something that moves.
+    /// The same for a plan beside a moving reference.
     pub fn shift_beside(&mut self, by: f64) {
         if let Motion::Closing { plan, .. } = &mut self.motion {
             plan.shift(by);
         }
     }
 
-    /// Coordinates move by `by` (u), and the set-point is called `at` (u). The plan keeps its places. Returns
-    /// the names before.
+    /// Shifts the coordinates by `by` (u); the position of the set-point becomes `at` (u). The plan is not shifted.
+    /// Returns the positions before.
     pub fn call(&mut self, at: f64, by: f64) -> Names<P> {
         let names = Names {
             setpoint: self.setpoint,
@@ -355,12 +356,12 @@ impl<P: Plan> Mover<P> {
         names
     }
 
-    /// The names are those of before.
+    /// Takes back the positions from before a shift.
     pub fn call_as_before(&mut self, names: Names<P>) {
         (self.setpoint, self.layer) = (names.setpoint, names.layer);
     }
 
-    /// The place of the motion is called `start` (u), as its plan calls it.
+    /// Sets the position of the set-point to `start` (u), which is the same place in the frame of its plan.
     pub fn call_start(&mut self, start: f64) {
         self.setpoint.position = match &mut self.layer {
             Some(layer) => layer.start_at(start),
@@ -368,7 +369,7 @@ impl<P: Plan> Mover<P> {
         };
     }
 
-    /// An endless plan begins anew some turns of `length` (u) nearer to 0. Returns these turns, if it can.
+    /// Starts an endless plan again some turns of `length` (u) nearer to 0. Returns these turns; `None` if it can't.
     pub fn bring_back(&mut self, length: f64) -> Option<i64> {
         let Motion::Run { plan, elapsed, scans } = &mut self.motion else {
             return None;
@@ -384,17 +385,17 @@ impl<P: Plan> Mover<P> {
         Some(turns)
     }
 
-    /// `layer` is superimposed.
+    /// Superimposes `layer`.
     pub fn lay(&mut self, layer: Layer<P>) {
         self.layer = Some(layer);
     }
 
-    /// What is superimposed; `layer` from now on if nothing was.
+    /// The superimposed motion. If there is none, `layer` becomes it.
     pub fn layer_or(&mut self, layer: Layer<P>) -> &mut Layer<P> {
         self.layer.get_or_insert(layer)
     }
 
-    /// Nothing is superimposed: there is one motion, that of the sum.
+    /// Removes the superimposed motion. Only one motion remains, that of the sum.
     pub fn drop_layer(&mut self) {
         self.layer = None;
     }

@@ -1,11 +1,11 @@
-//! Chains as one motion: blended commands that lead on the same way within the same limits.
+//! Chains as one motion: blended commands in the same direction within the same limits.
 //!
-//! All blending modes ask for the same velocity between them, the one both have, so nothing has to end where the first does: one
-//! plan, whose switches lie anywhere so that it has exactly that velocity, leads to the end of the last. The owner changes in
-//! each scan in which an end is passed; the plan goes on.
+//! Between two such commands all blending modes ask for the velocity that both have. Nothing else has to be reached
+//! at the end of the first. So one plan leads to the end of the last command. Its switches may be anywhere, so it has
+//! exactly that velocity. The owner changes in each scan in which an end is passed; the plan continues.
 //!
-//! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; B2, B14. `docs/buffering.md` tells which
-//! commands are one motion.
+//! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; B2, B14. `docs/buffering.md`
+//! states which commands are one motion.
 
 use super::commands::{Entry, ROUNDING, Run, Work};
 use super::mover::scans_to_goal;
@@ -15,20 +15,20 @@ use super::{Axis, Motion};
 use crate::{CommandId, ErrorId, Fate, Scope};
 use standstill_planner::{Limits, MoveProfile, Plan, Planner, Setpoint};
 
-/// Halvings that find any scan of a plan, whose scans are a number of 32 bits.
+/// Number of bisections that finds any scan of a plan; its scans are a number of 32 bits.
 const HALVINGS: u32 = 32;
 
 /// Rounding of a position, relative to it.
 pub(super) const RESOLUTION: f64 = 64.0 * f64::EPSILON;
 
 impl<P: Planner> Axis<P> {
-    /// The plan to the end of the last command that is one motion with `entry`; `None` if that is on its own.
+    /// The plan to the end of the last command that is one motion with `entry`; `None` if `entry` is separate.
     ///
-    /// No two ends are passed in one scan. Where they would be, ways that take less than a scan at full speed are no part of it, and the
-    /// entry then says so.
+    /// No two ends are passed in one scan. If that would happen, a distance shorter than a scan at full velocity ends
+    /// the motion before it. `entry` then holds the shorter run.
     ///
-    /// Cost: at most two plans with a blended end, three more for one that is told late, and [`HALVINGS`] looks at the plan for
-    /// each command.
+    /// Cost: at most two plans with a blended end, three more if the axis brakes or does not reach the wanted
+    /// velocity, and [`HALVINGS`] evaluations of the plan for each command.
     pub(super) fn in_one_motion(
         &self,
         entry: &mut Entry,
@@ -51,12 +51,13 @@ impl<P: Planner> Axis<P> {
         self.through_ends(entry, start, before)
     }
 
-    /// How far (u) a motion of `entry` leads in a scan at most.
+    /// The longest distance (u) of a motion of `entry` in a scan.
     pub(super) fn longest_scan(&self, entry: &Entry) -> f64 {
         entry.limits.velocity * self.planner.cycle()
     }
 
-    /// The plan through the ends of all that is one motion with `entry`, if there is one that passes them one by one.
+    /// The plan through the ends of all commands that are one motion with `entry`, if it passes them in separate
+    /// scans.
     fn through_ends(&self, entry: &Entry, start: &Setpoint, before: &Limits) -> Option<P::Plan> {
         let (end, run) = (entry.end?, &entry.run);
         let forward = run.end > end;
@@ -77,7 +78,7 @@ impl<P: Planner> Axis<P> {
         is_good.then_some(plan)
     }
 
-    /// Whether `plan` has each end of what is one motion with `entry` in a scan of its own.
+    /// Whether `plan` passes each end of the commands that are one motion with `entry` in a scan of its own.
     fn passes_one_by_one(&self, entry: &Entry, plan: &P::Plan) -> bool {
         let Some(end) = entry.end else { return false };
         let forward = entry.run.end > end;
@@ -91,13 +92,14 @@ impl<P: Planner> Axis<P> {
             let before = passed;
             passed = passing_scan(plan, before, end, forward);
             from = end;
-            // Behind an end that was passed while it was held up each has a scan all the same.
+            // Behind an end that was passed while the owner was held up, each command still has a scan.
             let is_new = !is_past(plan, before, end, forward) || (entry.is_behind && passed > before);
             is_past(plan, passed, end, forward) && is_new
         })
     }
 
-    /// Whether `plan` is done no later than the plan to rest in progress, and a move from there.
+    /// For an axis that brakes to rest at the owner's end: whether `plan` is done no later than that rest and a move
+    /// from there.
     fn is_no_later(&self, entry: &Entry, start: &Setpoint, before: &Limits, plan: &P::Plan) -> bool {
         let (
             Motion::Run {
@@ -128,14 +130,15 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// Whether `plan` goes back on its way.
+    /// Whether `plan` moves back anywhere.
     pub(super) fn turns(&self, plan: &P::Plan, forward: bool) -> bool {
         let (up, down) = self.planner.ways((plan, 0));
         let back = if forward { down } else { up };
         back > ROUNDING * (up + down) + RESOLUTION * plan.at(0).position.abs()
     }
 
-    /// Along `plan`, up to the end of `entry`, which the plan of one motion passes before its own.
+    /// The motion along `plan`, with its goal at the end of `entry`. In one motion the plan passes that end before
+    /// its own.
     pub(super) fn along(&self, entry: &Entry, plan: P::Plan) -> Motion<P::Plan> {
         match entry.end {
             Some(end) if entry.run.count > 0 => Motion::Run {
@@ -152,7 +155,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The owner's motion passes its end at which it is now, and command `id` is next on its way.
+    /// Whether the owner's motion passes its end in this scan, and command `id` is next in the same motion.
     pub(super) fn goes_on_to(&self, id: CommandId) -> bool {
         let in_run = |owner: &Entry| owner.run.count > 0;
         self.mover.motion().goes_on()
@@ -163,15 +166,17 @@ impl<P: Planner> Axis<P> {
             && self.queue.first().is_some_and(|next| next.id == id)
     }
 
-    /// The plan in progress is no longer one motion with what waits: from the owner's end on there is another one.
+    /// The plan in progress is no longer one motion with the waiting commands: behind the owner's end another plan
+    /// follows.
     pub(super) fn end_run(&mut self) {
         if let Some(owner) = &mut self.owner {
             owner.run = Run::NONE;
         }
     }
 
-    /// The owner has passed its end on the way of its plan, and the next command is one motion with it: that goes on along the
-    /// plan. Returns whether it does. Where a modulo axis comes into another turn it is planned anew, to meet the target to the bit.
+    /// The owner has passed its end along its plan. If the next command is one motion with it, that command takes
+    /// over and continues along the plan. Returns whether it does. In another turn of a modulo axis it does not, and
+    /// is planned anew, so that the target is met to the bit.
     pub(super) fn goes_on_along(&mut self, from: f64, scope: &mut Scope<'_>) -> bool {
         let (Some(owner), Some(mut next)) = (self.owner, self.queue.first().copied()) else {
             return false;
@@ -186,7 +191,7 @@ impl<P: Planner> Axis<P> {
             .end
             .is_some_and(|end| if forward { here >= end } else { here <= end });
         self.look_through(&mut next, here, 1);
-        // As it was planned; what is another chain now is planned anew.
+        // The run as it was planned. If the chain is another one now, it is planned anew.
         next.run = Run {
             count: owner.run.count.saturating_sub(1),
             ..owner.run
@@ -216,24 +221,26 @@ impl<P: Planner> Axis<P> {
         true
     }
 
-    /// Whether a command that was to pass its end in motion and has been held up is behind it now: it need not go back there.
+    /// Whether the owner was to pass its end in motion, was held up, and is behind the end now. It then need not go
+    /// back there.
     pub(super) fn is_past_its_end(&self, owner: &Entry) -> bool {
         self.way_on(owner, self.mover.setpoint().position).is_some()
     }
 
-    /// The way (u) of the next command from `place` on (u), if that is behind the end of `owner`, which was to be passed in motion.
+    /// The distance (u) of the next command from `place` (u), if that is behind the end of `owner`, which was to be
+    /// passed in motion.
     fn way_on(&self, owner: &Entry, place: f64) -> Option<f64> {
         let (end, next) = (owner.end?, self.queue.first()?);
         let target = self.end_of_leg(next, end, self.mover.last_velocity() > 0.0)?;
         let is_onward = (target - end) * (place - end) > 0.0;
-        // What is paused was to come to rest wherever it is.
+        // A paused owner brakes to rest anywhere.
         let was_to_pass = owner.passage.wanted > 0.0 || owner.paused || owner.is_behind;
         let goes_on = self.mover.layer().is_none() && was_to_pass && next.mode.blends() && is_onward;
         goes_on.then_some(target - place)
     }
 
-    /// Why `owner`, held up so far, has to wait where it comes to rest behind its end: the next move leads on from there, and that way is
-    /// barred.
+    /// The reason why `owner`, which was held up, has to wait at rest behind its end: the next move continues from
+    /// there, and its direction is barred.
     pub(super) fn barred_from_there_on(&self, owner: &Entry) -> Option<ErrorId> {
         let next = self.queue.first()?;
         if owner.halted || !self.is_held_up() || !is_move(next) {
@@ -243,8 +250,9 @@ impl<P: Planner> Axis<P> {
         self.way_barred(way)
     }
 
-    /// Hands over to the next command if `owner`, the present one as it is to go on, has been held up behind its end and is no one motion
-    /// with that. What is barred waits, and what may need a run-up does not begin here.
+    /// `owner` is the present owner with other values. If it was held up behind its end and is not one motion with
+    /// the next command, hands over to that command. Returns whether it did. A barred command waits; a command that
+    /// may need a run-up does not begin here.
     pub(super) fn leaves_to_next(&mut self, mut owner: Entry, scope: &mut Scope<'_>) -> bool {
         let (true, Some(end), Some(next)) = (owner.is_behind && !owner.halted, owner.end, self.queue.first())
         else {
@@ -264,7 +272,7 @@ impl<P: Planner> Axis<P> {
         self.owner.is_none_or(|now| now.id != owner.id)
     }
 
-    /// Where the last of what is one motion with `first`, which is at the head of the buffer, ends (u).
+    /// The end (u) of the last command that is one motion with `first`, the head of the buffer.
     fn end_of_run(&self, first: &Entry) -> Option<f64> {
         let forward = self.mover.setpoint().velocity > 0.0;
         let mut behind = self.queue.iter().skip(1).take(first.run.count);
@@ -275,12 +283,12 @@ impl<P: Planner> Axis<P> {
     }
 }
 
-/// Whether a command is a move that ends.
+/// Whether a command is a move with an end.
 fn is_move(entry: &Entry) -> bool {
     matches!(entry.work, Work::Position(_) | Work::Distance(_))
 }
 
-/// Whether a motion that leads `forward`, or back, begins the other way.
+/// Whether a motion towards larger positions (`forward`), or smaller ones, starts in the opposite direction.
 fn moves_away(start: &Setpoint, forward: bool) -> bool {
     if forward {
         start.velocity < 0.0
@@ -295,8 +303,8 @@ fn is_past<P: Plan>(plan: &P, scan: u64, end: f64, forward: bool) -> bool {
     if forward { position >= end } else { position <= end }
 }
 
-/// The goal of `plan` after the scan `from` for a command that ends at `end` (u): where the plan leads beyond that, the first scan in
-/// which it is there.
+/// The goal of `plan` after the scan `from`, for a command that ends at `end` (u). If the plan leads beyond that end,
+/// it is the first scan at or past it.
 pub(super) fn goal_past<P: Plan>(plan: &P, from: u64, end: f64, forward: bool) -> u64 {
     let last = plan.at(u64::from(plan.scans())).position;
     let leads_beyond = last != end && (last > end) == forward;
@@ -307,8 +315,8 @@ pub(super) fn goal_past<P: Plan>(plan: &P, from: u64, end: f64, forward: bool) -
     }
 }
 
-/// The first scan after `from`, in which it is not there yet, in which `plan` is at or past `end` (u); that of its goal if there is
-/// none.
+/// The first scan after `from` in which `plan` is at or past `end` (u); in `from` it is not there yet. If there is
+/// none, the scan of its goal.
 fn passing_scan<P: Plan>(plan: &P, from: u64, end: f64, forward: bool) -> u64 {
     let (mut short, mut past) = (from, scans_to_goal(plan));
     for _ in 0..HALVINGS {

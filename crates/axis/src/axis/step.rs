@@ -1,6 +1,6 @@
 //! The motion step: one set-point, then completion and hand-over.
 //!
-//! It comes after all block calls of a scan, so what it decides shows in the next one (R70).
+//! It follows all block calls of a scan, so its decisions show in the next scan (R70).
 
 use super::commands::{Ending, Entry, Work};
 use super::{Axis, Calm, Motion, power::Reaction};
@@ -15,7 +15,7 @@ impl<P: Planner> Axis<P> {
     // See `follow_feedback`.
     #[inline(always)]
     pub(crate) fn advance(&mut self, scope: &mut Scope<'_>) {
-        // Short of the goal a plan needs a step and nothing else, and so does an endless motion nobody waits for.
+        // Before its goal a plan needs only its next set-point. So does an endless motion for which no command waits.
         if self.calm == Calm::Alone && (self.mover.is_short_of_goal() || self.is_cruising()) {
             self.step_along_plan(scope);
             if !self.is_plain && self.is_far_round() {
@@ -26,7 +26,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// As `advance` when something is pending, superimposed, or about to be reached.
+    /// As `advance`, when something is pending or superimposed, or the goal is near.
     #[inline(never)]
     fn advance_with_care(&mut self, scope: &mut Scope<'_>) {
         self.apply_power(scope);
@@ -39,7 +39,7 @@ impl<P: Planner> Axis<P> {
         self.finish_reset();
     }
 
-    /// An endless motion has come to its velocity, or is about to, and nobody waits for that.
+    /// Whether an endless motion has reached its velocity, or reaches it now, and no command waits for that.
     #[inline]
     pub(super) fn is_cruising(&self) -> bool {
         let is_endless = self.owner.as_ref().is_some_and(Entry::is_endless);
@@ -55,8 +55,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The plan goes on by a scan, to `next`.
-    // By value to all who ask, so that the usual set-point needs no place in memory.
+    /// Advances the plan by a scan, to `next`.
+    // By value in all callers, so that the usual set-point needs no place in memory.
     #[inline(always)]
     fn step_to(&mut self, next: Setpoint, scope: &mut Scope<'_>) {
         self.mover.count_scan();
@@ -71,13 +71,13 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The step of an axis that is at its goal, or will be after it, or is not in operation, or has something
+    /// The step of an axis that is at its goal or reaches it in this step, is not in operation, or has something
     /// superimposed.
     #[inline(never)]
     fn step_at_goal(&mut self, scope: &mut Scope<'_>) {
         if self.owner.is_none() && self.goal_reached() {
-            // A ramp nobody commanded ended in the scan before; until then power stays on, so that the drive
-            // gets the last set-point.
+            // A ramp without a command ended in the scan before. Power stayed on until then, so that the drive gets
+            // the last set-point.
             self.mover.hold();
         }
         if self.mover.layer().is_some() {
@@ -89,7 +89,7 @@ impl<P: Planner> Axis<P> {
                 self.mover.publish(Setpoint::at_rest(self.feedback.position()));
                 self.count_actual_turns();
             }
-            // What is behind a master has its own step; without its master it stays.
+            // A slave has a step of its own. Without its master it holds its position.
             Motion::Hold | Motion::Geared | Motion::Closing { .. } => {
                 self.mover
                     .publish(Setpoint::at_rest(self.mover.setpoint().position));
@@ -109,7 +109,7 @@ impl<P: Planner> Axis<P> {
     #[cold]
     pub(super) fn fail(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
         if self.state == AxisState::ErrorStop {
-            // The ramp itself is at fault, so nothing is left that could be trusted to move the axis.
+            // The ramp itself is wrong, so there is no plan left that could move the axis.
             self.mover.hold();
         }
         self.trip(error, 0, Reaction::Ramp, scope);
@@ -150,22 +150,22 @@ impl<P: Planner> Axis<P> {
                 self.enter(AxisEvent::StopReleased);
                 self.hand_over(self.mover.setpoint().position, scope);
             }
-            // An endless motion gives way when it has reached its velocity.
+            // An endless motion hands over once it has reached its velocity.
             Ending::Holds => self.hand_over(self.passed_end(), scope),
             Ending::RunsOn => self.hand_over(self.mover.setpoint().position, scope),
-            // Decided with its master.
+            // This is decided together with its master.
             Ending::Follows | Ending::Due | Ending::Never => {}
         }
     }
 
-    /// A move has completed once the axis is in position; one that passes its end, or turns there, does not wait for that.
+    /// A move is done once the axis is in position. A move that passes its end or turns there does not wait for that.
     fn complete_move(&mut self, scope: &mut Scope<'_>) {
         if !self.mover.base().is_at_rest() || self.has_arrived() {
             self.complete(scope);
         }
     }
 
-    /// The owner has completed, at rest or passing its end on to a blended successor.
+    /// The owner is done, at rest or when it passes its end and a blended command takes over.
     #[cold]
     pub(super) fn complete(&mut self, scope: &mut Scope<'_>) {
         if !self.mover.base().is_at_rest() {
@@ -184,8 +184,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The next waiting command that can be planned becomes the owner; those that cannot fail (R79). An
-    /// endless owner stays if there is none. Distances count from `from` (B10).
+    /// The next waiting command that can be planned becomes the owner; commands that can't be planned fail (R79). An
+    /// endless owner stays the owner if there is none. Distances count from `from` (B10).
     #[inline(never)]
     pub(super) fn hand_over(&mut self, from: f64, scope: &mut Scope<'_>) {
         if self.goes_on_along(from, scope) {
@@ -234,7 +234,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// `scope` with who the present motion belongs to; instance 0 if nobody.
+    /// `scope` with the instance of the present motion; instance 0 if there is none.
     pub(super) fn owner_scope<'s>(&self, scope: &'s mut Scope<'_>) -> Scope<'s> {
         let owner = self.owner.as_ref();
         scope.with(owner.map_or(InstanceId::default(), |owner| owner.instance))

@@ -1,7 +1,8 @@
-//! Turns: where the next command leads back, the axis need not come to rest between the two.
+//! Turns: if the next command reverses, the axis need not come to rest between the two commands.
 //!
-//! It comes to the end with velocity 0, exactly and in a scan, and with an acceleration that leads on into the next command. What
-//! stands here: which acceleration, and what becomes of a turn that nothing follows. The maths is the planner's.
+//! It reaches the end with velocity 0, exactly and in a scan, with an acceleration that continues into the next
+//! command. This module chooses the acceleration, and handles a turn that no command follows. The planner does the
+//! calculation.
 //!
 //! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; B13. `docs/buffering.md`.
 
@@ -11,11 +12,12 @@ use super::{Axis, Motion};
 use crate::{BufferMode, Scope};
 use standstill_planner::{Limits, MoveProfile, Passage, Plan, Planner, Setpoint};
 
-/// Parts of the largest acceleration that are tried at a turn: the first with which the next command need not go back.
+/// Shares of the highest acceleration that are tried at a turn. The first one with which the next command need not go
+/// back is used.
 const PARTS: [f64; 4] = [1.0, 0.8, 0.6, 0.45];
 
 impl<P: Planner> Axis<P> {
-    /// How `entry` is to pass its `end` (u), to which it leads in `direction`, if `next` leads back from there.
+    /// How `entry` passes its `end` (u), which it reaches in `direction`, if `next` reverses there.
     ///
     /// Cost: with software limits one ramp.
     pub(super) fn at_turn(&self, entry: &Entry, next: &Entry, end: Option<f64>, direction: f64) -> Passage {
@@ -36,8 +38,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the stop dynamics keep an axis inside the software limits that is stopped on its way to a turn at `end` with the
-    /// acceleration `turn`: the stop has to let go of the brake, and so leads further than the turn.
+    /// Whether the stop dynamics keep an axis inside the software limits that is stopped on its way to a turn at
+    /// `end` with the acceleration `turn`. The stop has to reduce the deceleration, so it leads beyond the turn.
     fn stops_behind(&self, end: Option<f64>, direction: f64, turn: f64) -> bool {
         let (Some((min, max)), Some(end)) = (self.parameters.software_limits, end) else {
             return true;
@@ -47,7 +49,7 @@ impl<P: Planner> Axis<P> {
             acceleration: direction * turn,
             ..Setpoint::at_rest(0.0)
         };
-        // From the turn onwards it takes longer than on the way there.
+        // From the turn on a stop travels further than from before it.
         let stop = self.planner.ramp_to(&at_turn, 0.0, &limits, &limits);
         stop.is_ok_and(|stop| {
             let furthest = end + stop.at(u64::from(stop.scans())).position;
@@ -55,7 +57,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// Whether the stop dynamics keep an axis inside the software limits that is stopped in this state.
+    /// Whether an axis that is stopped in this state stays inside the software limits.
     pub(super) fn stops_inside(&self, state: &Setpoint) -> bool {
         let Some((min, max)) = self.parameters.software_limits else {
             return true;
@@ -68,9 +70,9 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The plan of `entry` that turns at `end`, if what comes after is done sooner like that than with a rest.
+    /// The plan of `entry` that turns at `end`, if the next command is then done sooner than with a rest.
     ///
-    /// Cost: for each of [`PARTS`] a plan and a turn, and two plans with a rest; in the mean that of seven plans.
+    /// Cost: for each of [`PARTS`] a plan and a turn, and two plans with a rest; on average that of seven plans.
     pub(super) fn turned(
         &self,
         entry: &Entry,
@@ -103,7 +105,7 @@ impl<P: Planner> Axis<P> {
             let planned = self.planner.blend(start, end, &passage, &entry.limits, before);
             let plan = planned.ok().flatten()?;
             let at_turn = plan.at(u64::from(plan.turn()?));
-            // For whole scans it may turn with less.
+            // To take whole scans, the plan may turn with less acceleration.
             let after = if at_turn.acceleration == from.acceleration {
                 after_turn
             } else {
@@ -135,9 +137,9 @@ impl<P: Planner> Axis<P> {
         plan.turn().map(u64::from) == Some(*scans)
     }
 
-    /// Whether `owner`, planned anew along `motion`, would come to its end only by way of going back, or pass it faster than as planned and
-    /// than asked, and passes it or turns there as planned, or goes on as one motion: it is too late for anything else, so it goes on
-    /// as planned.
+    /// Whether it is too late for new values of `owner`, so that it continues as planned. The present plan passes its
+    /// end, turns there or continues as one motion. The new plan `motion` would reach the end only by going back, or
+    /// pass it faster than planned and than asked.
     pub(super) fn is_too_late(&self, owner: &Entry, motion: &Motion<P::Plan>, goes_on: bool) -> bool {
         let (Motion::Run { plan, scans, .. }, Some(end)) = (motion, owner.end) else {
             return false;
@@ -145,9 +147,10 @@ impl<P: Planner> Axis<P> {
         let at_end = plan.at(*scans);
         let as_planned = self.mover.goal().unwrap_or(Setpoint::at_rest(end));
         let speed = at_end.velocity.abs();
-        // What brakes at its end is slower soon after it.
+        // A plan that brakes at its end is slower soon after it.
         let is_faster = speed > as_planned.velocity.abs() || slowing(&at_end) < slowing(&as_planned);
-        // What passes it on a ramp was found with what comes next, which begins braking or lets go.
+        // A plan on a ramp was found together with the next command, which begins braking or reduces its
+        // acceleration.
         let is_on_a_ramp = motion.goes_on();
         let is_too_fast = speed > owner.passage.wanted * (1.0 + ROUNDING) && is_faster && !is_on_a_ramp;
         (self.is_to_turn() || self.is_to_pass(owner) || (goes_on && owner.run.count == 0))
@@ -156,18 +159,18 @@ impl<P: Planner> Axis<P> {
             && (is_too_fast || self.turns(plan, end > self.mover.setpoint().position))
     }
 
-    /// Whether `owner`, the present one with other values, is on its way to its end as planned.
+    /// Whether `owner`, the present owner with other values, is still on the way to its end as planned.
     fn is_on_its_way(&self, owner: &Entry) -> bool {
         let is_same = |was: &Entry| was.id == owner.id && was.end == owner.end && !was.halted && !was.paused;
         !self.goal_reached() && !owner.halted && self.owner.as_ref().is_some_and(is_same)
     }
 
-    /// Whether `owner`, the present one with other values, passes its end at speed as planned.
+    /// Whether `owner`, the present owner with other values, passes its end in motion as planned.
     pub(super) fn passes_as_planned(&self, owner: &Entry) -> bool {
         self.is_on_its_way(owner) && self.is_to_pass(owner)
     }
 
-    /// Whether the goal of the motion is an end that is passed at speed, and so it is of `owner`.
+    /// Whether the goal of the motion is an end that is passed in motion, also for `owner`.
     fn is_to_pass(&self, owner: &Entry) -> bool {
         let is_one = |entry: &Entry| entry.run.count == 0;
         !owner.passage.rests()
@@ -176,13 +179,13 @@ impl<P: Planner> Axis<P> {
             && self.mover.goal().is_some_and(|goal| goal.velocity != 0.0)
     }
 
-    /// Whether what is to be one `run` with the owner is so already along the plan in progress.
+    /// Whether the plan in progress already is this `run` with the owner.
     pub(super) fn is_one_motion_as_planned(&self, run: &Run) -> bool {
         let is_it = |was: &Entry| was.run.count == run.count && was.run.end == run.end;
         run.count > 0 && self.owner.as_ref().is_some_and(is_it)
     }
 
-    /// Nothing takes over where it turns: it goes back to the end and comes to rest there.
+    /// No command takes over at the turn: the axis goes back to the end and comes to rest there.
     #[cold]
     pub(super) fn rest_at_end(&mut self, scope: &mut Scope<'_>) {
         if let Some(owner) = self.owner

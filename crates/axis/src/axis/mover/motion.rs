@@ -1,4 +1,4 @@
-//! What a set-point comes from.
+//! The source of a set-point.
 
 use standstill_planner::Plan;
 
@@ -7,15 +7,15 @@ use standstill_planner::Plan;
 pub(in crate::axis) enum Motion<Plan> {
     /// The actual position: the axis is not in operation.
     Follow,
-    /// It stays where it is.
+    /// The present position, which is held.
     Hold,
-    /// A plan, so many scans after its start, and the scans to the goal, which are those it has or, where it goes on for the next
-    /// command, fewer: asked for several times in every scan.
+    /// A plan, the scans since its start, and the scans to the goal. These are all scans of the plan, or fewer if the
+    /// plan continues behind the goal for the next command. Stored, because each scan reads them several times.
     Run { plan: Plan, elapsed: u64, scans: u64 },
-    /// The actual position under a torque: the last one ordered, and the ramp of its velocity limit, so many scans after its
-    /// start.
+    /// The actual position under a torque: the last torque ordered, the ramp of its velocity limit, and the scans
+    /// since its start.
     Torque { plan: Plan, elapsed: u64, torque: f64 },
-    /// Where its coupling says.
+    /// The law of its coupling.
     Geared,
     /// The same, plus a plan beside it.
     Closing { plan: Plan, elapsed: u64, scans: u64 },
@@ -39,7 +39,7 @@ impl<P: Plan> Motion<P> {
         }
     }
 
-    /// Along `plan` beside something that moves, from its start.
+    /// Along `plan` beside a moving reference, from its start.
     pub fn closing(plan: P) -> Self {
         Self::Closing {
             plan,
@@ -48,7 +48,7 @@ impl<P: Plan> Motion<P> {
         }
     }
 
-    /// Its plan goes on behind the goal, for the next command.
+    /// Whether its plan continues behind the goal, for the next command.
     pub fn goes_on(&self) -> bool {
         matches!(self, Self::Run { plan, scans, .. } if *scans < u64::from(plan.scans()))
     }
@@ -75,7 +75,7 @@ impl<P: Plan> Motion<P> {
     }
 }
 
-/// Scans of a plan to where it comes to rest, passes its target or turns at it.
+/// Scans of a plan to its goal: the rest at its end, its end passed in motion, or the turn at its target.
 pub(in crate::axis) fn scans_to_goal<P: Plan>(plan: &P) -> u64 {
     plan.turn().unwrap_or(plan.scans()).into()
 }

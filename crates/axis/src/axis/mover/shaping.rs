@@ -1,10 +1,13 @@
-//! Moves without swing: what is published is a mean of the set-points of the motion, present and past.
+//! Moves without vibration: the published set-point is a weighted mean of the present set-point of the motion and
+//! past ones.
 //!
-//! The motion is planned, held within limits and changed as on any axis; all of that is the set-point of the [`Mover`] before it is
-//! shaped. Published is that and its lag. So whatever takes over, what is still in the shaper comes out first, and everything
-//! that is within a limit stays within it. A command has come to its end when nothing is left in the shaper.
+//! The motion is planned, kept within limits and changed as on any axis. All of that concerns the set-point of the
+//! [`Mover`] before the shaper. The published set-point is that set-point plus its lag. So when another motion takes
+//! over, the rest of the earlier motion comes out of the shaper first, and the published set-point keeps every limit
+//! that the motion keeps. A command is done when the shaper holds nothing of it any more.
 //!
-//! The past is kept in memory that the host lends with every [`Scope`](crate::Scope): [`Mover::history_needed`] places of it for this axis alone.
+//! The past is kept in memory that the host lends with every [`Scope`](crate::Scope). [`Mover::history_needed`]
+//! places of it belong to this axis alone.
 //!
 //! Derivation: docs/planner.md, section 15.
 
@@ -18,28 +21,28 @@ use standstill_planner::{Plan, Setpoint, Shaper, Shapers, VibrationMode};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shaping {
     shapers: Shapers,
-    /// Past set-points for each shaper: of the motion, and of what the shaper before made of it.
+    /// Past set-points for each shaper: of the motion, and of the output of the shaper before.
     rings: [Ring; MODES],
-    /// Where all that is kept is lent.
+    /// The first place of its part of the lent memory.
     first: usize,
-    /// By how much the published set-point differs from that of the motion.
+    /// The difference of the published set-point from that of the motion.
     lag: Setpoint,
-    /// The position (u) of the motion as last seen, in the coordinates of then.
+    /// The last known position (u) of the motion, in the coordinates of that time.
     seen: f64,
-    /// By how much coordinates have moved since the last set-point was kept (u).
+    /// The shift of coordinates since the last set-point was kept (u).
     moved: f64,
-    /// The motion was even for so many scans; see [`even_scans`].
+    /// The number of scans in which the motion was even; see [`even_scans`].
     even: u32,
-    /// Where the axis stood before the first set-point that is kept (u).
+    /// The position of the axis before the first kept set-point (u).
     origin: f64,
-    /// Set-points that were kept since.
+    /// The number of set-points kept since.
     kept: u32,
 }
 
-/// A stretch of the memory, filled round and round.
+/// A part of the memory, used as a ring.
 #[derive(Clone, Copy, Debug, Default)]
 struct Ring {
-    /// Its first place, counted from that of the axis.
+    /// Its first place, counted from the first one of the axis.
     first: usize,
     places: usize,
     newest: usize,
@@ -59,7 +62,7 @@ impl Ring {
         }
     }
 
-    /// What was pushed so many scans ago.
+    /// The set-point that was pushed this number of scans ago.
     fn past(&self, history: &[Setpoint], scans: u32) -> Option<Setpoint> {
         let scans = scans as usize;
         let back = self.newest.checked_sub(scans);
@@ -68,11 +71,12 @@ impl Ring {
     }
 }
 
-/// Scans in a row in which a motion had the velocity of the scan before, and nothing above it; at rest also the place. They were
-/// `before`, and the motion goes from `here` to `next`. Its positions were as large as `coarsest` (u).
+/// The number of scans in a row in which a motion was even: it kept its velocity, with all higher derivatives 0; at
+/// rest it also kept its position. There were `before` such scans, and the motion goes from `here` to `next`. Its
+/// positions were at most `coarsest` (u).
 pub(in crate::axis) fn even_scans(before: u32, here: &Setpoint, next: &Setpoint, coarsest: f64) -> u32 {
     let has_more = next.acceleration != 0.0 || next.jerk != 0.0 || next.snap != 0.0;
-    // A short motion begins and ends within a scan.
+    // A short motion may begin and end within a scan.
     let resolved = RESOLVED * (here.position.abs() + next.position.abs() + coarsest);
     let has_moved = next.velocity == 0.0 && (next.position - here.position).abs() > resolved;
     if next.velocity != here.velocity || has_more || has_moved {
@@ -82,7 +86,7 @@ pub(in crate::axis) fn even_scans(before: u32, here: &Setpoint, next: &Setpoint,
     }
 }
 
-/// Set-points to keep for a mode, for any shaper and down to half of its frequency.
+/// The number of set-points to keep for a mode. It is enough for any shaper and down to half of the frequency.
 fn places(mode: &VibrationMode, cycle: f64) -> usize {
     let slower = 1.0 - mode.damping * mode.damping;
     let period = 1.0 / (mode.frequency * cycle * slower);
@@ -90,7 +94,7 @@ fn places(mode: &VibrationMode, cycle: f64) -> usize {
 }
 
 impl Shaping {
-    /// For these modes at rest at `position` (u); none if there are none.
+    /// A shaper for these modes, at rest at `position` (u); none if there are no modes.
     ///
     /// # Errors
     /// [`ConfigError::Vibration`] names the mode.
@@ -132,19 +136,19 @@ impl Shaping {
         self.rings.iter().map(|ring| ring.places).sum()
     }
 
-    /// What is published was published `delay` scans after the motion had it, all of it.
+    /// Whether the motion was even for the whole delay of the shaper, so that nothing else is left in it.
     fn is_through(&self) -> bool {
         self.even >= self.shapers.delay()
     }
 
-    /// The motion goes from `here` to `next`. A `here` that was not seen before is another name of that place.
+    /// The motion goes from `here` to `next`. If `here` is not the last known position, coordinates have moved.
     fn step(&mut self, here: &Setpoint, next: &Setpoint, coarsest: f64) {
         self.moved += here.position - self.seen;
         self.seen = next.position;
         self.even = even_scans(self.even, here, next, coarsest);
     }
 
-    /// At rest at `position` (u), with nothing left of what was.
+    /// At rest at `position` (u), without any past motion.
     fn rest(&mut self, position: f64) {
         self.lag = Setpoint::default();
         self.seen = position;
@@ -154,9 +158,9 @@ impl Shaping {
         self.kept = 0;
     }
 
-    /// The lag of the set-point `now`, which the motion has come to.
+    /// Computes the lag of the set-point `now` of the motion.
     ///
-    /// Cost: one set-point for each part of the shapers; where coordinates moved in motion, one for each that is kept.
+    /// Cost: one set-point for each part of the shapers; if coordinates moved in motion, one for each kept set-point.
     fn shape(&mut self, history: &mut [Setpoint], now: Setpoint) {
         let by = self.moved + (now.position - self.seen);
         self.moved = 0.0;
@@ -190,21 +194,21 @@ impl<P: Plan> Mover<P> {
         self.shaping.as_ref().map_or(0, Shaping::places)
     }
 
-    /// Its part of the past that is lent begins at this place.
+    /// Its part of the lent memory begins at this place.
     pub fn set_history(&mut self, first: usize) {
         if let Some(shaping) = &mut self.shaping {
             shaping.first = first;
         }
     }
 
-    /// A shaper stands between its motion and its drive.
+    /// Whether there is a shaper between its motion and its drive.
     #[inline(always)]
     pub fn is_shaped(&self) -> bool {
         self.is_shaped
     }
 
-    /// Nothing of the motion is left in the shaper: it rests, or has a constant velocity.
-    // What axes without a shaper have to do with one is a look at a tag, in line; all else is out of it.
+    /// Whether no change of the motion is left in the shaper: the axis is at rest, or has a constant velocity.
+    // For an axis without a shaper this is a test of one flag, inlined. Everything else is outside.
     #[inline(always)]
     pub fn is_through(&self) -> bool {
         !self.is_shaped || self.has_come_out()
@@ -213,12 +217,12 @@ impl<P: Plan> Mover<P> {
     #[cold]
     #[inline(never)]
     fn has_come_out(&self) -> bool {
-        // What follows the feedback is not shaped.
+        // A set-point that follows the feedback is not shaped.
         let follows = matches!(self.motion, Motion::Follow);
         follows || self.shaping.as_ref().is_none_or(Shaping::is_through)
     }
 
-    /// The same of the motion without what is superimposed.
+    /// The same for the motion without the superimposed one.
     #[inline(always)]
     pub fn is_base_through(&self) -> bool {
         !self.is_shaped || self.base_has_come_out()
@@ -233,12 +237,12 @@ impl<P: Plan> Mover<P> {
         }
     }
 
-    /// For so many scans the motion was even; see [`even_scans`].
+    /// The number of scans in which the motion was even; see [`even_scans`].
     pub fn even(&self) -> u32 {
         self.shaping.as_ref().map_or(u32::MAX, |shaping| shaping.even)
     }
 
-    /// Scans after which a set-point of the motion has come out whole.
+    /// Scans after which a set-point of the motion has come out of the shaper completely.
     #[inline]
     pub fn shaping_delay(&self) -> u64 {
         self.shaping
@@ -274,7 +278,7 @@ impl<P: Plan> Mover<P> {
         }
     }
 
-    /// The end of a motion step: what is published follows the motion. The past is kept in `history`.
+    /// The end of a motion step: computes the published set-point. The past is kept in `history`.
     #[inline(always)]
     pub fn shape(&mut self, history: &mut [Setpoint]) {
         if self.is_shaped {
@@ -295,17 +299,17 @@ impl<P: Plan> Mover<P> {
         }
     }
 
-    /// The shaper for other modes, of an axis that rests and has nothing left in its shaper.
+    /// Changes the modes of the shaper. The axis is at rest, and the shaper holds no motion.
     pub fn set_shapers(&mut self, shapers: Shapers) {
         let position = self.setpoint.position;
         if let Some(shaping) = &mut self.shaping {
             shaping.shapers = shapers;
-            // A longer shaper would reach back to the motion before.
+            // A longer shaper would use set-points of the motion before.
             shaping.rest(position);
         }
     }
 
-    /// Whether the memory for the past suffices for these shapers.
+    /// Whether the memory for the past is large enough for these shapers.
     pub fn has_history_for(&self, shapers: &Shapers) -> bool {
         let rings = self.shaping.iter().flat_map(|shaping| &shaping.rings);
         let fits = |(ring, shaper): (&Ring, &Shaper)| (shaper.delay() as usize) < ring.places;
