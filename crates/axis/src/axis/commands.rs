@@ -15,19 +15,19 @@ pub(super) const ROUNDING: f64 = 1e-9;
 /// A command that comes to rest at its end.
 pub(super) const REST: Passage = Passage::REST;
 
-/// What of the commands that wait is one motion with the one before them: they lead on the same way within the same limits.
+/// The commands that wait and are one motion with the one before them: same direction, same limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Run {
-    /// So many of them.
+    /// The number of these commands.
     pub count: usize,
-    /// Where the last one ends (u).
+    /// The end of the last one (u).
     pub end: f64,
-    /// How that end is passed.
+    /// How the last one passes its end.
     pub passage: Passage,
 }
 
 impl Run {
-    /// None of them.
+    /// No such command.
     pub const NONE: Self = Self {
         count: 0,
         end: 0.0,
@@ -40,16 +40,16 @@ impl Run {
 pub(super) enum Start {
     /// At once.
     Now,
-    /// When its turn comes.
+    /// When it becomes active.
     Wait,
 }
 
-/// Where a motion leads.
+/// The target of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Place {
     /// A position (u).
     At(f64),
-    /// A distance (u) from where the command becomes active (B10).
+    /// A distance (u) from the position at which the command becomes active (B10).
     By(f64),
 }
 
@@ -65,39 +65,39 @@ pub(super) enum Write {
     },
 }
 
-/// A checked command.
+/// A command after its checks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Work {
     /// To a position (u).
     Position(f64),
-    /// By a distance (u) from where it becomes active (B10).
+    /// By a distance (u) from the position at which it becomes active (B10).
     Distance(f64),
-    /// Through a place with an end velocity (u/s, signed), which is then kept.
+    /// Through a position with an end velocity (u/s, signed), which the axis then keeps.
     Through { to: Place, end_velocity: f64 },
-    /// To a velocity (u/s); with `along` its sign is taken relative to the motion when it becomes active.
+    /// To a velocity (u/s). With `along` its sign is relative to the motion at the time it becomes active.
     Velocity { velocity: f64, along: bool },
-    /// Along a curve. With `due` it owns the axis but its block has not given the points yet.
+    /// Along a curve. With `due` it owns the axis but has not got the points from its block yet.
     Profile {
         kind: ProfileKind,
         due: bool,
-        /// Time in its table when the plan in progress began (s), and the factor of its times.
+        /// Time in its table at the start of the plan in progress (s), and the factor of its times.
         since: f64,
         time_scale: f64,
     },
-    /// A torque that changes by this much per second (0: at once). With `along` its sign is relative to
-    /// the motion when it becomes active.
+    /// A torque that changes by `ramp` per second (0: at once). With `along` its sign is relative to the motion at
+    /// the time it becomes active.
     Torque { torque: f64, ramp: f64, along: bool },
-    /// Behind a master.
+    /// Follows a master.
     Gear(Gearing),
-    /// Behind a master on a cam.
+    /// Follows a master on a cam.
     Cam(Camming),
-    /// Continues at a velocity (u/s), no longer behind a master.
+    /// Continues at a velocity (u/s), without its master.
     Release(f64),
     /// To velocity zero.
     Halt,
     /// To velocity zero, locked.
     Stop,
-    /// The present position gets this name (u).
+    /// The reference gets this position (u).
     Home(f64),
     /// Moves the coordinates: the actual position becomes this value, or grows by it (u).
     SetPosition { position: f64, relative: bool },
@@ -109,10 +109,10 @@ pub(super) enum Work {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gearing {
     pub first: Leg,
-    /// MC_CombineAxes: the second master; its way is added.
+    /// MC_CombineAxes: the second master, whose travel is added.
     pub second: Option<Leg>,
-    /// The places of master and slave that belong together, if given; else the places in which the slave
-    /// comes into gear.
+    /// The sync positions of master and slave, if given; otherwise the law goes through their positions when the
+    /// slave comes into gear.
     pub sync: Option<Sync>,
 }
 
@@ -120,53 +120,53 @@ pub(super) struct Gearing {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Leg {
     pub master: AxisId,
-    /// Which values of the master: set or actual.
+    /// The followed values of the master: set or actual.
     pub source: ValueSource,
     pub gear: Gear,
 }
 
-/// A sync point, checked.
+/// A sync point after its checks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sync {
-    /// Place of the master (u), and of the slave (u).
+    /// Position of the master (u), and of the slave (u).
     pub master: f64,
     pub slave: f64,
     pub mode: SyncMode,
-    /// The distance before its place at which the master starts the slave (u), with the sign of its
-    /// direction; 0 to start at once.
+    /// The distance of the master before its sync position at which the slave starts (u), with the sign of the
+    /// master's direction; 0 to start at once.
     pub start_distance: f64,
 }
 
-/// The cam and the master that a slave follows, checked.
+/// The cam and the master that a slave follows, after their checks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Camming {
     pub master: AxisId,
-    /// Which values of it are followed: set or actual ones.
+    /// The followed values of the master: set or actual.
     pub source: ValueSource,
     pub cam: CamId,
     /// The number of derivatives that are continuous.
     pub continuity: u8,
     /// Its steepest slope, scalings included.
     pub steepest: f64,
-    /// Scalings and turns. The place where the cam begins is found when it is laid.
+    /// Scalings and turns. The beginning of the cam is found when the cam is placed.
     pub law: CamLaw,
-    /// The places of the table are absolute places of the axes.
+    /// The positions of the table are absolute positions of the axes: of the master, and of the slave.
     pub master_absolute: bool,
     pub slave_absolute: bool,
     pub master_offset: f64,
     pub slave_offset: f64,
-    /// The place on the cam where the slave is in sync first, if given (u of the cam's master side).
+    /// The position on the cam where the slave is in sync first, if given (u of the cam's master side).
     pub sync: Option<f64>,
-    /// The distance before that place at which the master starts the slave (u of the cam's master side),
-    /// with the sign of its direction; 0 to start at once.
+    /// The distance of the master before that position at which the slave starts (u of the cam's master side), with
+    /// the sign of the master's direction; 0 to start at once.
     pub start_distance: f64,
-    /// The place on the previous cam at which this one takes over, if not at its end (u of that cam's
-    /// master side).
+    /// The position on the previous cam at which this one takes over, if not at its end (u of that cam's master
+    /// side).
     pub switch_at: Option<f64>,
 }
 
 impl Work {
-    /// Whether the slave starts when its master reaches a place, and not at once.
+    /// Whether the slave starts when its master reaches a position, and not at once.
     pub fn waits_for_start(&self) -> bool {
         match self {
             Self::Gear(gearing) => gearing.sync.is_some_and(|sync| sync.start_distance != 0.0),
@@ -176,30 +176,29 @@ impl Work {
     }
 }
 
-/// The properties of a kind of work, in one table for all users. A property that only one user needs is
-/// defined there.
+/// The properties of a kind of work, in one table for all uses. A property with only one use is defined there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Manner {
     /// Its name.
     pub kind: WorkKind,
-    /// The arrow of the state diagram along which it starts.
+    /// The transition of the state diagram with which it starts.
     pub start: AxisEvent,
     /// The action when its motion has reached its goal.
     pub ending: Ending,
     /// How its motion is checked against the software limits.
     pub watch: Watch,
-    /// The place where it ends, if there is one.
+    /// The position of its end, if there is one.
     pub place: Option<Place>,
     /// The velocity (u/s) at its end; 0 if it ends at rest.
     pub velocity: f64,
     /// It continues until another command takes over.
     pub endless: bool,
-    /// The override applies to it. It applies to moves, but not to stops, to commands that name places,
-    /// to profiles, which keep their times, or to torques, which are no motion (V16).
+    /// The override applies to it. It applies to moves, but not to stops, commands that set positions, profiles,
+    /// which keep their times, or torques, which are no motion (V16).
     pub overridden: bool,
     /// It takes new values from its pins while it runs (ContinuousUpdate).
     pub updated: bool,
-    /// It moves the axis on, so MC_Power can bar the direction it needs.
+    /// It starts a motion, so MC_Power can bar the direction it needs.
     pub barred: bool,
     /// It can pass its end in motion, for a blended command that waits (B12).
     pub blends: bool,
@@ -218,13 +217,13 @@ pub(super) enum Ending {
     Holds,
     /// It is done, and the motion continues.
     RunsOn,
-    /// It continues behind its master. A waiting command may take over once it is in gear.
+    /// It continues to follow its master. A waiting command may take over once it is in gear.
     Follows,
     /// No action: its block has not given its points yet.
     Due,
     /// It locks the axis while its Execute is TRUE.
     Locks,
-    /// The search continues, or the place gets this position (u).
+    /// The search continues, or the reference gets this position (u).
     Names(f64),
     /// It never owns the axis.
     Never,
@@ -237,25 +236,24 @@ pub(super) enum Watch {
     Always,
     /// A curve, which was checked over its whole length.
     Curve,
-    /// A straight way to a place.
+    /// A move straight to its target.
     Way,
     /// A ramp to rest.
     Ramp,
-    /// A torque, which is checked after every latch. It has a plan only while it is barred, and that plan
-    /// leads to rest.
+    /// A torque, which is checked after every latch. It has a plan only while it is barred; that plan leads to rest.
     Torque,
     /// Not at all.
     Never,
 }
 
-/// The kinds of what an axis does, for searches over all reachable states.
+/// The kinds of work of an axis, for searches over all reachable states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum WorkKind {
     /// To a position.
     Position,
     /// By a distance.
     Distance,
-    /// Through a place, with an end velocity.
+    /// Through a position, with an end velocity.
     Through,
     /// To a velocity.
     Velocity,
@@ -265,11 +263,11 @@ pub enum WorkKind {
     Profile,
     /// A torque.
     Torque,
-    /// Behind a master.
+    /// Follows a master.
     Gear,
-    /// Behind a master on a cam.
+    /// Follows a master on a cam.
     Cam,
-    /// Continues at a velocity, no longer behind a master.
+    /// Continues at a velocity, without its master.
     Release,
     /// To velocity zero.
     Halt,
@@ -277,7 +275,7 @@ pub enum WorkKind {
     Stop,
     /// Homing.
     Home,
-    /// Moved coordinates.
+    /// Shifts the coordinates.
     SetPosition,
     /// A digital output.
     Output,
@@ -360,7 +358,7 @@ impl Manner {
 }
 
 impl Work {
-    /// Behind a master.
+    /// Follows a master.
     const GEAR: Manner = Manner {
         kind: WorkKind::Gear,
         start: AxisEvent::StartSynchronized,
@@ -369,7 +367,7 @@ impl Work {
         ..Manner::ENDLESS
     };
 
-    /// What it is.
+    /// The properties of this work.
     #[inline]
     pub const fn manner(&self) -> Manner {
         match *self {
@@ -458,7 +456,7 @@ impl Work {
         }
     }
 
-    /// The place where it ends (u); relative kinds count from `from`. `None` if it has no end.
+    /// The position of its end (u); relative kinds count from `from`. `None` if it has no end.
     pub fn end(&self, from: f64) -> Option<f64> {
         Some(match self.manner().place? {
             Place::At(position) => position,
@@ -487,11 +485,11 @@ impl Work {
     }
 }
 
-/// A command with its number, its sender and its limits. What every scan asks of an owner comes first.
+/// A command with its number, its instance and its limits. Fields of the owner that every scan reads come first.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct Entry {
-    /// The place where it ends (u); known once the command is planned.
+    /// The position of its end (u); known once the command is planned.
     pub end: Option<f64>,
     pub id: CommandId,
     pub instance: InstanceId,
@@ -501,32 +499,31 @@ pub(super) struct Entry {
     pub paused: bool,
     /// MC_Stop: Execute is still TRUE.
     pub held: bool,
-    /// It has passed its place, or its profile is over, and continues with its end velocity.
+    /// It has passed its position, or its profile is over, and it continues with its end velocity.
     pub passed: bool,
     /// It was to pass its end in motion, and has passed it while it was held up.
     pub is_behind: bool,
-    /// No block follows it: its instance was triggered anew and refused.
+    /// No block follows it: its instance was triggered again, and that command was refused.
     pub orphaned: bool,
-    /// What it does; velocities as the override scales them.
+    /// Its work; velocities are scaled by the override.
     pub work: Work,
-    /// Its limits as the override scales them.
+    /// Its limits, scaled by the override.
     pub limits: Limits,
-    /// The values of the program, before the override.
+    /// Its values before the override.
     pub asked: Asked,
-    /// The place from which its distance counts (u), once it is known (R13).
+    /// The position from which its distance counts (u), once it is known (R13).
     pub from: f64,
     /// The sign for mcCurrentDirection of a velocity, taken when the command became active.
     pub sign: f64,
-    /// Whole turns by which the frame of a modulo axis moves on when it begins.
+    /// Whole turns by which the frame of a modulo axis moves when it begins.
     pub turns: i64,
-    /// How it is to pass its end, for a blended successor.
+    /// How it passes its end, for a blended successor.
     pub passage: Passage,
-    /// What is one motion with it.
+    /// The waiting commands that are one motion with it.
     pub run: Run,
-    /// The command that its instance gave after it and follows now (B19).
+    /// The next command of the same instance, which the instance follows now (B19).
     pub heir: Option<CommandId>,
-    /// The way round to a position on a modulo axis. `None` if the position is one of the frame, with its
-    /// turns.
+    /// The direction to a position on a modulo axis. `None` if the position is one of the frame, including its turns.
     pub direction: Option<Direction>,
     /// How it follows the command before it.
     pub mode: BufferMode,
@@ -562,7 +559,7 @@ impl Asked {
             | Command::MoveAdditive { dynamics, .. }
             | Command::MoveVelocity { dynamics, .. }
             | Command::Jog { dynamics, .. } => (dynamics, dynamics.velocity),
-            // Ramps and ends at rest have no velocity of their own, slaves have that of their master.
+            // Ramps and ends at rest have no velocity of their own. A slave has that of its master.
             Command::Torque { .. }
             | Command::Halt { .. }
             | Command::Stop { .. }
@@ -585,7 +582,7 @@ impl Asked {
 }
 
 impl Entry {
-    /// A command that starts at rest or with the state its predecessor leaves.
+    /// A command that starts at rest or with the state at the end of its predecessor.
     pub fn new(id: CommandId, instance: InstanceId, work: Work, limits: Limits, mode: BufferMode) -> Self {
         Self {
             id,
@@ -615,12 +612,12 @@ impl Entry {
         }
     }
 
-    /// Where it leads, if anywhere.
+    /// Its target, if it has one.
     pub fn place(&self) -> Option<Place> {
         self.work.manner().place
     }
 
-    /// Where its motion leads (u), if anywhere: its end, or that of the last command which is one motion with it.
+    /// The target of its motion (u), if it has one: its end, or that of the last command that is one motion with it.
     pub fn goal(&self) -> Option<f64> {
         if self.run.count > 0 {
             Some(self.run.end)
@@ -663,7 +660,7 @@ pub(super) fn direction_of(command: &Command) -> Option<Direction> {
 pub(super) fn refusal(error: PlanError) -> ErrorId {
     match error {
         PlanError::TooLong { .. } => ErrorId::MoveTooLong,
-        // Distance over cycle^n does not fit into a number: longer than anything countable.
+        // The distance divided by cycle^n exceeds the range of a number, so the motion takes too many scans to count.
         PlanError::InvalidInput {
             field: Field::Cycle, ..
         } => ErrorId::MoveTooLong,

@@ -91,8 +91,8 @@ impl<P: Planner> Axis<P> {
         Ok(kept)
     }
 
-    /// If the limits that slaves leave would take the axis out of its own, it uses its own: the slaves
-    /// lag.
+    /// If the limits that slaves leave would take the axis beyond its own limits, uses its own limits. The slaves
+    /// then lag.
     fn planned_free(
         &self,
         entry: &mut Entry,
@@ -101,7 +101,7 @@ impl<P: Planner> Axis<P> {
         before: &Limits,
     ) -> Motion<P::Plan> {
         let axis = &self.config.limits;
-        // A stop that turns back exceeds as well, but no limit of the axis.
+        // A stop that turns back has an excess, too, but exceeds no limit of the axis.
         let leaves = |motion: &Motion<P::Plan>| match motion {
             Motion::Run { plan, .. }
                 if plan.excess_over(axis).is_some_and(|excess| excess.velocity > 0.0) =>
@@ -128,8 +128,9 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The ramp from `start`, a state of a motion within `before`, to rest that no command asked for: within `limits`, or within
-    /// higher ones if they cannot keep an axis with limits `axis` inside them. `limits` then are those. Cost: at most three ramps.
+    /// The ramp to rest without a command, from `start`, a state of a motion within `before`. It keeps `limits`, or
+    /// higher ones if these can't keep the axis inside `axis`; `limits` is set to those used. Cost: at most three
+    /// ramps.
     ///
     /// # Errors
     /// That of the ramp within `limits`.
@@ -145,8 +146,8 @@ impl<P: Planner> Axis<P> {
         Ok(self.least_beyond(first, limits, (before, axis), planned))
     }
 
-    /// A move of the axis to `target`, and its limits: these, or higher ones if they cannot keep the axis
-    /// inside its own.
+    /// A move of the axis to `target`, and its limits: these, or higher ones if these can't keep the axis inside its
+    /// own.
     ///
     /// # Errors
     /// Those of [`Planner::move_to`].
@@ -163,8 +164,8 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// What `planned` makes of `limits`, or of higher ones if they cannot keep the axis inside its own, and the
-    /// limits it was made of. Cost: at most three plans.
+    /// The plan that `planned` makes with `limits`, or with higher ones if these can't keep the axis inside its own,
+    /// and the limits used. Cost: at most three plans.
     ///
     /// # Errors
     /// That of `planned` with `limits`.
@@ -179,7 +180,8 @@ impl<P: Planner> Axis<P> {
         Ok((plan, limits))
     }
 
-    /// `plan`, or a plan made `again` with higher limits, those `before` or those of `axis`, if it keeps those of `axis` better.
+    /// `plan`, or a plan that `again` makes with higher limits (from `before` or `axis`) if that exceeds `axis` by
+    /// less.
     fn least_beyond(
         &self,
         plan: P::Plan,
@@ -208,7 +210,7 @@ impl<P: Planner> Axis<P> {
         kept
     }
 
-    /// Jerk and snap of the motion before, then those of the `axis` together with its accelerations.
+    /// Higher limits to try: with jerk and snap of the motion before, and with rates, jerk and snap of the `axis`.
     pub(super) fn higher(&self, limits: &Limits, before: &Limits, axis: &Limits) -> [Limits; 2] {
         [
             Limits {
@@ -226,7 +228,7 @@ impl<P: Planner> Axis<P> {
         ]
     }
 
-    /// Tells which limits of a command were raised.
+    /// Records which limits of a command were raised.
     pub(super) fn record_raised(&self, asked: &Limits, used: &Limits, scope: &mut Scope<'_>) {
         let pins = [
             ("Acceleration", asked.acceleration, used.acceleration),
@@ -242,7 +244,7 @@ impl<P: Planner> Axis<P> {
     }
 }
 
-/// Whether `left` is clearly less than `excess`: in velocity, else in acceleration, else in jerk.
+/// Whether `left` is clearly less than `excess`: in velocity, otherwise in acceleration, otherwise in jerk.
 fn is_less(left: Option<Excess>, excess: &Excess) -> bool {
     let Some(left) = left else { return true };
     let parts = [

@@ -11,7 +11,7 @@
 //! | [`failure`] | the error shown, whether its cause persists, the reset under way |
 //! | [`feedback`] | actual positions, and which of them can be compared |
 //! | [`frame`] | the coordinates of the axis and of its drive |
-//! | [`modulo`] | turns, and the direction with the shorter travel |
+//! | [`modulo`] | turns, and the shortest way |
 //! | [`measured`] | actual positions as slaves see them: filtered |
 //! | [`coupling`] | how it follows others and is followed, which only that folder writes |
 //!

@@ -1,12 +1,11 @@
-//! Modulo axes: positions within one turn, turns counted in integers, and the way round to a target.
+//! Modulo axes: positions within one turn, turns counted as integers, and the direction to a target.
 //!
-//! Programs see positions in [0, length). The core moves in a frame of its own: a plan ends in the first
-//! turn of its frame, wherever it starts, so that every target is met to the bit. An endless motion is
-//! brought back when it is two turns away. The whole turns between the frame and the drive's increments
-//! are an integer.
+//! Programs see positions in [0, length). The axis itself moves in a frame of its own: every plan ends in the first
+//! turn of its frame, wherever it starts, so that every target is met to the bit. An endless motion is moved back
+//! towards 0 when it is two turns away. The whole turns between the frame and the drive's increments are an integer.
 //!
-//! Source: PLCopen Motion Control Part 1, MC_MoveAbsolute and MC_DIRECTION; B8; the rule for Direction is that of
-//! docs/modulo.md.
+//! Source: PLCopen Motion Control Part 1, MC_MoveAbsolute and MC_DIRECTION; B8; docs/modulo.md states the rule for
+//! Direction.
 
 use super::Axis;
 use super::commands::{Entry, Place, REST, Run, Work};
@@ -14,19 +13,20 @@ use crate::{AxisConfig, Direction, DrivePosition, ErrorId, ModuloTargets, Scalin
 use standstill_planner::turns::{split, two_product};
 use standstill_planner::{Limits, Passage, Plan, Planner, Setpoint};
 
-/// How far before the end of a stop a target may lie and still be met, relative to the way of the stop:
-/// this is rounding, and no visible way back.
+/// The distance of a target before the end of a stop that still counts as reached, relative to the travel of the
+/// stop. It is rounding, and no visible reversal.
 const ROUNDING: f64 = 1e-9;
 
-/// An endless motion this many turns away is brought back.
+/// The distance in turns at which an endless motion is moved back towards 0.
 const FAR: f64 = 2.0;
 
-/// A way (u) is so long, where turns have that `length` (u), that places are told, and what is left of it is planned, from nearer.
+/// Whether a distance (u) is so long, with turns of this `length` (u), that positions are expressed, and the rest of
+/// it planned, from a nearer turn.
 pub(super) fn is_far(way: f64, length: f64) -> bool {
     way.abs() >= FAR * length
 }
 
-/// What an axis with turns has beyond a linear one.
+/// The data that an axis with turns has in addition to a linear one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Modulo {
     /// One turn (u).
@@ -37,9 +37,9 @@ pub(super) struct Modulo {
     turns: i64,
     /// Whole turns at the actual position.
     actual_turns: i64,
-    /// A position of the frame (u) at which the axis stood when the frame was moved, and its name before.
-    /// A place some turns away has fewer bits than one in the first turn, and an axis at rest must keep
-    /// its name.
+    /// A position of the frame (u) at which the axis was at rest when the frame was moved, and its published value
+    /// before. A position some turns away has fewer bits than one in the first turn, and the position of an axis at
+    /// rest must not change.
     stood: Option<(f64, f64)>,
 }
 
@@ -60,14 +60,13 @@ impl Modulo {
         self.turns
     }
 
-    /// Puts the axis into this turn, at a position of the first one.
+    /// Sets the turn of the axis; its position is in the first turn of the frame.
     pub fn put(&mut self, turns: i64) {
         self.turns = turns;
         self.stood = None;
     }
 
-    /// Whether the axis may go from one position to the other within this turn, and both keep their
-    /// names.
+    /// Whether the axis may go from one position to the other within this turn, and both are published unchanged.
     #[inline]
     pub fn stays_in(&self, turns: i64, positions: [f64; 2]) -> bool {
         let turn = 0.0..self.length;
@@ -76,7 +75,7 @@ impl Modulo {
             && positions.iter().all(|position| turn.contains(position))
     }
 
-    /// As programs see it.
+    /// The set-point as programs see it.
     #[inline(never)]
     pub fn shown(&self, setpoint: &Setpoint) -> Setpoint {
         Setpoint {
@@ -130,14 +129,14 @@ impl Modulo {
 }
 
 impl<P: Planner> Axis<P> {
-    /// The coordinates move: every place gets a new name.
+    /// The coordinates are shifted: every position changes.
     pub(super) fn rename_places(&mut self) {
         if let Some(modulo) = &mut self.modulo {
             modulo.stood = None;
         }
     }
 
-    /// The set-point takes over the actual place, including turns.
+    /// The set-point takes the actual position, including turns.
     pub(super) fn count_actual_turns(&mut self) {
         if let Some(modulo) = &mut self.modulo {
             modulo.turns = modulo.actual_turns;
@@ -153,7 +152,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether a program may use `position` (u): in the first turn, or any on a linear axis. If not, the
+    /// Whether a program may use `position` (u): in the first turn, or any on a linear axis. If not, returns the
     /// length of a turn and the error.
     pub(super) fn in_first_turn(&self, position: f64) -> Result<(), (f64, ErrorId)> {
         match &self.modulo {
@@ -164,20 +163,18 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the set-point of a modulo axis is so far from 0 that an endless motion must be brought
-    /// back.
+    /// Whether the set-point of a modulo axis is so far from 0 that an endless motion must be moved back.
     #[inline]
     pub(super) fn is_far_round(&self) -> bool {
         let far = |modulo: &Modulo| is_far(self.mover.setpoint().position, modulo.length);
         self.modulo.as_ref().is_some_and(far)
     }
 
-    /// Keeps an endless motion within some turns of 0. Cost: a comparison, and once in two turns about 60
-    /// operations.
+    /// Keeps an endless motion within some turns of 0. Cost: a comparison, and about 60 operations once in two turns.
     #[inline(never)]
     pub(super) fn bring_back(&mut self) {
         let Some(modulo) = &mut self.modulo else { return };
-        // An owner that is held up may have its end there.
+        // If the owner is held up, its end may be in this frame.
         let is_held_up = |owner: &Entry| owner.halted || owner.paused;
         if !is_far(self.mover.setpoint().position, modulo.length)
             || self.owner.as_ref().is_some_and(is_held_up)
@@ -186,7 +183,7 @@ impl<P: Planner> Axis<P> {
         }
         if let Some(turns) = self.mover.bring_back(modulo.length) {
             modulo.turns = modulo.turns.saturating_add(turns);
-            // Its end was left behind, in another frame.
+            // Its end is in the frame that was left.
             if let Some(owner) = &mut self.owner {
                 owner.end = None;
                 owner.from = back_by(owner.from, turns, modulo.length);
@@ -194,7 +191,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A plan begins: its start is the present position in the plan's frame.
+    /// A plan begins: the present position becomes the start in the plan's frame.
     #[inline(never)]
     pub(super) fn start_of_plan(&mut self) {
         let (Some(modulo), Some((plan, _))) = (&mut self.modulo, self.mover.plan()) else {
@@ -211,9 +208,8 @@ impl<P: Planner> Axis<P> {
         modulo.stood = setpoint.is_at_rest().then_some((setpoint.position, called));
     }
 
-    /// Finds the end of `entry`, which becomes active now, and the offset of its frame from the present
-    /// one. Distances count from `from` (u), and so does the way to a target. Returns its start in its
-    /// frame (u).
+    /// Finds the end of `entry`, which becomes active now, and the offset of its frame from the present one.
+    /// Distances, and the direction to a target, count from `from` (u). Returns its start in its frame (u).
     ///
     /// Cost: on a modulo axis at most two ramps.
     #[inline]
@@ -234,8 +230,8 @@ impl<P: Planner> Axis<P> {
         self.aim_from(entry, &here, from)
     }
 
-    /// The same for the command at the head of the buffer, and how it is to pass its end: what passes it in motion need not be
-    /// able to stop before it.
+    /// The same for the command at the head of the buffer, and how it passes its end. A command that passes its end
+    /// in motion need not be able to stop before it.
     ///
     /// Cost: on a modulo axis at most four ramps, and that of [`Axis::look_through`].
     pub(super) fn aim_passing(&self, entry: &mut Entry, from: f64) {
@@ -250,7 +246,7 @@ impl<P: Planner> Axis<P> {
         self.aim(entry, from);
     }
 
-    /// As [`Axis::aim`] from the state `here`.
+    /// The same as [`Axis::aim`], from the state `here`.
     #[inline(never)]
     pub(super) fn aim_from(&self, entry: &mut Entry, here: &Setpoint, from: f64) -> f64 {
         match &self.modulo {
@@ -277,7 +273,7 @@ impl<P: Planner> Axis<P> {
             }
             (Some(Place::At(target)), None) => {
                 let (turns, target) = split(target, length);
-                // In the frame it will move in, for later calls.
+                // The target in the frame of its motion, for later calls.
                 entry.work = entry.work.at(target);
                 (turns, Some(target))
             }
@@ -290,8 +286,8 @@ impl<P: Planner> Axis<P> {
         back_by(start.position, entry.turns, length)
     }
 
-    /// The end of a command in a chain, counted from `from` (u) in the frame of the command before, after
-    /// a motion that went `forward` or not. `None` if it has no end.
+    /// The end of a command in a chain, counted from `from` (u) in the frame of the command before. The motion before
+    /// was `forward` or not. `None` if it has no end.
     pub(super) fn end_of_leg(&self, entry: &Entry, from: f64, forward: bool) -> Option<f64> {
         let (Some(modulo), Some(Place::At(target)), Some(direction)) =
             (&self.modulo, entry.place(), entry.direction)
@@ -314,7 +310,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The direction a move must take: `None` for the shortest way.
+    /// The direction that a move must take: `None` for the shortest way.
     fn heading(&self, direction: Direction, forward: bool) -> Option<bool> {
         match direction {
             Direction::Unset | Direction::ShortestWay => None,
@@ -324,9 +320,9 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether `entry` passes its `target` from `here` without turning, with a `velocity` or with as much as the next command may begin with. To
-    /// slow down may take more way than a stop, where jerk and snap bind. A ramp takes whole scans, which a plan past a target need not: what
-    /// is slowing down for it already goes on so.
+    /// Whether `entry` passes its `target` from `here` without turning: with a `velocity`, or at most as fast as the
+    /// next command may begin. Slowing down may take a longer distance than a stop if jerk and snap limit it. A ramp
+    /// takes whole scans. A plan past a target need not, so a motion that already slows down for it can continue.
     fn passes_onward(
         &self,
         entry: &Entry,
@@ -349,7 +345,7 @@ impl<P: Planner> Axis<P> {
         planned.is_some_and(|plan| !self.turns(&plan, velocity > 0.0))
     }
 
-    /// `turns`, plus those that a motion from `start` needs to slow down if it must not turn back (B8).
+    /// `turns`, plus the turns that a motion from `start` needs to slow down if it must not turn back (B8).
     pub(super) fn never_back(
         &self,
         entry: &Entry,
@@ -366,12 +362,12 @@ impl<P: Planner> Axis<P> {
             return turns;
         }
         if start.is_at_rest() {
-            // It may have come to rest behind its target.
+            // It may have come to rest beyond its target.
             let to_target = target - back_by(start.position, turns, length);
             let missing = if forward { -to_target } else { to_target };
             return with_further(turns, missing - ROUNDING * length, length, forward);
         }
-        // One motion need not stop before its goal.
+        // As one motion it need not stop before the end of the last command.
         let (target, passage) = if entry.run.count > 0 {
             (entry.run.end, entry.run.passage)
         } else {
@@ -393,7 +389,7 @@ impl<P: Planner> Axis<P> {
         };
         let to_target = target - here.position;
         let missing_to = |velocity: f64| {
-            // The speed it is passed with may be above its own limit.
+            // The velocity at its target may be above its own limit.
             let limits = Limits {
                 velocity: entry.limits.velocity.max(velocity.abs()),
                 ..entry.limits
@@ -403,7 +399,7 @@ impl<P: Planner> Axis<P> {
             let missing = if forward { way - to_target } else { to_target - way };
             Some(missing - ROUNDING * way.abs())
         };
-        // If the stop cannot be planned, the move cannot be planned either; planning it gives the reason.
+        // If the stop can't be planned, the move can't be planned either; planning it returns the reason.
         let Some(missing) = missing_to(velocity) else {
             return turns;
         };
@@ -419,7 +415,7 @@ impl<P: Planner> Axis<P> {
     }
 }
 
-/// `turns`, and as many `forward` or not as cover what is `missing` of a way (u).
+/// `turns`, plus the turns in one direction that cover a `missing` distance (u).
 fn with_further(turns: i64, missing: f64, length: f64, forward: bool) -> i64 {
     if missing <= 0.0 {
         return turns;
@@ -433,14 +429,13 @@ fn with_further(turns: i64, missing: f64, length: f64, forward: bool) -> i64 {
     }
 }
 
-/// `position` (u) in a frame `turns` whole turns further on.
+/// `position` (u) in a frame that is `turns` whole turns ahead.
 fn back_by(position: f64, turns: i64, length: f64) -> f64 {
     let (whole, error) = two_product(turns as f64, length);
     (position - whole) - error
 }
 
-/// Turns and target of a way `distance` (u) from `from`. Whole turns are separated, so that the rest
-/// keeps its last bits.
+/// Turns and target of a `distance` (u) from `from`. Whole turns are separated, so that the rest keeps its last bits.
 fn beyond(from: f64, distance: f64, length: f64) -> (i64, f64) {
     let (from_turns, here) = split(from, length);
     let (turns, rest) = split(distance.abs(), length);
@@ -453,8 +448,7 @@ fn beyond(from: f64, distance: f64, length: f64) -> (i64, f64) {
     (from_turns.saturating_add(turns).saturating_add(further), target)
 }
 
-/// The number of turns to `target`, in the first turn, from `from` (u), `forward` or not, or by the
-/// shortest way.
+/// The number of turns to `target`, in the first turn, from `from` (u): `forward` or not, or the shortest way.
 fn turns_to(target: f64, from: f64, length: f64, forward: Option<bool>) -> i64 {
     let (turns, here) = split(from, length);
     let ahead = if target >= here {

@@ -1,9 +1,10 @@
-//! The owner is planned anew in motion: new override factors, new values at its pins, a successor to blend with.
+//! Plans the owner anew in motion: for new override factors, new values at its pins, or a blended successor.
 //!
-//! The motion goes on from the last set-point, so nothing steps. Until the state is inside the new limits the
-//! largest of those that held since the command began hold too, getting inside comes first, and what no ramp can
-//! avoid is recorded. Something superimposed goes on if the sum stays inside the limits of the axis. If not, the
-//! owner takes over the velocity of the sum and what is left to superimpose starts again when there is room.
+//! The motion continues from the last set-point, so the set-point has no step. If the state is outside the new
+//! limits, the largest limits since the command began apply too until it is inside. The motion first gets inside. An
+//! excess that no ramp can avoid is recorded. A superimposed motion continues if the sum stays inside the limits of
+//! the axis. If not, the owner takes over the velocity of the sum, and the rest of the distance starts again when
+//! there is room.
 //!
 //! Source: PLCopen Motion Control Part 1, sections on ContinuousUpdate and MC_SetOverride; R9, R12, B15 to B17.
 
@@ -17,14 +18,14 @@ use crate::{ErrorId, Event, Goal, Scope};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
-    /// Plans `owner`, the present one with other values, from the present state. With something superimposed it
-    /// may find no room just now: then it is tried again in every scan.
+    /// Plans `owner`, the present owner with other values, from the present state. If a superimposed motion leaves no
+    /// room now, it is tried again in every scan.
     ///
-    /// Cost: at most two plans, four more where those exceed the limits of the axis, and two checks of a sum; on a modulo axis a ramp more; for each command that waits
-    /// blended a ramp, at most a root of ramps.
+    /// Cost: at most two plans, four more if those exceed the limits of the axis, and two checks of a sum. On a
+    /// modulo axis one more ramp. For each blended command that waits a ramp, at most a root of ramps.
     ///
     /// # Errors
-    /// What the planner or the software limits refuse; nothing changes then.
+    /// The refusal of the planner or of the software limits; nothing changes then.
     pub(super) fn replan(&mut self, mut owner: Entry, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         let here = self.mover.base();
         owner.turns = 0;
@@ -33,16 +34,16 @@ impl<P: Planner> Axis<P> {
         self.replan_aimed(owner, scope)
     }
 
-    /// The same for an owner whose end has been found in the frame it is to move in.
+    /// The same for an owner whose end is known in the frame in which it will move.
     pub(super) fn replan_aimed(&mut self, mut owner: Entry, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         if owner.paused {
-            // It goes on with these values when it may.
+            // It continues with these values when it is permitted.
             self.own(owner);
             return Ok(());
         }
         match self.plan_anew(owner, scope) {
             Err(error @ (ErrorId::PositiveBarred | ErrorId::NegativeBarred)) => {
-                // The motion in progress is still that of the owner as it was: a halt comes to rest anywhere.
+                // The motion in progress still is that of the unchanged owner. A halt comes to rest anywhere.
                 if let Some(mut was) = self.owner {
                     self.note_passing(&mut was);
                     owner.passed |= was.passed;
@@ -55,7 +56,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The same for one that may be paused, and goes on with this.
+    /// The same for an owner that may be paused; it then continues with this plan.
     pub(super) fn plan_anew(&mut self, mut owner: Entry, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         if let Some(error) = self.barred_from_there_on(&owner) {
             return Err(error);
@@ -97,8 +98,8 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
-    /// Plans `owner` with something superimposed, which goes on if there is room for it; `None` if it must wait. Its limits are
-    /// raised where the axis could not be kept inside its own with them.
+    /// Plans `owner` under a superimposed motion, which continues if there is room for it; `None` if `owner` must
+    /// wait. Its limits are raised if they can't keep the axis inside its own.
     #[inline(never)]
     fn plan_beside(
         &mut self,
@@ -133,7 +134,7 @@ impl<P: Planner> Axis<P> {
         Ok(Some(motion))
     }
 
-    /// A plan that had to wait for something superimposed is tried again.
+    /// Tries a plan again that had to wait for a superimposed motion.
     #[cold]
     pub(super) fn replan_late(&mut self, scope: &mut Scope<'_>) {
         self.replan_due = false;
@@ -143,28 +144,28 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Notes that an endless owner has passed the place it led through: what comes leads from there on.
+    /// Notes that an endless owner has passed its position. A new plan of it continues from there.
     pub(super) fn note_passing(&self, owner: &mut Entry) {
         let through = matches!(owner.work, Work::Through { .. });
         owner.passed |= through && !owner.halted && !owner.paused && !self.replan_due && self.goal_reached();
     }
 
-    /// An owner that must not turn back goes on to the next time round if it can't stop before its target, or come down to the
-    /// speed it is to pass it with (B8).
+    /// For an owner that must not turn back: if it can't stop before its target, or slow down to the velocity at its
+    /// target, it adds turns (B8).
     pub(super) fn stay_in_direction(&self, owner: &mut Entry, here: &Setpoint) {
         let (Some(modulo), Some(Place::At(_)), Some(end), Some(_)) =
             (&self.modulo, owner.place(), owner.end, owner.direction)
         else {
             return;
         };
-        // Too late for another plan it goes on as planned.
+        // If it is too late for another plan, it continues as planned.
         if !owner.halted && !owner.passed && !owner.is_behind && !self.passes_as_planned(owner) {
             owner.turns = self.never_back(owner, here, end, 0, modulo.length);
         }
     }
 
-    /// The limits that hold for the owner's motion in its present state: its own, and until it is inside them
-    /// those it took over from, too. None if it has no motion. Cost: at most one ramp.
+    /// The limits that apply to the owner's motion in its present state: its own, and also those of the motion it
+    /// took over from until it is inside its own. None if it has no motion. Cost: at most one ramp.
     pub(super) fn limits_of_owner(&self) -> Option<Limits> {
         if !matches!(
             self.mover.motion(),
@@ -175,8 +176,9 @@ impl<P: Planner> Axis<P> {
         Some(self.limits_in_state(&self.mover.base(), self.mover.in_force(), self.mover.before()))
     }
 
-    /// `own` limits of a motion in `state`, and those `before` until it is inside, but no more of them than slaves leave if that
-    /// is enough, or no more of their rates. Cost: at most one ramp, with slaves three.
+    /// `own` limits of a motion in `state`, and also those `before` until it is inside its own. If that is enough,
+    /// only the part of them that slaves leave, or only the part of their rates. Cost: at most one ramp, with slaves
+    /// three.
     pub(super) fn limits_in_state(&self, state: &Setpoint, own: &Limits, before: &Limits) -> Limits {
         let wider = own.or_larger(before);
         let held = if wider == *own || self.is_inside(state, own) {
@@ -196,7 +198,7 @@ impl<P: Planner> Axis<P> {
         [slowed, at_speed].into_iter().find(fits).unwrap_or(held)
     }
 
-    /// Whether a motion can go on from `state` without leaving `limits`.
+    /// Whether a motion can continue from `state` without exceeding `limits`.
     #[inline(never)]
     fn is_inside(&self, state: &Setpoint, limits: &Limits) -> bool {
         self.planner
@@ -204,8 +206,8 @@ impl<P: Planner> Axis<P> {
             .is_ok_and(|ramp| ramp.excess().is_none())
     }
 
-    /// Whether an axis in this state can come to rest within `limits`, even if it turns back for that: then it can do anything
-    /// within them. Cost: one ramp.
+    /// Whether an axis in this state can come to rest within `limits`, even if it has to turn back. It can then make
+    /// any motion within them. Cost: one ramp.
     pub(super) fn stops_within(&self, state: &Setpoint, limits: &Limits) -> bool {
         let Ok(stop) = self.planner.ramp_to(state, 0.0, limits, limits) else {
             return false;
@@ -214,7 +216,7 @@ impl<P: Planner> Axis<P> {
         keeps_rates(&stop) && most.is_some_and(|most| most <= limits.velocity * (1.0 + ROUNDING))
     }
 
-    /// Sets `entry`, which is the owner or becomes it, in motion.
+    /// Starts `motion` for `entry`, which is or becomes the owner.
     pub(super) fn adopt(&mut self, entry: Entry, motion: Motion<P::Plan>, scope: &mut Scope<'_>) {
         match &motion {
             Motion::Run { plan, scans, .. } if entry.run.count == 0 => {
@@ -226,7 +228,7 @@ impl<P: Planner> Axis<P> {
             _ => {}
         }
         if matches!(motion, Motion::Torque { .. }) {
-            // A torque that may go on again, or was given new values, needs care in every scan.
+            // A torque that may continue, or has new values, must be checked in every scan.
             self.stir();
         }
         self.mover
@@ -247,7 +249,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Records `plan`, whose goal it comes to in the scan `scans`.
+    /// Records `plan`, which reaches its goal in the scan `scans`.
     fn record_plan(&self, entry: &Entry, plan: &P::Plan, scans: u64, scope: &mut Scope<'_>) {
         let scope = &mut scope.with(entry.instance);
         let positioning = entry.work.manner().ending == Ending::InPosition;
