@@ -12,8 +12,8 @@ use crate::{
 use standstill_planner::{Limits, Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
-    /// Takes a command, or refuses it without any effect on the axis or the queue (R38). A command that follows a master
-    /// is for [`couple`](crate::couple()), which sees all axes.
+    /// Takes a command, or refuses it without any effect on the axis or the queue (R38). Give a command that follows
+    /// a master to [`couple`](crate::couple()), which sees all axes.
     ///
     /// Cost: at most one plan. A blended command that waits costs in addition a ramp, or at most a root
     /// of ramps, for each waiting command, and the owner's plan with a blended end.
@@ -346,7 +346,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A motion by way of a place.
+    /// A motion through a position.
     fn through(
         &self,
         to: Place,
@@ -422,8 +422,8 @@ impl<P: Planner> Axis<P> {
         self.kept_inside(entry, motion, self.mover.setpoint(), &before)
     }
 
-    /// Plans a command from `start`, whose motion was within `before`, as far as it is one motion with what waits behind it: the
-    /// entry then says what is.
+    /// Plans a command from `start`, a state of a motion within `before`. If waiting commands are one motion with it,
+    /// plans to the end of the last of them; `entry` then holds their run.
     pub(super) fn plan_from(
         &self,
         entry: &mut Entry,

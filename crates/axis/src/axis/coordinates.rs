@@ -1,8 +1,8 @@
-//! Moving coordinates: MC_SetPosition, and the new name that MC_Home gives.
+//! Shifts of the coordinates: MC_SetPosition, and the position that MC_Home sets.
 //!
-//! The axis keeps its place and its motion; only the names of places change. Set and actual position
-//! change by the same amount, so neither the following error nor the velocity has a step. A drive that
-//! counts increments gets the same increments as before.
+//! The axis keeps its place and its motion; only the values of positions change. Set and actual position change by
+//! the same amount, so neither the following error nor the velocity has a step. A drive that counts increments gets
+//! the same increments as before.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_SetPosition; V15, T39 i.
 
@@ -17,17 +17,16 @@ impl<P: Planner> Axis<P> {
     /// set position changes by the same amount. Works in every state, at rest and in motion, and never
     /// changes the state.
     ///
-    /// A running absolute move keeps the number of its target, so its remaining way changes: it is
-    /// planned anew from the present state. All other motions continue unchanged. With `mcQueued` the
-    /// command waits like a buffered one while the axis has an owner.
+    /// A running absolute move keeps the value of its target, so its remaining distance changes: it is planned anew
+    /// from the present state. All other motions continue unchanged. With `mcQueued` the command waits like a
+    /// buffered one while the axis has an owner.
     ///
     /// Cost: at most one plan.
     ///
     /// # Errors
-    /// The [`ErrorId`] the block shows. Causes: a position that is not finite or outside the first turn
-    /// of a modulo axis; a position so large that two set-points would have the same number, or in motion
-    /// have it now; an undefined mode; a full buffer; a move that could not be planned anew. Nothing
-    /// changes then.
+    /// The [`ErrorId`] the block shows. Causes: a position that is not finite or outside the first turn of a modulo
+    /// axis; a position so large that two set-points could not be distinguished, or in motion such a present position;
+    /// an undefined mode; a full buffer; a move that could not be planned anew. Nothing changes then.
     pub fn set_position(
         &mut self,
         position: f64,
@@ -51,8 +50,8 @@ impl<P: Planner> Axis<P> {
         Ok(id)
     }
 
-    /// Whether the next command in the buffer moves the coordinates. It takes effect at the next latch,
-    /// so that this scan still publishes its set-point.
+    /// Whether the next command in the buffer shifts the coordinates. It takes effect at the next latch, so that this
+    /// scan still publishes its set-point.
     pub(super) fn queue_waits_for_shift(&mut self) -> bool {
         self.stir();
         self.shift_due = self
@@ -62,8 +61,7 @@ impl<P: Planner> Axis<P> {
         self.shift_due
     }
 
-    /// Moves the coordinates as the commands at the head of the buffer say. Then the next command becomes
-    /// active.
+    /// Shifts the coordinates for the commands at the head of the buffer. Then the next command becomes active.
     #[cold]
     pub(super) fn take_queued_shifts(&mut self, scope: &mut Scope<'_>) {
         for _ in 0..QUEUE_MAX {
@@ -84,8 +82,8 @@ impl<P: Planner> Axis<P> {
         self.hand_over(self.mover.setpoint().position, scope);
     }
 
-    /// A number that grows whenever coordinates move (MC_SetPosition, MC_Home), and wraps. Positions
-    /// taken at different numbers cannot be compared.
+    /// A number that grows with each shift of the coordinates (MC_SetPosition, MC_Home), and wraps. Positions taken
+    /// at different numbers can't be compared.
     pub fn coordinates(&self) -> u32 {
         self.frame.moves()
     }
@@ -101,13 +99,13 @@ impl<P: Planner> Axis<P> {
         } else {
             position - self.feedback.position()
         };
-        // Whole turns change only the resolution of what is planned.
+        // Whole turns would only change the resolution of plans.
         let by = match &self.modulo {
             Some(modulo) if by.abs() >= modulo.length => split(by, modulo.length).1,
             _ => by,
         };
-        // If no turns are counted, an axis without lag is exactly at the requested number, however far it
-        // was.
+        // Without turns, an axis without following error is set to exactly the requested value, however far the
+        // shift.
         let at = if !relative
             && self.modulo.is_none()
             && self.mover.setpoint().position == self.feedback.position()
@@ -119,8 +117,7 @@ impl<P: Planner> Axis<P> {
         let is_finite = at.is_finite()
             && (self.feedback.position() + by).is_finite()
             && (self.frame.shift() + by).is_finite();
-        // If set-points were equal at the old numbers, their difference cannot be recovered at the new
-        // ones.
+        // If set-points were equal in the old coordinates, their difference can't be recovered in the new ones.
         let is_resolved = self.is_resolved(at)
             && (self.mover.setpoint().is_at_rest() || self.is_resolved(self.mover.setpoint().position));
         if !(is_finite && is_resolved) {
@@ -152,7 +149,7 @@ impl<P: Planner> Axis<P> {
         if self.config.scaling.is_some() {
             self.frame.shift_by(by);
         } else {
-            // Out of operation the drive stands at its actual position, to which it may have been pushed.
+            // Out of operation the drive is at its actual position, to which it may have been pushed.
             self.frame.rename(self.setpoint().position);
         }
         self.watch_anew();
@@ -161,14 +158,14 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
-    /// Whether a 64-bit number distinguishes `position` (u) from the position one scan later at the
-    /// velocity limit. An axis at other numbers could not move, and its slaves would lose its motion.
+    /// Whether a 64-bit number distinguishes `position` (u) from the position one scan later at the velocity limit.
+    /// At a larger value an axis could not move, and its slaves would lose its motion.
     pub(super) fn is_resolved(&self, position: f64) -> bool {
         position.abs() * f64::EPSILON <= self.config.limits.velocity * self.planner.cycle()
     }
 
-    /// Moves the motion in progress to coordinates that are `by` (u) larger. An absolute move is planned
-    /// anew to the same number; all others continue unchanged.
+    /// Moves the motion in progress to coordinates that are `by` (u) larger. An absolute move is planned anew to the
+    /// same value; all others continue unchanged.
     fn move_motion(&mut self, by: f64, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         let is_halted = self.owner.as_ref().is_some_and(|owner| owner.halted);
         if self.is_paused() || is_halted {
@@ -190,20 +187,20 @@ impl<P: Planner> Axis<P> {
         };
         let start = self.aim(&mut owner, self.mover.setpoint().position);
         self.look_through(&mut owner, start, 0);
-        // With a superimposed motion there may be no room at this time.
+        // A superimposed motion may leave no room now.
         let motion = self.plan_next(&mut owner)?.ok_or(ErrorId::InMotion)?;
         self.mover.take_over_from(self.limits_before(&owner.limits));
         self.adopt(owner, motion, scope);
         Ok(())
     }
 
-    /// Informs the parts of the axis that coordinates moved by `by` (u).
+    /// Notes and records that coordinates were shifted by `by` (u).
     pub(super) fn tell_moved(&mut self, by: f64, scope: &mut Scope<'_>) {
         self.frame.note_moved(scope.scan, by);
         self.record(Event::Shifted { by }, scope);
     }
 
-    /// The present position has the value `position` (u) from now on (MC_Home).
+    /// Sets the present position to `position` (u) (MC_Home).
     pub(super) fn call_set_position(&mut self, position: f64, scope: &mut Scope<'_>) {
         let by = position - self.mover.setpoint().position;
         if by != 0.0 {

@@ -26,8 +26,8 @@ struct Magnitude {
     above: ErrorId,
 }
 
-/// `limits` of a motion; what the pins ask for above those stays as it was given, because the override finds the limits of its time. Snap
-/// has no factor.
+/// `limits` of a motion, but with the larger values of the pins. The override needs the values as given, because it
+/// applies the limits in force at its time. Snap has no factor.
 pub(super) fn as_given(pins: &Dynamics, limits: &Limits) -> Limits {
     limits.or_larger(&Limits {
         velocity: pins.velocity.abs(),
@@ -173,7 +173,7 @@ impl<P: Planner> Axis<P> {
         self.within("EndVelocity", value, limit, above, scope)
     }
 
-    /// Limits of a ramp that no command asked for: power-off, ErrorStop.
+    /// Limits of a ramp without a command: power-off, ErrorStop.
     pub(super) fn stop_limits(&self) -> Limits {
         let limits = self.config.limits;
         let stop = self.config.stop.unwrap_or(StopLimits {
@@ -189,7 +189,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Limits that no motion of the axis exceeds, stops included.
+    /// Limits that no motion of the axis exceeds, not even a stop.
     pub(super) fn hardest_limits(&self) -> Limits {
         match self.config.stop {
             Some(_) => self.config.limits.or_larger(&self.stop_limits()),

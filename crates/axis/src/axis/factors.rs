@@ -57,11 +57,11 @@ impl Factors {
     }
 }
 
-/// `asked`, lowered to `limit`, times `factor`, in magnitude at most `limit`; 0 only where one of them is.
+/// `asked`, lowered to `limit`, times `factor`, in magnitude at most `limit`; 0 only if one of them is 0.
 fn scaled(asked: f64, factor: f64, limit: f64) -> f64 {
     let asked = lowered(asked, limit);
     let product = asked * factor;
-    // What is too small for a number is slow and not a command to stand still, which no limit is.
+    // A product too small for a number means slow. It must not become 0, because no limit is 0.
     let value = if product == 0.0 && asked != 0.0 && factor != 0.0 {
         f64::MIN_POSITIVE.copysign(asked)
     } else {

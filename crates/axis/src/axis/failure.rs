@@ -58,7 +58,7 @@ impl Failure {
         self.reset = None;
     }
 
-    /// Counts a scan of the reset in progress. Returns TRUE if a drive should have answered it by now.
+    /// Counts a scan of the reset in progress. Returns TRUE if the time for an answer of the drive is over.
     pub fn waits_too_long(&mut self) -> bool {
         self.reset.as_mut().is_some_and(|reset| {
             reset.waited = reset.waited.saturating_add(1);

@@ -2,8 +2,8 @@
 
 use standstill_planner::turns::split;
 
-/// The actual position of this scan and of the two before, and the reasons why they may not be comparable
-/// with the next one. What every scan looks at comes last, beside more of that in an axis.
+/// The actual position of this scan and of the two before, and the reasons why they may not be comparable with the
+/// next one. Fields that every scan reads come last; in an axis they are next to others of that kind.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct Feedback {
@@ -23,7 +23,7 @@ struct Seam {
     first: bool,
     /// Scans without a fresh position.
     lost: u32,
-    /// The old name (u) of a position, and the new one (u).
+    /// The old value (u) of a position, and the new one (u).
     renamed: Option<(f64, f64)>,
 }
 
@@ -47,12 +47,12 @@ impl Feedback {
         self.position
     }
 
-    /// The way since the scan before (u).
+    /// The travel since the scan before (u).
     pub fn step(&self) -> f64 {
         self.position - self.before
     }
 
-    /// The way in the scan before (u).
+    /// The travel in the scan before (u).
     pub fn step_before(&self) -> f64 {
         self.before - self.earlier
     }
@@ -70,7 +70,7 @@ impl Feedback {
         self.position = position;
     }
 
-    /// The same if the earlier positions may need new names; `length` (u) is that of a turn.
+    /// The same if the earlier positions may have to be shifted; `length` (u) is that of a turn.
     pub fn latch_and_mend(&mut self, position: f64, length: Option<f64>) {
         self.latch(position);
         if self.seam.is_some() {
@@ -87,26 +87,25 @@ impl Feedback {
         seam.lost = seam.lost.saturating_add(1);
     }
 
-    /// Renames positions: from the next one on, `old` (u) is called `name` (u). No motion.
+    /// Shifts the coordinates without motion: from the next latch on, the position `old` (u) has the value `name`
+    /// (u).
     pub fn rename(&mut self, old: f64, name: f64) {
         self.seam.get_or_insert_default().renamed = Some((old, name));
     }
 
-    /// Renames all positions so far: each is `by` (u) more. No motion.
+    /// Shifts all positions so far by `by` (u), without motion.
     pub fn shift(&mut self, by: f64) {
         self.position += by;
         self.before += by;
         self.earlier += by;
     }
 
-    /// Gives the present position exactly this name (u), after a shift by a rounded difference, or a turn
-    /// less.
+    /// Sets the present position to exactly this value (u), after a shift by a rounded difference, or by a turn.
     pub fn call(&mut self, position: f64) {
         self.position = position;
     }
 
-    /// Renames the earlier positions so that they are nearest to the later ones, on an axis with turns of
-    /// `length` (u).
+    /// Shifts the earlier positions by turns of `length` (u), so that each is nearest to the later one.
     #[inline]
     pub fn come_round(&mut self, length: f64) {
         let half = length / 2.0;
@@ -123,12 +122,11 @@ impl Feedback {
     fn mend(&mut self, actual: f64) {
         let seam = self.seam.take().unwrap_or_default();
         if seam.first {
-            // Before the first scan the axis stood still, wherever it was.
+            // Before the first scan the axis counts as at rest, at any position.
             (self.before, self.earlier) = (actual, actual);
         }
         if let Some((old, name)) = seam.renamed {
-            // A position equal to the old name gets the new name exactly, without the rounding of a
-            // shift.
+            // A position equal to the old value gets the new value exactly, without the rounding of a shift.
             let shifted = |place: f64| {
                 if place == old { name } else { place + (name - old) }
             };

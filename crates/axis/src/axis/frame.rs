@@ -1,21 +1,20 @@
-//! The names of positions: the offset between the names of an axis and those of its drive, and the scans
-//! in which it changed.
+//! The coordinates: the offset between positions of an axis and of its drive, and the scans in which it changed.
 
-/// The names of positions.
+/// The coordinates of an axis.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Frame {
-    /// The offset of positions from what increments say (u); 0 for drives that use units.
+    /// The offset of positions from those of the increments (u); 0 for drives that use units.
     shift: f64,
-    /// The new name of the drive's present commanded position (u); none for drives that count increments.
+    /// The new value of the drive's present commanded position (u); none for drives that count increments.
     rename: Option<f64>,
-    /// The number of moves of the coordinates.
+    /// The number of shifts of the coordinates.
     moves: u32,
-    /// The last scan in which coordinates moved, and the distance in all (u).
+    /// The last scan with a shift, and the sum of its shifts (u).
     moved: (u64, f64),
 }
 
 impl Frame {
-    /// The offset of positions from what increments say (u).
+    /// The offset of positions from those of the increments (u).
     #[inline]
     pub fn shift(&self) -> f64 {
         self.shift
@@ -26,7 +25,7 @@ impl Frame {
         self.shift += by;
     }
 
-    /// Gives the drive's present commanded position this name (u).
+    /// Sets the drive's present commanded position to this value (u).
     pub fn rename(&mut self, position: f64) {
         self.rename = Some(position);
     }
@@ -36,36 +35,34 @@ impl Frame {
         self.rename.is_some()
     }
 
-    /// The new name for the drive, once.
+    /// The new value for the drive, once.
     pub fn take_rename(&mut self) -> Option<f64> {
         self.rename.take()
     }
 
-    /// A number that grows whenever coordinates move, and wraps. Positions taken at different numbers
-    /// cannot be compared.
+    /// A number that grows with each shift of the coordinates, and wraps. Positions taken at different numbers can't
+    /// be compared.
     pub fn moves(&self) -> u32 {
         self.moves
     }
 
-    /// Counts a move of the coordinates. Positions taken before it cannot be compared with those after
-    /// it.
+    /// Counts a shift of the coordinates. Positions from before it can't be compared with later ones.
     pub fn count_move(&mut self) {
         self.moves = self.moves.wrapping_add(1);
     }
 
-    /// The distance by which coordinates moved in `scan` (u), if that is the last scan in which they
-    /// moved; otherwise 0.
+    /// The shift of the coordinates in `scan` (u), if that is the last scan with a shift; otherwise 0.
     pub fn moved_in(&self, scan: u64) -> f64 {
         let (last, by) = self.moved;
         if last == scan { by } else { 0.0 }
     }
 
-    /// Whether coordinates moved in this scan, even by 0.
+    /// Whether coordinates were shifted in this scan, even by 0.
     pub fn has_moved_in(&self, scan: u64) -> bool {
         self.moved.0 == scan
     }
 
-    /// Notes that coordinates moved by `by` (u) in `scan`, in addition to earlier moves in it.
+    /// Notes a shift of the coordinates by `by` (u) in `scan`, in addition to earlier shifts in it.
     pub fn note_moved(&mut self, scan: u64, by: f64) {
         self.moved = (scan, self.moved_in(scan) + by);
     }

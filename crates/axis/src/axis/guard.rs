@@ -1,7 +1,8 @@
-//! The last line of defence: no set-point of a plan is further from the last one than the limits allow in one scan.
+//! The last check before publishing: no set-point of a plan is further from the last one than the limits allow in one
+//! scan.
 //!
-//! Plans are verified when they are made, and judged by tests from outside. A set-point that is still
-//! wrong is not published: the axis stops from the last good state (ErrorID 904).
+//! Plans are verified when they are made, and tests check them independently. A set-point that is wrong nevertheless
+//! is not published: the axis stops from the last good state (ErrorID 904).
 
 use super::commands::ROUNDING;
 use super::{Axis, Motion};
@@ -58,15 +59,15 @@ impl<P: Planner> Axis<P> {
         let is_last = matches!(self.mover.motion(), Motion::Run { elapsed, scans, .. } if elapsed >= scans);
         let slack = if is_last { LAST_SCAN } else { ROUNDING };
         let scan = (1.0 + slack) * self.planner.cycle();
-        // A plan may count its positions from its end, however far that is.
+        // The positions of a plan may be computed from its end, at any distance.
         let coarsest = self.mover.coarsest().max(self.mover.end_of_plan().abs());
         steps_within(self.mover.setpoint(), &next, &widest, scan, coarsest)
     }
 }
 
-/// Whether position, velocity and acceleration change from `last` to `next` in a `scan` (s) by no more than
-/// `limits` allow, and the rounding. The rounding includes that of a position of magnitude `coarsest` (u), at
-/// which the plan was or which it leads to.
+/// Whether position, velocity and acceleration change from `last` to `next` in a `scan` (s) by at most what `limits`
+/// allow, plus rounding. The rounding includes that of a position of magnitude `coarsest` (u): an earlier position of
+/// the plan, or its end.
 #[inline(always)]
 pub(super) fn steps_within(
     last: &Setpoint,
@@ -76,7 +77,7 @@ pub(super) fn steps_within(
     coarsest: f64,
 ) -> bool {
     let resolved = RESOLVED * (last.position.abs() + next.position.abs() + coarsest);
-    // `f64::max` also asks for NaN, which no limit is.
+    // `f64::max` would also check for NaN; no limit is NaN.
     let (up, down) = (limits.acceleration, limits.deceleration);
     let steepest = if up > down { up } else { down };
     (next.position - last.position).abs() <= limits.velocity * scan + resolved

@@ -1,11 +1,11 @@
 //! Homing: the search for the reference, by the controller or by the drive.
 //!
-//! A search is a series of endless motions. Each is planned anew at the latch of the scan that shows what
-//! it searched for. The reference of a switch is one of its two ends, in both directions of passing. With
-//! a creep velocity it is passed a second time, slowly and always in the same direction. Then the axis
-//! comes to rest, at some distance behind the reference, and the place of the reference gets its name.
-//! Software limits and the override do not apply. Axis errors are: a barred direction, a time or way that
-//! is too long, and a limit switch in the way.
+//! A search is a series of endless motions. Each one is planned at the latch of the scan in which the signal of the
+//! one before was found. The reference of a switch is one of its two ends, for both directions of passing it. With a
+//! creep velocity that end is passed a second time, slowly and always in the same direction. Then the axis comes to
+//! rest, at some distance behind the reference, and the reference gets its position. Software limits and the override
+//! do not apply. A barred direction, a time or distance that is too long, and a limit switch on the path are axis
+//! errors.
 //!
 //! A drive that homes by itself leads, and the set-point follows it until the drive obeys the command
 //! again.
@@ -40,7 +40,7 @@ enum Phase {
     Found,
     /// The drive homes by itself.
     Drive,
-    /// The same; the drive has named its positions anew.
+    /// The drive homes by itself, and has shifted its positions.
     Named,
     /// The drive has homed, and must return to the command.
     Return,
@@ -50,7 +50,7 @@ enum Phase {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Search {
     phase: Phase,
-    /// Towards larger positions.
+    /// The search moves towards larger positions.
     up: bool,
     /// It has reversed at a limit switch.
     turned: bool,
@@ -60,18 +60,18 @@ pub(super) struct Search {
     scans: u64,
     /// Scans in a row with less than the velocity of a stop.
     still: u32,
-    /// Way since the start (u), and the place of the reference (u).
+    /// Travel since the start (u), and the position of the reference (u).
     way: f64,
     reference: f64,
 }
 
 impl Search {
-    /// Nothing is looked for.
+    /// Whether there is no search.
     pub fn is_idle(&self) -> bool {
         self.phase == Phase::Idle
     }
 
-    /// Everything, as bits.
+    /// The whole state, as bits.
     pub fn bits(&self) -> [u64; 5] {
         let flags = [self.up, self.turned, self.was_on].map(u64::from);
         [
@@ -83,7 +83,7 @@ impl Search {
         ]
     }
 
-    /// Coordinates moved by this distance (u).
+    /// Shifts the coordinates by this distance (u).
     pub fn shift(&mut self, by: f64) {
         self.reference += by;
     }
@@ -116,7 +116,7 @@ impl<P: Planner> Axis<P> {
             Procedure::Drive => (Phase::Drive, true),
             Procedure::ReferencePulse => (Phase::Pulse, homing.direction.is_up()),
             Procedure::Block => (Phase::Block, homing.direction.is_up()),
-            // On the switch, the axis only has to leave it.
+            // On the switch, the axis only has to move off it.
             Procedure::LimitSwitch if was_on => (Phase::Creep, !homing.direction.is_up()),
             Procedure::LimitSwitch => (Phase::Search, homing.direction.is_up()),
             Procedure::AbsoluteSwitch => {
@@ -128,7 +128,7 @@ impl<P: Planner> Axis<P> {
                     HomeDirection::SwitchPositive => !was_on,
                     HomeDirection::SwitchNegative => was_on,
                 };
-                // Behind a limit switch there is nothing to search.
+                // On a limit switch there is nothing to search further out.
                 (Phase::Search, up != self.is_on_limit_switch(up))
             }
         };
@@ -149,7 +149,7 @@ impl<P: Planner> Axis<P> {
             Phase::Creep | Phase::Pulse => homing.creep.unwrap_or(homing.velocity),
             Phase::Idle | Phase::Found | Phase::Drive | Phase::Named | Phase::Return => return None,
         };
-        // The application, or a slave, may have lowered the limit since.
+        // The application or a slave may have lowered the limit since.
         let speed = speed.min(self.slowed(&self.parameters.limits).velocity);
         Some(if search.up { speed } else { -speed })
     }
@@ -174,7 +174,7 @@ impl<P: Planner> Axis<P> {
     /// The reason why a homing may not go in its direction.
     fn homing_barred(&self, search: &Search) -> Option<ErrorId> {
         let permitted = self.power.permitted();
-        // Where a switch makes it reverse, it needs no permission from the switch.
+        // If it reverses at a switch, that switch does not bar its direction.
         let turns = matches!(
             self.config.homing.procedure,
             Procedure::AbsoluteSwitch | Procedure::LimitSwitch
@@ -204,13 +204,13 @@ impl<P: Planner> Axis<P> {
         !self.homing.is_idle() || self.moves_itself() || self.is_to_return()
     }
 
-    /// Whether the search goes towards a limit switch on purpose, or is on the way back from one.
+    /// Whether the search moves towards a limit switch on purpose, or back from one.
     pub(super) fn turns_at_limit_switch(&self, up: bool) -> bool {
         let search = &self.homing;
         self.state == AxisState::Homing && (search.phase == Phase::Search || search.up != up)
     }
 
-    /// The switch to search for; `up`: the last approach goes towards larger positions.
+    /// The switch to search for. With `up` the last approach moves towards larger positions.
     fn home_signal(&self, up: bool) -> bool {
         match self.config.homing.procedure {
             Procedure::AbsoluteSwitch => self.signals.home_switch,
@@ -236,7 +236,7 @@ impl<P: Planner> Axis<P> {
         }
         let is_up = if step == 0.0 { search.up } else { step > 0.0 };
         let on = self.home_signal(homing.direction.is_up());
-        // The end of the switch that was passed. Upwards, the lower end switches it on.
+        // The end of the switch that was passed. Towards larger positions the lower end switches it on.
         let passed = (on != search.was_on).then_some(on == is_up);
         search.was_on = on;
         self.homing = search;
@@ -247,7 +247,7 @@ impl<P: Planner> Axis<P> {
             return self.trip(ErrorId::HomingTooFar, 0, Reaction::Ramp, scope);
         }
         let wanted = match homing.procedure {
-            // Its inner end.
+            // The inner end of the limit switch.
             Procedure::LimitSwitch => homing.direction.is_up(),
             _ => homing.is_lower_end(),
         };
@@ -290,7 +290,7 @@ impl<P: Planner> Axis<P> {
         let homing = &self.config.homing;
         let approach = homing.direction.is_up();
         if homing.procedure == Procedure::LimitSwitch {
-            // The reference is where it goes off again.
+            // The reference is the position at which it switches off again.
             return self.go_on(Phase::Creep, !approach, scope);
         }
         match homing.creep {
@@ -347,7 +347,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The reference is at `reference` (u): the axis comes to rest, or first moves `to` a place (u).
+    /// The reference is at `reference` (u): the axis comes to rest, or first moves `to` a position (u).
     fn found(&mut self, reference: f64, to: Option<f64>, scope: &mut Scope<'_>) {
         self.homing.reference = reference;
         self.homing.phase = Phase::Found;
@@ -378,8 +378,8 @@ impl<P: Planner> Axis<P> {
         });
     }
 
-    /// The motion of a step, which `planned` makes of its limits and those before. They are raised where they would
-    /// take the axis out of its own.
+    /// The motion of a step, which `planned` makes from its limits and those before. They are raised if they would
+    /// take the axis beyond its own.
     fn go_along(
         &mut self,
         scope: &mut Scope<'_>,
@@ -400,12 +400,12 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A homing at its goal: the reference gets its name.
+    /// A homing at its goal: the reference gets its position.
     #[cold]
     pub(super) fn settle_homing(&mut self, position: f64, scope: &mut Scope<'_>) {
         if self.homing.phase == Phase::Found && matches!(self.mover.motion(), Motion::Run { .. }) {
-            // A drive takes the new name for the set-point it has, so it must get the last set-point of
-            // the ramp first.
+            // A drive sets the new position for its present set-point, so it must get the last set-point of the ramp
+            // first.
             self.mover.hold();
             return;
         }
@@ -429,7 +429,7 @@ impl<P: Planner> Axis<P> {
         self.complete(scope);
     }
 
-    /// A place (u) as programs see it.
+    /// A position (u) as programs see it.
     fn shown_place(&self, place: f64) -> f64 {
         self.modulo.as_ref().map_or(place, |modulo| modulo.in_turn(place))
     }

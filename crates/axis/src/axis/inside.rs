@@ -1,9 +1,9 @@
 //! Keeping the axis inside its limits when a command takes over.
 //!
-//! A command may ask for less jerk or snap than the motion it takes over from. From some states only the
-//! earlier motion's own limits can brake in time; with the command's limits the velocity would exceed
-//! that of the axis. An excess that the earlier limits or the axis limits can avoid is not unavoidable,
-//! so the command gets those limits, as far as needed.
+//! A command may have less jerk or snap than the motion it takes over from. From some states only the limits of the
+//! earlier motion can brake in time; with the limits of the command the velocity would exceed that of the axis. An
+//! excess that the earlier limits or the axis limits can avoid is not unavoidable, so the command gets those limits,
+//! as far as needed.
 
 use super::commands::{Entry, ROUNDING};
 use super::{Axis, Motion};

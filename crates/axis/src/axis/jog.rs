@@ -1,9 +1,9 @@
 //! The motions of MC_Jog: an endless motion while a button is held, or one step.
 //!
-//! MC_Jog is not in the standard. It uses existing motions: an endless jog is that of MC_MoveVelocity, a
-//! step that of MC_MoveRelative, a release that of MC_Halt. With `jog_at_limit` `stop`, an endless jog
-//! towards a software limit is that of MC_MoveContinuousAbsolute to the limit with end velocity 0. It
-//! stays there, in control, until the release. A step that would go beyond the limit ends there.
+//! MC_Jog is not in the standard. It uses existing motions: MC_MoveVelocity for an endless jog, MC_MoveRelative for a
+//! step, and MC_Halt for a release. With `jog_at_limit` `stop`, an endless jog towards a software limit is
+//! MC_MoveContinuousAbsolute to the limit with end velocity 0. It stays there, in control, until the release. A step
+//! that would lead beyond the limit ends on it.
 
 use super::Axis;
 use super::commands::{Place, Work};

@@ -1,9 +1,9 @@
 //! Hardware limit switches: an axis that moves onto one stops, and an axis on one may only move back.
 //!
-//! A motion towards an active limit switch is an axis error: ErrorStop, with the stop dynamics. The axis
-//! is then at rest behind the edge of the switch, which has to stay active up to the end of the travel. A
-//! motion that would go further out is refused when it becomes active, like one that MC_Power bars.
-//! Homing uses the switches without error where it searches for them or reverses at them.
+//! A motion towards an active limit switch is an axis error: ErrorStop, with the stop dynamics. The axis is then at
+//! rest behind the edge of the switch, which has to stay active up to the end of the travel. A motion further
+//! outwards is refused when it becomes active, like one that MC_Power bars. A homing that searches for a switch or
+//! reverses at it uses it without error.
 
 use super::power::Reaction;
 use super::{Axis, Permission};

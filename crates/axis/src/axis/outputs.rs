@@ -7,17 +7,17 @@ use super::commands::{Work, Write};
 use crate::{CommandId, DIGITAL, ErrorId, ExecutionMode, Fate, Raw, Scope};
 use standstill_planner::Planner;
 
-/// The memory of an output that follows positions (MC_DigitalCamSwitch). It is kept with the output,
-/// because only one instance writes it; so instances stay small.
+/// The state of an output that follows positions (MC_DigitalCamSwitch). It is kept with the output, because only one
+/// instance writes it. So instances stay small.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CamTrack {
     /// On by position.
     pub on: bool,
     /// Index of the cam that switched it on.
     pub by: usize,
-    /// The place where that cam would switch it off, in the present direction (u).
+    /// The position at which that cam would switch it off, in the present direction (u).
     pub leave: f64,
-    /// The place where it last switched by position (u).
+    /// The position at which it last switched by position (u).
     pub point: Option<f64>,
     /// On by time until this instant (ns).
     pub until: Option<i64>,
@@ -89,7 +89,7 @@ impl<P: Planner> Axis<P> {
         *outputs = (*outputs & !mask) | (on & mask);
     }
 
-    /// The memory of digital outputs that follow positions, in order of their numbers.
+    /// The states of digital outputs that follow positions, in order of their numbers.
     pub fn cam_tracks_mut(&mut self) -> &mut [CamTrack; DIGITAL as usize] {
         &mut self.beside.cam_tracks
     }

@@ -1,9 +1,9 @@
 //! Parameters by number: MC_ReadParameter, MC_WriteParameter and their BOOL variants.
 //!
-//! The system values are those of the configuration and never change. The application may set lower
-//! limits, and move the software limits. New values apply to commands accepted later. Software limits
-//! also apply to the motion in progress: a motion that would leave them is watched. It ends in ErrorStop
-//! while the stop dynamics can keep it inside, otherwise at once.
+//! The system values are those of the configuration and never change. The application may set lower limits, and move
+//! the software limits. New values apply to commands accepted later. Software limits also apply to the motion in
+//! progress: a motion that would leave them is watched. It ends in ErrorStop: in time for the stop dynamics to keep
+//! it inside, or at once if that is no longer possible.
 //!
 //! Source: PLCopen Motion Control Part 1, sections of the four blocks and the list of parameters.
 
@@ -14,7 +14,7 @@ use crate::{AxisConfig, CommandId, ErrorId, ExecutionMode, Fate, Parameter, Para
 use standstill_planner::shaper::MODES;
 use standstill_planner::{Limits, PlanError, Planner, ShaperKind, Shapers, VibrationMode};
 
-/// Why a parameter was not written: the pin, and the limit the value breaks.
+/// The reason why a parameter was not written: the pin, and the violated limit.
 #[derive(Clone, Copy, Debug)]
 struct Unwritten {
     pin: &'static str,
@@ -54,11 +54,11 @@ impl Unwritten {
 pub(super) struct Parameters {
     /// Limits for the commands of the application; at most those of the axis.
     pub limits: Limits,
-    /// Lowest and highest position (u) a move may end at, infinite where that side is off; `None` without both.
+    /// Lowest and highest end position (u) of a move, infinite if that side is off; `None` without both.
     pub software_limits: Option<(f64, f64)>,
     /// Supervision of the following error.
     pub lag: Lag,
-    /// How the load swings.
+    /// The vibration modes of the load.
     pub modes: [Option<VibrationMode>; MODES],
     /// Lower and upper software limit (u), infinite if never given, and whether it is on.
     lower: (f64, bool),
@@ -115,7 +115,7 @@ impl Parameters {
         .map(f64::to_bits)
     }
 
-    /// The same with a software limit, or a switch of one, changed.
+    /// The same with a change of a software limit or of its switch.
     fn with_software_limit(mut self, change: impl FnOnce(&mut Self)) -> Result<Self, Unwritten> {
         change(&mut self);
         let side = |(at, on): (f64, bool), off: f64| if on { at } else { off };
@@ -134,7 +134,7 @@ impl Parameters {
     }
 }
 
-/// A mode as its parameters show it; zeros where there is none.
+/// The values of a mode as its parameters; zeros without a mode.
 fn numbers(mode: Option<VibrationMode>) -> [f64; 3] {
     let number = |mode: &VibrationMode| match mode.shaper {
         ShaperKind::Period => 1.0,
@@ -145,7 +145,7 @@ fn numbers(mode: Option<VibrationMode>) -> [f64; 3] {
     mode.map_or([0.0; 3], |mode| [mode.frequency, mode.damping, number(&mode)])
 }
 
-/// The mode a parameter is of, and which of its numbers it is.
+/// The mode of a parameter, and the index of the parameter in it.
 fn place_of(parameter: Parameter) -> (usize, usize) {
     let place = (parameter as usize).saturating_sub(Parameter::Vibration1Frequency as usize);
     (place / 3, place % 3)
@@ -263,7 +263,7 @@ impl<P: Planner> Axis<P> {
         Ok(id)
     }
 
-    /// Parameter `parameter` gets `value`, given in this scan or before.
+    /// Writes `value` to `parameter`. It was given in this scan or before.
     ///
     /// # Errors
     /// As [`Axis::write_parameter`].
@@ -281,7 +281,7 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
-    /// `new`, unless that changes the shaper of a motion.
+    /// `new`, unless it changes the shaper of a motion.
     fn admit_modes(&self, new: Parameters) -> Result<Parameters, Unwritten> {
         let rests = self.mover.setpoint().is_at_rest() && self.mover.is_through();
         if new.modes == self.parameters.modes || rests {
@@ -306,7 +306,7 @@ impl<P: Planner> Axis<P> {
         self.refuse(why.pin, shown, why.limit, why.error, scope)
     }
 
-    /// The parameters with this one written.
+    /// The parameters after this one is written.
     fn written(&self, parameter: Parameter, value: ParameterValue) -> Result<Parameters, Unwritten> {
         let mut new = self.parameters;
         let system = &self.config.limits;
@@ -390,14 +390,15 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A number of a mode; 0 where there is none.
+    /// A value of a mode; 0 without a mode.
     fn number_of_mode(&self, parameter: Parameter) -> f64 {
         let (mode, part) = place_of(parameter);
         let mode = self.parameters.modes.get(mode).copied().flatten();
         numbers(mode).get(part).copied().unwrap_or_default()
     }
 
-    /// The modes with one of their numbers changed: of a mode that the axis was set up with, and as far as its memory reaches.
+    /// The modes after one of their values is changed. The axis must be configured with that mode, and its memory
+    /// must be large enough.
     fn modes_with(
         &self,
         parameter: Parameter,
@@ -412,7 +413,7 @@ impl<P: Planner> Axis<P> {
             0 => mode.frequency = value,
             1 => mode.damping = value,
             _ => {
-                // 1 to 4; whatever is no such number is none of the list.
+                // 1 to 4; any other value is not in the list.
                 let place = ShaperKind::ALL
                     .iter()
                     .zip(1_u8..)

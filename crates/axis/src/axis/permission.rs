@@ -1,14 +1,13 @@
-//! Directions that MC_Power bars: a new motion that needs one is refused, a running motion that needs one
-//! pauses.
+//! Directions that MC_Power bars. A new motion in a barred direction is refused; a running motion in one is paused.
 //!
-//! A motion is barred if it goes further in a barred direction than an immediate stop within its limits;
-//! from rest, if it goes there at all. A command that is barred when it becomes active is an error. A
-//! motion that is barred while it runs brakes with the stop dynamics. Its command stays the owner, and
-//! continues to its end or velocity once the direction it then needs is permitted. A motion that brings
-//! the axis to rest is never barred, so it is never paused either.
+//! A motion is barred if it travels further in a barred direction than an immediate stop within its limits; from
+//! rest, if it travels there at all. A command that is barred when it becomes active is an error. A motion that is
+//! barred while it runs brakes with the stop dynamics. Its command stays the owner, and continues to its end or
+//! velocity once the direction it then needs is permitted. A motion that brings the axis to rest is never barred, so
+//! it is never paused either.
 //!
-//! A superimposed motion has a direction of its own. When either motion is barred the sum brakes, and the
-//! rest of the superimposed distance waits, as it waits for room.
+//! A superimposed motion has a direction of its own. If either motion is barred the sum brakes. The rest of the
+//! superimposed distance waits, as it waits for room.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_Power; V9.
 
@@ -17,7 +16,7 @@ use super::{Axis, Motion};
 use crate::{AxisEvent, AxisState, ErrorId, Event, Fate, Scope};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
-/// The rounding of the comparison with a stop, relative to the way.
+/// The rounding of the comparison with a stop, relative to the travel.
 const ROUNDING: f64 = 1e-9;
 
 /// Rounding of a position, relative to it.
@@ -39,7 +38,7 @@ impl Permission {
         negative: true,
     };
 
-    /// Why a motion that leads so far up or down is barred, if it is.
+    /// The reason why a motion in these directions is barred, if it is.
     pub(super) fn bars(self, up: bool, down: bool) -> Option<ErrorId> {
         if up && !self.positive {
             Some(ErrorId::PositiveBarred)
@@ -64,7 +63,7 @@ impl<P: Planner> Axis<P> {
         if let Some(layer) = self.mover.layer_mut() {
             layer.try_soon();
         }
-        // A slave that still moves in the barred direction would be stopped once more.
+        // A slave that still moves in the barred direction would be stopped again.
         if !self.follows() || self.way_barred(self.mover.setpoint().velocity).is_none() {
             self.resume(scope);
         }
@@ -101,7 +100,7 @@ impl<P: Planner> Axis<P> {
         let (plan, elapsed) = rest;
         let (start, goal) = (plan.at(elapsed), plan.at(u64::from(plan.scans())).velocity);
         let (up, down) = self.planner.ways(rest);
-        // A stop is no motion of its own, wherever it leads.
+        // A stop is never barred, in any direction.
         let axis = &self.slowed(&self.hardest_limits());
         let (braking_up, braking_down) = match self.stopped_inside(&start, &mut { *limits }, before, axis) {
             Ok(ramp) if !start.is_at_rest() => self.planner.ways((&ramp, 0)),
@@ -134,7 +133,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The reason why the command is barred for which the owner is about to pass its end.
+    /// The reason why the next command is barred, if the owner is about to pass its end for it.
     fn barred_behind_the_end(&self) -> Option<ErrorId> {
         let owner = self
             .owner
@@ -144,8 +143,8 @@ impl<P: Planner> Axis<P> {
         self.bars(true, true).filter(|_| passage.rests())
     }
 
-    /// Everything brakes: from now on there is one motion, with the velocity of the sum. A superimposed
-    /// motion on a standing axis brakes by itself, so that its way counts.
+    /// Everything brakes: from now on there is one motion, with the velocity of the sum. A superimposed motion on an
+    /// axis at rest brakes by itself, so that its travel counts.
     pub(super) fn pause(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
         if !matches!(self.mover.motion(), Motion::Hold | Motion::Follow)
             && let Some(mut owner) = self.owner
@@ -156,7 +155,7 @@ impl<P: Planner> Axis<P> {
         self.pause_noted(error, scope);
     }
 
-    /// The same, where it is noted already whether the owner has passed the place it leads through.
+    /// The same, after it was noted whether the owner has passed its position.
     pub(super) fn pause_noted(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
         let scope = &mut self.owner_scope(scope);
         self.record(Event::Paused { error }, scope);
@@ -194,8 +193,8 @@ impl<P: Planner> Axis<P> {
         self.watch_anew();
     }
 
-    /// The owner continues from its present state, if all directions it needs are permitted. If it can't
-    /// any more, it fails at rest.
+    /// The owner continues from its present state, if all directions it needs are permitted. If it no longer can, it
+    /// fails at rest.
     #[inline(never)]
     pub(super) fn resume(&mut self, scope: &mut Scope<'_>) {
         let Some(mut owner) = self.owner.filter(|owner| owner.paused) else {
@@ -224,7 +223,7 @@ impl<P: Planner> Axis<P> {
                 self.refuse_plan(&owner, error, &mut self.owner_scope(scope));
                 self.end_owner(Fate::Failed(error));
                 self.mover.hold();
-                // No arrow leads from ContinuousMotion to Standstill except through a halt.
+                // ContinuousMotion has a transition to Standstill only through a halt.
                 let is_endless = self.state == AxisState::ContinuousMotion;
                 if !is_endless {
                     self.enter(AxisEvent::MotionDone);
@@ -249,8 +248,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The coordinates moved by `by` (u) under a paused or halted owner: an absolute end keeps its
-    /// number.
+    /// The coordinates were shifted by `by` (u) under a paused or halted owner: an absolute end keeps its value.
     #[cold]
     pub(super) fn shift_paused(&mut self, by: f64) {
         self.mover.shift_plan(by);
@@ -269,7 +267,7 @@ impl<P: Planner> Axis<P> {
         self.permission() != Permission::BOTH
     }
 
-    /// The error if nothing may be added in this direction to a layer at rest.
+    /// The error if a layer at rest may not be moved in this direction.
     pub(super) fn way_barred(&self, way: f64) -> Option<ErrorId> {
         self.bars(way > 0.0, way < 0.0)
     }

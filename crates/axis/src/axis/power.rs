@@ -11,7 +11,7 @@ use crate::{
 };
 use standstill_planner::{Limits, Planner};
 
-/// The longest step (u) of the actual position that a calm axis takes without a check of its velocity.
+/// The longest step (u) of the actual position for which an axis with nothing pending does not check its velocity.
 /// With any cycle from a nanosecond up the velocity is then finite. NaN and infinity are not such a step.
 const USUAL_STEP: f64 = 1e290;
 
@@ -25,8 +25,8 @@ pub(super) enum Reaction {
 }
 
 impl<P: Planner> Axis<P> {
-    /// Latches the drive's feedback of this scan and lets the state follow it. Called before any block.
-    // Inlined into its caller, like `advance`: a call alone costs a tenth of a calm scan.
+    /// Latches the drive's feedback of this scan and updates the state. Called before any block.
+    // Inlined into its caller, like `advance`: a call alone costs a tenth of a scan with nothing pending.
     #[inline(always)]
     pub fn follow_feedback(&mut self, feedback: &DriveFeedback, scope: &mut Scope<'_>) {
         // In most scans only the position changes.
@@ -49,8 +49,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Takes the actual position of a calm axis, whose earlier positions need no new names. Returns
-    /// FALSE, and takes nothing, if a full check is needed.
+    /// Takes the actual position of an axis with nothing pending, whose earlier positions stay valid. Returns FALSE,
+    /// and takes nothing, if a full check is needed.
     // By reference, as in `drive_command`.
     #[inline(always)]
     fn latch_usual(&mut self, told: &DrivePosition) -> bool {
@@ -77,15 +77,15 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the axis is in operation with nothing pending and nothing supervised. It then reacts only
-    /// to its feedback, its requests to the drive stay the same, and its positions need no care.
+    /// Whether the axis is in operation with nothing pending and nothing supervised. It then reacts only to its
+    /// feedback, its requests to the drive stay the same, and its positions need no further checks.
     ///
-    /// Computed once when the calm may begin; every event that ends it calls [`Axis::stir`]. This saves
-    /// ten comparisons per scan.
+    /// Computed once when this state may begin; every event that ends it calls [`Axis::stir`]. This saves ten
+    /// comparisons per scan.
     fn calmness(&self) -> Calm {
         let is_in_operation = !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
         let is_pending = self.failure.reset().is_some() || self.shift_due || self.frame.is_renaming();
-        // An axis that has handed over withdraws its order in the next scan.
+        // After a hand-over from a torque, the axis withdraws its order in the next scan.
         let is_torque =
             matches!(self.mover.motion(), Motion::Torque { .. }) || self.beside.order.torque.is_some();
         let is_watched = self.parameters.lag.on || self.is_homing() || is_torque;
@@ -156,8 +156,8 @@ impl<P: Planner> Axis<P> {
         }
         self.power.latch(feedback, comms);
         if let Err(error) = self.fresh_position() {
-            // A stage that was asked to switch off counts as off while its state is unknown. Before it is
-            // enabled again the drive has to report its position.
+            // A stage that was requested to switch off counts as off while its state is unknown. Before it is enabled
+            // again the drive has to report its position.
             if self.drive_request() != DriveRequest::Enable {
                 self.power.count_as_off();
             }
@@ -228,7 +228,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The set-point takes over where the feedback is: enabling never makes it step.
+    /// The set-point takes the actual position, so that enabling never causes a step.
     pub(super) fn hold_at_actual(&mut self) {
         self.mover.stand_at(self.feedback.position());
         self.count_actual_turns();
@@ -314,8 +314,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Plans a ramp to rest within `limits`, or within more of those of the `axis` if it could not stay
-    /// inside them otherwise.
+    /// Plans a ramp to rest within `limits`, or within higher ones of the `axis` if these could not keep it inside
+    /// them.
     pub(super) fn ramp_down(&mut self, mut limits: Limits, axis: &Limits, scope: &mut Scope<'_>) {
         // No stop is faster than this.
         self.mover.watch(false);
@@ -344,7 +344,7 @@ impl<P: Planner> Axis<P> {
         self.trip(error, code, Reaction::Ramp, scope);
     }
 
-    /// The cause given to [`Axis::raise`] is gone; MC_Reset is still needed.
+    /// The cause given to [`Axis::raise`] has ended; MC_Reset is still needed.
     pub fn clear_cause(&mut self) {
         self.failure.set_cause(false);
     }
@@ -440,7 +440,7 @@ impl<P: Planner> Axis<P> {
         self.state == AxisState::ErrorStop && self.power.fault().is_some()
     }
 
-    /// Nothing is known of the drive.
+    /// Whether the drive reports nothing.
     fn is_silent(&self) -> bool {
         self.power.comms() != Comms::Ok
     }
@@ -463,7 +463,7 @@ impl<P: Planner> Axis<P> {
         } else if self.power.is_going_off() || self.power.is_tripped() || !self.power.is_wanted() {
             DriveRequest::Off
         } else if self.is_silent() && !self.power.is_on() {
-            // If it were enabled now, it would step from its real place to its last known one.
+            // If it were enabled now, it would step from its real position to its last known one.
             DriveRequest::Off
         } else {
             DriveRequest::Enable

@@ -1,9 +1,8 @@
 //! Touch probes: the position at an edge of a probe's input.
 //!
-//! The drive latches the position at the first edge after it was armed, between scans. The next latch
-//! decides whether that edge counts. If there is a window and the edge is outside it, the edge does not
-//! count and the probe is armed anew. To arm a drive anew takes one scan without an edge request, so
-//! edges in that scan are not seen.
+//! The drive latches the position at the first edge after it was armed, between scans. The next latch decides whether
+//! that edge counts. An edge outside the window, if there is one, does not count, and the probe is armed again. To
+//! arm a drive again takes one scan without a request, so edges in that scan are not seen.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_TouchProbe and MC_AbortTrigger; V23, T39 g.
 
@@ -28,7 +27,7 @@ struct Waiting {
     id: CommandId,
     edge: Edge,
     window: Option<(f64, f64)>,
-    /// Whether the drive was asked to latch for it.
+    /// Whether the drive was requested to latch for it.
     armed: bool,
 }
 
@@ -129,8 +128,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Takes the drive's report of this scan, before the feedback: a latched position still has the old
-    /// names.
+    /// Takes the drive's report of this scan, before the feedback: a latched position is still in the old
+    /// coordinates.
     #[inline]
     pub fn follow_report(&mut self) {
         if !self.beside.report.is_finite() {
@@ -173,7 +172,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Asks the drive to latch, as soon as it has cleared its earlier latched position.
+    /// Requests the drive to latch, as soon as it has cleared its earlier latched position.
     fn arm_probe(&mut self, probe: usize) {
         let told = self.beside.report.probes.get(probe);
         let free = told.is_some_and(|told| !told.armed);

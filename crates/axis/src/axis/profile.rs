@@ -55,7 +55,7 @@ pub struct Profile<'a> {
 struct Points {
     points: [ProfilePoint; PROFILE_POINTS],
     count: usize,
-    /// Those behind.
+    /// Points that are already passed.
     passed: usize,
 }
 
@@ -95,7 +95,7 @@ impl Profile<'_> {
                 .checked_add(row.delta_ns)
                 .ok_or(("DeltaTime", row.delta_ns as f64, f64::NAN, table))?;
             let time = sum as f64 / 1e9;
-            // A point less than half a unit of the table ahead counts as reached.
+            // A point less than half a unit of the table ahead counts as passed.
             if since > 0.0 && time - since <= HALF_A_NANOSECOND {
                 points.passed += 1;
                 continue;
@@ -139,7 +139,7 @@ impl Profile<'_> {
         }
     }
 
-    /// The error that a block shows for a refusal of the planner, and the subject of it.
+    /// The error that a block shows for a refusal of the planner, and the pin or field.
     fn refusal(&self, fault: &ProfileFault) -> (&'static str, ErrorId) {
         let (table, beyond) = (ErrorId::ProfileTableInvalid, ErrorId::ProfileBeyondLimits);
         match fault.cause {
@@ -336,8 +336,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The owner, a profile that was due, has ended at rest. The axis may have come there since it became
-    /// active: under a torque it moves as its drive does.
+    /// The owner, a profile that was due, has ended at rest. The axis may have come to rest since it became active:
+    /// under a torque it moves as its drive does.
     pub(super) fn rest_due(&mut self) {
         if self.state == AxisState::ContinuousMotion {
             self.enter(AxisEvent::StartDiscrete);

@@ -53,7 +53,7 @@ impl Queue {
         self.entries.first()?.as_ref()
     }
 
-    /// The last one that will move the axis.
+    /// The last waiting command that moves the axis.
     pub fn last_motion(&self) -> Option<&Entry> {
         self.iter().filter(|entry| entry.work.manner().moves).last()
     }

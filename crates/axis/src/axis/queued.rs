@@ -9,7 +9,8 @@ use crate::{AxisState, BufferMode, CommandId, ErrorId, ExecutionMode, Fate, Raw,
 use standstill_planner::Planner;
 
 impl<P: Planner> Axis<P> {
-    /// Whether a command with this `ExecutionMode` is to wait: the axis has an owner, or others wait already.
+    /// Whether a command with this `ExecutionMode` has to wait: the axis has an owner, or other commands wait
+    /// already.
     ///
     /// # Errors
     /// [`ErrorId::ExecutionModeInvalid`] if the number is undefined.
@@ -24,7 +25,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// `work` waits behind all that waits already.
+    /// `work` waits behind all waiting commands.
     ///
     /// # Errors
     /// [`ErrorId::BufferFull`].
@@ -38,7 +39,7 @@ impl<P: Planner> Axis<P> {
         Ok(id)
     }
 
-    /// Writes what waits at the head of the buffer; `false` if that writes nothing.
+    /// Writes the value of the command at the head of the buffer; `false` if that command writes nothing.
     pub(super) fn write_queued(&mut self, scope: &mut Scope<'_>) -> bool {
         let Some(entry) = self.queue.first() else {
             return false;
@@ -63,7 +64,7 @@ impl<P: Planner> Axis<P> {
         true
     }
 
-    /// Whether something is there that a queued command waits for.
+    /// Whether there is something that a queued command waits for.
     fn is_owned(&self) -> bool {
         match self.state {
             AxisState::Disabled | AxisState::ErrorStop => false,

@@ -26,7 +26,7 @@ pub enum Pace {
     Decelerating,
 }
 
-/// Where a position goes.
+/// The direction of a position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Way {
     /// It stays.
@@ -55,13 +55,13 @@ impl Way {
 pub struct MotionState {
     /// The change of its speed.
     pub pace: Pace,
-    /// Where the position goes.
+    /// The direction of the position.
     pub way: Way,
 }
 
 impl<P: Planner> Axis<P> {
-    /// Takes this scan's actual position (u) if earlier ones may need new names. Returns whether the
-    /// velocity is a number; if not, nothing is taken.
+    /// Takes this scan's actual position (u) if earlier ones may have to be shifted. Returns whether the velocity is
+    /// a number; if not, nothing is taken.
     pub(super) fn latch_and_mend(&mut self, position: f64) -> bool {
         let before = self.feedback;
         let length = self.modulo.as_ref().map(|modulo| modulo.length);
@@ -79,7 +79,8 @@ impl<P: Planner> Axis<P> {
         self.feedback.latch_nothing();
     }
 
-    /// Renames positions: from the next feedback on, `old` (u) is called `name` (u). No motion.
+    /// Shifts the coordinates without motion: from the next feedback on, the position `old` (u) has the value `name`
+    /// (u).
     pub(super) fn rename_actual(&mut self, old: f64, name: f64) {
         self.stir();
         self.feedback.rename(old, name);
@@ -99,9 +100,9 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The actual velocity (u/s): the difference of the actual positions of this scan and the last one,
-    /// divided by the cycle. After a loss of communication it is the mean since the last fresh position.
-    /// A new name of the position is no motion. Resolution: that of the position, divided by the cycle.
+    /// The actual velocity (u/s): the difference of the actual positions of this scan and the last one, divided by
+    /// the cycle. After a loss of communication it is the mean since the last fresh position. A shift of the
+    /// coordinates is no motion. Resolution: that of the position, divided by the cycle.
     ///
     /// # Errors
     /// As [`Axis::fresh_position`].

@@ -1,4 +1,4 @@
-//! An instance that is triggered anew while it has a command.
+//! An instance that is triggered again while it has a command.
 //!
 //! A waiting command gives up its place before the new command is checked, even if that is then refused.
 //! A moving command continues to its end. If the new command is refused, no block follows the moving one
@@ -14,9 +14,9 @@ use crate::{AxisEvent, CommandId, Event, Fate, Scope};
 use standstill_planner::Planner;
 
 impl<P: Planner> Axis<P> {
-    /// The instance of command `id` is about to give another one. If `id` waits, it is removed from the
-    /// buffer, or from the wait for room, without ever being active. Returns whether it was.
-    /// [`Axis::replaced`] must follow in the same call.
+    /// The instance of command `id` is about to give another one. If `id` waits, it is removed from the buffer, or
+    /// from the wait for room, and never becomes active. Returns whether it was removed. [`Axis::replaced`] must
+    /// follow in the same call.
     pub fn withdraw(&mut self, id: CommandId) -> bool {
         if self.queue.remove(id) {
             self.decide(id, Fate::Aborted);
@@ -29,14 +29,14 @@ impl<P: Planner> Axis<P> {
         self.withdraw_superimposed(id) || self.withdraw_shift(id)
     }
 
-    /// The instance of command `id`, which [`Axis::withdraw`] said `waited` or not, now follows the
-    /// command `new`: none if that was refused, or went to another axis.
+    /// The instance of command `id` now follows the command `new`; none if that was refused, or was given to another
+    /// axis. [`Axis::withdraw`] returned whether `id` `waited`.
     ///
     /// Cost: at most two plans, and a search of the buffer.
     pub fn replaced(&mut self, id: CommandId, waited: bool, new: Option<CommandId>, scope: &mut Scope<'_>) {
         if waited {
             self.arm_anew(scope);
-            // A move that is barred behind its end waits for what has gone.
+            // A move that is barred behind its end was waiting for the removed command.
             self.resume(scope);
         } else if self.profile_is_due(id) {
             return self.pass_over_due_profile(id, scope);

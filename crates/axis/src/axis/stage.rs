@@ -116,7 +116,7 @@ impl Power {
         self.comms
     }
 
-    /// On as requested, with nothing pending.
+    /// Whether it is on as requested, with nothing pending.
     pub fn is_calm(&self) -> bool {
         let is_as_wanted = self.on && self.wanted && self.stage == Stage::Ready && self.overruled.is_none();
         let is_well = self.voltage && self.fault.is_none() && self.comms == Comms::Ok;
@@ -130,8 +130,8 @@ impl Power {
         self.comms = comms;
     }
 
-    /// The drive reported whether operation is enabled. Returns whether it went off although it was
-    /// requested and not asked to go off.
+    /// The drive reported whether operation is enabled. Returns whether it went off while it was requested, and was
+    /// not going off.
     pub fn latch_enabled(&mut self, enabled: bool) -> bool {
         let was_on = self.on;
         self.on = enabled;
@@ -181,7 +181,7 @@ impl Power {
         }
     }
 
-    /// It is off, and the drive goes on with the stop that it was asked for.
+    /// It is off. The drive continues the stop that it was requested to make.
     pub fn leave_to_drive(&mut self) {
         self.stage = Stage::Braking;
     }

@@ -1,9 +1,8 @@
 //! The distance of the axis from its set position: the following error, and the window at the end of a
 //! move.
 //!
-//! The following error is the set position published in the last scan, less the actual position latched
-//! in this one. It is 0 for a drive that follows exactly. With a delay of some scans it is the way of
-//! those scans.
+//! The following error is the set position published in the last scan, less the actual position latched in this one.
+//! It is 0 for a drive that follows exactly. With a delay of some scans it is the travel in those scans.
 //!
 //! Source: PLCopen Motion Control Part 1, parameters 6 and 7; V12d.
 
@@ -58,7 +57,8 @@ impl Arrival {
 }
 
 impl<P: Planner> Axis<P> {
-    /// The set position last published less the actual position (u), on a modulo axis the shorter way round.
+    /// The set position last published less the actual position (u), on a modulo axis in the direction of the shorter
+    /// distance.
     pub(super) fn following_error(&self) -> f64 {
         let error = self.mover.commanded().position - self.feedback.position();
         match &self.modulo {

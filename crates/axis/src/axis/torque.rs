@@ -68,8 +68,8 @@ impl<P: Planner> Axis<P> {
         Ok((Work::Torque { torque, ramp, along }, limits))
     }
 
-    /// The velocity (u/s) to which the limit under the torque of `entry` goes: in the direction of the torque; one that has none
-    /// lets an axis coast, which may be faster.
+    /// The velocity (u/s) to which the limit under the torque of `entry` changes. It has the direction of the torque.
+    /// A torque of 0 lets an axis coast, which may be faster.
     ///
     /// # Errors
     /// [`ErrorId::OutwardFromSoftwareLimit`] if the torque leads out.
@@ -106,8 +106,8 @@ impl<P: Planner> Axis<P> {
         told.filter(|most| *most > 0.0).unwrap_or(0.0)
     }
 
-    /// After the latch: under a torque the set-point is the actual state, where the ramp of an error that was raised before the latch begins,
-    /// too.
+    /// After the latch: under a torque the set-point is the actual state. The ramp of an error that was raised before
+    /// the latch begins there, too.
     pub(super) fn follow_actual(&mut self, scope: &mut Scope<'_>) {
         let Ok(velocity) = self.actual_velocity() else {
             return;
@@ -150,7 +150,7 @@ impl<P: Planner> Axis<P> {
         } else {
             *torque + step.copysign(left)
         };
-        // The largest torque of the drive may have become smaller.
+        // The largest torque of the drive may have decreased.
         let torque = within(next, most_torque);
         let most = owner.limits.velocity;
         let velocity = (

@@ -41,7 +41,7 @@ impl<P: Planner> Axis<P> {
         let moved = work.manner().place != owner.work.manner().place || direction != owner.direction;
         let same_work = work == owner.work.with_velocity(owner.asked.velocity);
         if same_work && !moved && limits == owner.asked.limits {
-            // Returns to the values it has, after others were refused.
+            // The pins have the present values again, after others were refused.
             return Ok(());
         }
         self.note_passing(&mut owner);
@@ -88,7 +88,7 @@ impl<P: Planner> Axis<P> {
         command: &Command,
         scope: &mut Scope<'_>,
     ) -> Result<Option<(Work, Limits)>, ErrorId> {
-        // It does not count again from the last target, but from its original start.
+        // It counts from its original start, not from the last target.
         let (work, limits) = match (*command, entry.work) {
             (Command::MoveAdditive { distance, dynamics }, Work::Position(_)) => {
                 let added = Command::MoveRelative { distance, dynamics };
@@ -115,18 +115,18 @@ impl<P: Planner> Axis<P> {
         self.override_entry(entry);
     }
 
-    /// The end of the owner, seen from its present place.
+    /// The end of the owner, from its present position.
     fn aim_anew(&self, owner: &mut Entry) {
         let base = self.mover.base();
         let from = match owner.place() {
-            // The way round a modulo axis starts here.
+            // On a modulo axis the direction to a position is found from here.
             Some(Place::At(_)) | None => base.position,
             Some(Place::By(_)) => owner.from,
         };
         self.aim_from(owner, &base, from);
     }
 
-    /// A waiting command has changed: the owner may have to pass its end at another speed (B16).
+    /// A waiting command has changed: the velocity at the end of the owner may change (B16).
     pub(super) fn arm_anew(&mut self, scope: &mut Scope<'_>) {
         let leads = |owner: &Entry| owner.end.is_some();
         if !self.pass_at_rest(scope) && self.owner.as_ref().is_some_and(leads) {
@@ -134,7 +134,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// If the command that was to take over in motion no longer can, the owner comes to rest at its end.
+    /// The command that was to take over in motion may no longer do that: the owner then comes to rest at its end.
     /// Returns whether that is so.
     pub(super) fn pass_at_rest(&mut self, scope: &mut Scope<'_>) -> bool {
         let blends = |owner: &Entry| owner.end.is_some() && owner.passage != REST;

@@ -66,9 +66,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The drive names its positions anew from this scan on: at the place of `reference` the homing has
-    /// its Position. Earlier positions cannot be compared with the new ones, so this scan counts as at
-    /// rest.
+    /// The drive shifts its positions from this scan on: at the position of `reference` the homing has its Position.
+    /// Earlier positions can't be compared with the new ones, so this scan counts as at rest.
     fn take_names_of_drive(&mut self, reference: DrivePosition, scope: &mut Scope<'_>) {
         let Some(Work::Home(position)) = self.owner.map(|owner| owner.work) else {
             return;
