@@ -1,11 +1,11 @@
-//! A slave behind one master or two: MC_GearIn, MC_CombineAxes and MC_GearOut on the slave's side.
+//! Slaves with one master or two: MC_GearIn, MC_CombineAxes and MC_GearOut on the slave's side.
 //!
 //! In gear the set-point *is* the law, a function of the master's place in the same scan
-//! ([`Gear`](standstill_planner::Gear)). InGear is that state; positions are not compared. A slave that
-//! is not in gear yet, or could not keep up, moves on plans of its own within its limits, in one of three
-//! ways (rungs): beside the moving law, onto the law's next stretch of constant velocity, or as fast as
-//! it may. A command plans nothing when it is taken. The plan is made in the motion step, after the
-//! master has moved, so that everything commanded to the master in this scan counts.
+//! ([`Gear`](standstill_planner::Gear)). InGear is that state; positions are not compared. A slave that is not in
+//! gear yet, or could not keep up, moves on plans of its own within its limits, in one of three ways (rungs): beside
+//! the moving law, onto the law's next stretch of constant velocity, or as fast as possible. A command plans nothing
+//! when it is accepted. The plan is made in the motion step, after that of the master, so that everything commanded
+//! to the master in this scan counts.
 //!
 //! | file | subject |
 //! | --- | --- |
@@ -57,7 +57,7 @@ pub(super) use view::{end_of, way_to_rest};
 /// A master, and which of its values are followed.
 pub(crate) type Values = (AxisId, ValueSource);
 
-/// The furthest place from 0 (u) for sync points and cams: beyond it numbers are too coarse.
+/// The largest position (u) of sync points and cams; beyond it numbers are too coarse.
 const FURTHEST: f64 = 1e15;
 
 /// How a slave that is not in gear comes into gear.
@@ -67,16 +67,16 @@ enum Rung {
     Due,
     /// It is in gear.
     Locked,
-    /// A plan in the slave's own coordinates, to the velocity of the law or as fast as it may.
+    /// A plan in the slave's own coordinates, to the velocity of the law or as fast as possible.
     Own,
     /// A plan beside the law through this anchor.
     BesideLaw(Anchor),
-    /// The same beside a law whose motion ahead is not known, within this room.
+    /// The same beside a law whose future motion is not known, within this room.
     BesideMeasured { anchor: Anchor, room: Limits },
-    /// The master went out of operation: the slave is at rest until a block couples it anew.
+    /// The master went out of operation: the slave is at rest until a block couples it again.
     Lost,
-    /// A plan beside a straight line. The law joins the line this many scans after the start of the plan.
-    /// The line has this place at the start, and this velocity (u/s).
+    /// A plan beside a straight line, with the place of the line at the start and its velocity (u/s). The law joins
+    /// the line this number of scans after the start of the plan.
     BesideLine { start: Place, velocity: f64, begin: u64 },
 }
 
@@ -91,13 +91,13 @@ impl Rung {
 pub struct Coupled {
     /// The master.
     pub master: AxisId,
-    /// Set position less that of the law (u); 0 in gear, and before it was in gear.
+    /// Set position less the position of the law (u); 0 in gear, and before it was in gear.
     pub deviation: f64,
-    /// The phase shift: the distance by which the master is seen ahead of its real place (u of the master).
+    /// The phase shift: the slave sees the master this distance ahead of its real place (u of the master).
     pub phase: f64,
     /// The second master of MC_CombineAxes, and its phase shift.
     pub second: Option<(AxisId, f64)>,
-    /// The distance superimposed on the law since the law got its place (u).
+    /// The superimposed distance since the law got its place (u).
     pub superimposed: f64,
     /// On a cam: the place of the slave on the curve as a place of the master (u of the master), if it is on the
     /// curve.
@@ -115,7 +115,7 @@ pub(super) struct Follower<Plan> {
     cam_ends: u32,
     /// In its last step it was on its law, and the law was at rest.
     stands: bool,
-    /// In its last step it was on its law, behind masters that tremble.
+    /// In its last step it was on its law, and its masters only trembled.
     trembles: bool,
     /// The phase shift between it and its master.
     phasing: Phasing<Plan>,
@@ -143,7 +143,7 @@ impl<P: Plan> Default for Follower<P> {
     }
 }
 
-/// The part of the last owner's following that a command continues.
+/// The part of the last owner's coupling that a command continues.
 #[derive(Clone, Debug)]
 pub(super) struct Kept<Plan> {
     coupling: Option<Coupling>,
@@ -191,26 +191,26 @@ struct Coupling {
     was_in_gear: bool,
     /// It was in gear when the same gear was commanded again, and no motion step has followed yet.
     is_kept: bool,
-    /// It is in time for its sync point only if it goes back to meet the law.
+    /// It is in time for its sync point only if it moves back to meet the law.
     goes_back: bool,
     rung: Rung,
     /// The masters at the end of the last scan, in their present coordinates.
     was: SeenBoth,
-    /// The known part of their motion ahead.
+    /// The known part of their future motion.
     known: view::Known,
     /// Scans until the way onto the law is searched again; the largest number for never.
     left: u64,
-    /// The way recorded last, and its velocity (u/s).
+    /// The approach recorded last, and its velocity (u/s).
     told: Option<(Approach, f64)>,
-    /// The place to which the masters lead it (u), if that is outside its software limits.
+    /// The position to which the masters lead it (u), if that is outside its software limits.
     leads_outside: Option<f64>,
     /// The limits that its way was last checked against.
     limits: Limits,
-    /// The number of moves of the slave's own coordinates.
+    /// The number of shifts of the slave's own coordinates.
     moves: u32,
     /// The distance of the slave from the law (u); 0 in gear, and before it was in gear.
     deviation: f64,
-    /// Its master is slowed to keep the limits of the slave.
+    /// Its master is slowed down to keep the limits of the slave.
     slows: bool,
     /// The distance superimposed on the law, less the place of the layer that is added to it (u).
     lead: f64,
@@ -249,8 +249,7 @@ impl Gearing {
         }
     }
 
-    /// The factor from a derivative of master number `leg` to its part of the slave's derivative. `by` is
-    /// applied first.
+    /// The factor from a derivative of master number `leg` to its part of the slave's derivative, multiplied by `by`.
     pub(super) fn factor(&self, leg: usize, by: f64) -> f64 {
         match (&self.second, leg) {
             (_, 0) => self.first.gear.derivative(by),
@@ -261,7 +260,7 @@ impl Gearing {
 }
 
 impl Coupling {
-    /// Distances added from now on move the law from its present place; the layer is at `place` (u).
+    /// From now on added distances move the law, from its present place. The layer is at `place` (u).
     pub(super) fn lay_layer(&mut self, place: f64) {
         self.lead = self.superimposed() - place;
     }
@@ -282,7 +281,7 @@ impl Coupling {
         self.gearing.sync.is_some() && !self.was_in_gear
     }
 
-    /// Whether it waits for the law when it is ahead of it, and does not go to meet it.
+    /// Whether it waits for the law when it is ahead of it, and does not move back to meet it.
     fn waits_ahead(&self) -> bool {
         self.is_syncing() && !self.goes_back
     }
@@ -401,7 +400,7 @@ impl<P: Planner> Axis<P> {
             .map_or(on_cam, |coupling| coupling.deviation)
     }
 
-    /// Checks the values at the pins of MC_GearIn and MC_GearInPos that define the law.
+    /// Checks the pins of MC_GearIn and MC_GearInPos that define the law.
     pub(super) fn check_gear(
         &self,
         followed: &Followed,
@@ -420,7 +419,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// Checks the values at the pins of MC_CombineAxes.
+    /// Checks the pins of MC_CombineAxes.
     pub(super) fn check_combination(
         &self,
         masters: &[Followed; 2],
@@ -444,7 +443,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// Checks the values at the pins for one master.
+    /// Checks the pins for one master.
     fn check_leg(&self, followed: &Followed, pins: &LegPins, scope: &mut Scope<'_>) -> Result<Leg, ErrorId> {
         let Followed {
             master,
@@ -498,8 +497,8 @@ impl<P: Planner> Axis<P> {
         (Work::Release(velocity), limits)
     }
 
-    /// A motion that was behind its master until now continues at the velocity that is left once
-    /// acceleration and jerk are 0.
+    /// A motion that followed its master until now continues at the velocity that is left once acceleration and jerk
+    /// are 0.
     pub(super) fn go_on_alone(&mut self, before: &Limits) {
         if !matches!(self.mover.motion(), Motion::Geared | Motion::Closing { .. }) {
             return;
@@ -519,7 +518,7 @@ impl<P: Planner> Axis<P> {
             && !matches!(self.mover.motion(), Motion::Run { elapsed: 0, .. })
     }
 
-    /// The motion of `entry` until the next motion step finds a better one.
+    /// The motion of `entry` until the next motion step chooses another one.
     ///
     /// # Errors
     /// The reason why it cannot follow its master, or that the axis is outside its software limits.
@@ -544,9 +543,9 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The part of the present owner's following that `entry`, which takes over now, continues; `None` if the owner
-    /// does not follow and no command waits for its start point. A command that must not interrupt the motion starts
-    /// beside one that waits for its start point.
+    /// The part of the present owner's coupling that `entry`, which takes over now, continues; `None` if the owner
+    /// does not follow and no command waits for its start point. A command that waits for its start point is kept
+    /// unless `entry` aborts.
     pub(super) fn lend_following(&mut self, entry: &Entry, mode: BufferMode) -> Option<Kept<P::Plan>> {
         let follows = self.follows() || self.follower.awaited.is_some();
         follows.then(|| Kept {
@@ -556,7 +555,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The last owner has ended; its following continues as `kept`.
+    /// The last owner has ended; its coupling continues as `kept`.
     pub(super) fn keep_following(&mut self, kept: Option<Kept<P::Plan>>) {
         debug_assert!(self.follows() || self.follower.phasing.is_none());
         if let Some(kept) = kept {
@@ -566,7 +565,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The axis follows no master any more.
+    /// Ends the coupling.
     pub(super) fn end_coupling(&mut self) {
         let was_behind_gear = self.follower.coupling.take().is_some();
         if self.follower.on_cam.take().is_some() || was_behind_gear {
@@ -574,7 +573,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A motion is added from the place (u) `added` of its layer: the law counts from there.
+    /// A distance is added from the place (u) `added` of its layer: the law counts from there.
     pub(super) fn lay_layer_on_law(&mut self, added: f64) {
         if let Some(coupling) = &mut self.follower.coupling {
             coupling.lay_layer(added);
@@ -589,7 +588,7 @@ impl<P: Planner> Axis<P> {
         awaited.map(|awaited| awaited.entry.id)
     }
 
-    /// Says that `entry` follows a master from the next motion step on, or has new values for it.
+    /// `entry` follows a master from the next motion step on, or has new values for it.
     pub(super) fn await_master(&mut self, entry: &Entry, scope: &mut Scope<'_>) {
         if let Work::Cam(camming) = entry.work {
             return self.await_master_on_cam(camming, entry, scope);
@@ -622,14 +621,14 @@ impl<P: Planner> Axis<P> {
             coupling.goes_back = false;
             coupling.deviation = 0.0;
         }
-        // After the master was lost, another ratio must not start a motion.
+        // After the master is lost, another ratio must not start a motion.
         if coupling.rung != Rung::Lost && (is_new || !coupling.rung.is_locked()) {
             coupling.rung = Rung::Due;
         }
         self.stir();
     }
 
-    /// The motion is not on the law for a while. The way onto it is searched when it may continue.
+    /// The motion leaves the law for some time. The way onto it is searched once the motion may continue.
     pub(super) fn leave_law(&mut self) {
         if let Some(coupling) = &mut self.follower.coupling {
             coupling.rung = Rung::Due;
@@ -662,8 +661,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Finds again whether the owner, or a command that waits, may follow a master. Returns whether a
-    /// waiting one may.
+    /// Finds again whether the owner, or a waiting command, may follow a master. Returns whether a waiting one may.
     pub(crate) fn renew_bound(&mut self) -> bool {
         let couples = |entry: &Entry| matches!(entry.work, Work::Gear(_) | Work::Cam(_));
         let waits = !self.queue.is_empty() && self.queue.iter().any(couples);
@@ -685,14 +683,14 @@ impl<P: Planner> Axis<P> {
         masters
     }
 
-    /// Sets for each waiting command the reason why it could not follow its master now.
+    /// Sets for each waiting command the reason why it can't follow its master now.
     pub(crate) fn bar_waiting(&mut self, barred: &[Option<ErrorId>; QUEUE_MAX]) {
         for (entry, error) in self.queue.iter_mut().zip(barred) {
             entry.barred = *error;
         }
     }
 
-    /// Records that the slave follows its master on a law, and from when on it is in gear.
+    /// Records that the slave is in gear from now on.
     fn record_in_gear(&self, scope: &mut Scope<'_>) {
         self.record(Event::InGear, &mut self.owner_scope(scope));
     }

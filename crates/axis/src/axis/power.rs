@@ -440,7 +440,7 @@ impl<P: Planner> Axis<P> {
         self.state == AxisState::ErrorStop && self.power.fault().is_some()
     }
 
-    /// Whether the drive reports nothing.
+    /// Whether the communication is lost, so that the state of the drive is unknown.
     fn is_silent(&self) -> bool {
         self.power.comms() != Comms::Ok
     }

@@ -1,16 +1,16 @@
-//! How a slave comes onto the law of its gear. The way is searched whenever the master gets another plan, or a way
-//! has ended.
+//! How a slave gets onto the law of its gear. The way is searched each time the master gets another plan or a way has
+//! ended.
 //!
 //! | rung | the slave moves | in gear |
 //! | --- | --- | --- |
 //! | in gear | on the law | at once, if it is on the law and the law keeps its limits as far as is known |
 //! | beside the law | on the law plus a plan that takes its difference to 0; the sum keeps the limits | at the end of the plan |
 //! | onto a stretch | to the velocity of the law in its next stretch of constant velocity | at the end of the plan, or where the stretch begins |
-//! | pace | as fast as it may, the way the law leads; along the law as long as that is slower | not yet |
+//! | pace | as fast as possible, in the direction of the law; along the law as long as that is slower | not yet |
 //!
-//! Of the first three, the one that is in gear soonest is taken. The last two always exist, so a slave is
-//! never without a plan. Before the slave was in gear, only the velocity counts and the lost way is not
-//! made up. After that it catches up onto the same law.
+//! Of the first three, the one that is in gear soonest is used. The last two always exist, so a slave always has a
+//! plan. Before the slave was in gear, only the velocity counts, and lost distance is not made up. After that it
+//! catches up with the same law.
 
 use super::super::commands::ROUNDING;
 use super::super::commands::{Entry, Work};
@@ -25,13 +25,13 @@ use standstill_planner::{
     Anchor, DirectedLimits, Excess, Lead, Leads, Limits, MoveProfile, Place, Plan, Planner, Setpoint,
 };
 
-/// A velocity that is left beside that of a line must be at least this part of the limit.
+/// The room for a velocity relative to a line must be more than this share of the limit.
 const LEAST: f64 = 1e-6;
 
-/// The share of its velocity limit up to which a slave comes near a law that will be too fast.
+/// The share of its velocity limit up to which a slave approaches a law that will be too fast.
 const SLOW: f64 = 0.9;
 
-/// The number of places on a way back at which its velocity is checked.
+/// The number of points on a way back at which its velocity is checked.
 const LOOKS: u64 = 16;
 
 /// The law's next stretch of constant velocity.
@@ -42,18 +42,18 @@ struct Stretch {
     end: u64,
     /// Velocity of the law on it (u/s).
     velocity: f64,
-    /// The present place of a line of that velocity through it (u), in the slave's turn.
+    /// The present position of a line of that velocity through it (u), in the slave's turn.
     now: f64,
 }
 
-/// The speeds (u/s) a slave may have relative to a line: in the direction of the line, and against it.
+/// The speeds (u/s) that a slave may have relative to a line: in the direction of the line, and against it.
 #[derive(Clone, Copy)]
 struct Room {
     along: f64,
     against: f64,
 }
 
-/// A way onto the law.
+/// A way onto the law: a plan, and the scan in which the slave is in gear.
 pub(super) struct Way<Plan> {
     motion: Motion<Plan>,
     rung: Rung,
@@ -75,8 +75,8 @@ impl<Plan> Way<Plan> {
 }
 
 impl<P: Planner> Axis<P> {
-    /// Finds the way onto the law, from the state at the end of the last scan. It is in gear at once only
-    /// if it `may_lock`.
+    /// Finds the way onto the law, from the state at the end of the last scan. The slave is in gear at once only if
+    /// it `may_lock`.
     pub(super) fn approach(&mut self, view: &View<'_, P::Plan>, may_lock: bool, scope: &mut Scope<'_>) {
         let (Some(coupling), Some(owner)) = (&self.follower.coupling, self.owner) else {
             return;
@@ -86,7 +86,7 @@ impl<P: Planner> Axis<P> {
         let anchor = coupling.anchor.unwrap_or(here);
         let (law_place, law) = coupling.law(&anchor, &coupling.was);
         let difference = self.difference(coupling, &anchor);
-        // A turn may have renamed its masters' places with a rounding error.
+        // A turn may have changed its masters' positions by a rounding error.
         let is_kept = was_locked && difference.position.abs() <= self.resolved_of(coupling, law_place);
         if difference.is_at_rest() && (difference.position == 0.0 || is_kept) {
             // A step off the law may not have been checked against a plan of the master that has ended since.
@@ -123,7 +123,7 @@ impl<P: Planner> Axis<P> {
                     .coupling
                     .as_mut()
                     .and_then(|coupling| coupling.told.as_mut());
-                // A way that is searched again in some scans differs each time.
+                // Ways that are searched again after some scans differ each time.
                 let is_passing = view.future.unforeseen().is_some() || way.left == UNKNOWN;
                 if let (Some((name, velocity)), true) = (told, is_passing)
                     && *name == way.name
@@ -136,7 +136,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The smallest difference (u) from the law, which is at `law` now, that rounding lets the slave resolve.
+    /// The smallest difference (u) from the law, which is at `law` now, that rounding does not hide.
     pub(super) fn resolved_of(&self, coupling: &Coupling, law: Place) -> f64 {
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
         let masters = coupling.size_of_masters(&coupling.was);
@@ -160,7 +160,7 @@ impl<P: Planner> Axis<P> {
     /// scan.
     ///
     /// # Errors
-    /// The reason why there is none: the way is barred, or before the first sync the master is too fast.
+    /// The reason why there is none: the direction is barred, or before the first sync the master is too fast.
     pub(super) fn way_onto(
         &self,
         owner: &Entry,
@@ -186,7 +186,7 @@ impl<P: Planner> Axis<P> {
             };
         }
         let velocity = stretch.map_or(law.velocity, |stretch| stretch.velocity);
-        // Behind a master whose motion is not known it may have to catch up lost distance.
+        // If the master's motion is not known, the slave may have to make up lost distance.
         if let (true, Some(stretch), Kind::Plan) = (coupling.is_syncing(), &stretch, view.future.kind()) {
             if coupling.goes_slowly() && velocity != 0.0 {
                 limits.velocity = limits.velocity.min(velocity.abs());
@@ -196,14 +196,13 @@ impl<P: Planner> Axis<P> {
         let mut onto = stretch.and_then(|stretch| self.onto(owner, view, &stretch, &limits, &before));
         let mut soonest = onto.as_ref().map_or(u64::MAX, |way| way.lock);
         if let (Some(way), Some(scans)) = (&mut onto, view.future.unforeseen()) {
-            // The line is a good guess that only leads near the law; the last part of the way goes beside
-            // the law. A slave that waits for its sync point does so at rest beside the line, because the
-            // law itself may jitter.
+            // The line is a good estimate that only leads near the law. The last part of the way is beside the law. A
+            // slave that waits for its sync point waits at rest beside the line, because the law itself may jitter.
             (way.lock, way.left) = (way.motion.scans(), scans);
             let near = 2 * scans;
             let is_ahead = difference.position * velocity > 0.0;
             let waits = coupling.waits_ahead() && is_ahead && way.lock > near;
-            // A law that is even now may be the line itself. Measured values are never quite even.
+            // A law with constant velocity now may be the line itself. Measured values are never quite constant.
             let is_even = law_now.acceleration == 0.0 && law_now.jerk == 0.0;
             let is_line = is_even && view.future.measured().is_none();
             soonest = match (waits, is_line) {
@@ -237,10 +236,10 @@ impl<P: Planner> Axis<P> {
         peaks.is_some_and(|peaks| peaks.velocity > most)
     }
 
-    /// The limits of the owner on its way onto the law.
+    /// The limits of the owner until it is on the law.
     pub(super) fn limits_of_approach(&self, owner: &Entry) -> Limits {
         let (asked, axis) = (&owner.limits, &self.slowed(&self.parameters.limits));
-        // The Velocity of MC_GearInPos limits the way to its sync point.
+        // The Velocity of MC_GearInPos applies until its sync point.
         let is_synced = |coupling: &Coupling| coupling.gearing.sync.is_some() && coupling.was_in_gear;
         let velocity = if self.follower.coupling.as_ref().is_some_and(is_synced) {
             axis.velocity
@@ -296,7 +295,7 @@ impl<P: Planner> Axis<P> {
             ])
         };
         let velocity = sum(&|lead| lead.plan.at(lead.elapsed.saturating_add(begin)).velocity);
-        // The distance by which the law runs ahead of the line on the way there.
+        // The distance by which the law gets ahead of the line until then.
         let way = leads.iter().flatten().map(|lead| {
             let at = |scan| lead.plan.at(scan).position;
             lead.factor * (at(lead.elapsed.saturating_add(begin)) - at(lead.elapsed))
@@ -318,8 +317,8 @@ impl<P: Planner> Axis<P> {
         stretch.map_or(0.0, |stretch| stretch.velocity.abs())
     }
 
-    /// The place where a stop beside a line of this `velocity` (u/s) ends (u), positive if ahead of the
-    /// line. `start` is the state beside the line.
+    /// The position where a stop beside a line of this `velocity` (u/s) ends (u), positive if ahead of the line.
+    /// `start` is the state beside the line.
     fn stop_ahead(&self, start: &Setpoint, velocity: f64, limits: &Limits) -> Option<f64> {
         let lower = limits.lower_acceleration();
         let widest = Limits {
@@ -332,7 +331,7 @@ impl<P: Planner> Axis<P> {
         Some(1.0_f64.copysign(velocity) * stop.at(u64::from(stop.scans())).position)
     }
 
-    /// Whether the slave can come onto a stretch without going faster than `limits` allow.
+    /// Checks that the slave can get onto a stretch within the velocity of `limits`.
     ///
     /// # Errors
     /// [`ErrorId::MasterTooFast`].
@@ -425,8 +424,8 @@ impl<P: Planner> Axis<P> {
                     .stop_ahead(&start, stretch.velocity, limits)
                     .is_some_and(|ahead| ahead > 0.0);
             let track = self.line(stretch.velocity)?;
-            // A slave ahead of the line waits for it, or goes to meet it. In the second case it may be faster against
-            // the line than with it.
+            // A slave ahead of the line waits for it, or moves back to meet it. In the second case it may be faster
+            // against the line than with it.
             let attempt = |waits: bool| {
                 let along = |limits: &Limits| if waits { line } else { limits.velocity - line };
                 if along(limits) <= LEAST * limits.velocity {
@@ -480,8 +479,8 @@ impl<P: Planner> Axis<P> {
         self.planner.ramp_to(&steady, velocity, axis, axis).ok()
     }
 
-    /// Whether a motion `beside` a line of this `velocity` (u/s) may go against it: nothing bars that direction, and
-    /// the slave reverses inside its software limits.
+    /// Whether a motion `beside` a line of this `velocity` (u/s) may move against it: that direction is not barred,
+    /// and the slave reverses inside its software limits.
     fn may_go_back(&self, velocity: f64, beside: &P::Plan) -> bool {
         let heading = 1.0_f64.copysign(velocity);
         let cycle = self.planner.cycle();
@@ -489,7 +488,7 @@ impl<P: Planner> Axis<P> {
         let scans = u64::from(beside.scans());
         let looks = (0..=LOOKS).map(|look| scans * look / LOOKS);
         let back = looks.min_by(|one, other| speed(*one).total_cmp(&speed(*other)));
-        // From there it comes back to the velocity of the line.
+        // From there it returns to the velocity of the line.
         let (mut low, mut high) = (back.unwrap_or(0), scans);
         while high - low > 1 {
             let middle = low + (high - low) / 2;
@@ -500,16 +499,16 @@ impl<P: Planner> Axis<P> {
             }
         }
         let way = velocity * (low as f64 * cycle) + beside.at(low).position;
-        // The distance that it may still go back within a scan.
+        // The distance that it may still move back within a scan.
         let in_scan = heading * self.parameters.limits.lower_acceleration() * cycle * cycle;
         let place = self.mover.setpoint().position + way - in_scan;
         self.allowed(place).is_ok() && self.way_barred(-velocity).is_none()
     }
 
-    /// A plan onto a `line` of this `velocity` (u/s) from the state `start` beside it, within the speeds of
-    /// `room`. Returns the plan with its limits: those of the command, or higher ones if the axis could
-    /// not stay inside its own with them; none if these do not suffice either. Positions are relative to
-    /// a line through the slave's place, because far from 0 numbers are coarse.
+    /// A plan onto a `line` of this `velocity` (u/s) from the state `start` beside it, within the speeds of `room`.
+    /// Returns the plan with its limits: those of the command, or higher ones if these could not keep the axis inside
+    /// its own; none if these do not suffice either. Positions are relative to a line through the slave's place,
+    /// because far from 0 numbers are coarse.
     fn beside_line(
         &self,
         start: &Setpoint,
@@ -518,8 +517,8 @@ impl<P: Planner> Axis<P> {
         limits: &Limits,
         before: &Limits,
     ) -> Option<(P::Plan, Limits)> {
-        // A falling speed beside a line may be a rising speed of the slave, so the lower rate applies
-        // both ways.
+        // A decreasing speed beside a line may be an increasing speed of the slave, so the lower rate applies in both
+        // directions.
         let beside = |limits: &Limits, velocity: f64| {
             let lower = limits.lower_acceleration();
             Limits {
@@ -599,7 +598,7 @@ impl<P: Planner> Axis<P> {
         let leads = coupling.leads(&view.future).filter(|_| !view.future.is_late())?;
         let to_place = coupling.anchor.is_some();
         let is_syncing = coupling.is_syncing();
-        // On its way to a sync point the slave moves no faster against the law than it already does.
+        // Until its sync point the slave moves no faster against the law than it already does.
         let heading = heading(&leads, line);
         let may_turn = !is_syncing
             || (coupling.goes_back
@@ -645,8 +644,8 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The same beside a law whose motion ahead is not known, with half of the limits that it leaves now.
-    /// Each step is checked before it is made. There is none again if the half was not enough in this step.
+    /// The same beside a law whose future motion is not known, with half of the limits that it leaves now. Each step
+    /// is checked before it is made. There is no such way again if the half was not enough in this step.
     fn beside_measured(
         &self,
         view: &View<'_, P::Plan>,
@@ -660,7 +659,7 @@ impl<P: Planner> Axis<P> {
             return None;
         }
         let mut room = self.room_now(view, limits)?;
-        // A slave that is ahead on its way to a sync point waits, and does not go to meet the law.
+        // A slave that is ahead of its sync point waits, and does not move back to meet the law.
         if coupling.waits_ahead() && difference.position * line > 0.0 {
             room.velocity = room.velocity.min(line.abs());
         }
@@ -677,8 +676,8 @@ impl<P: Planner> Axis<P> {
     }
 
     /// A way that does not get ahead of a law that will be too fast. While the law is well within the limits, the
-    /// slave goes along it if it `may_follow` it in this step. Otherwise it takes the law's velocity or, from behind,
-    /// a higher one.
+    /// slave moves along it if it `may_follow` it in this step. Otherwise it takes the law's velocity or, from
+    /// behind, a higher one.
     fn near_law(
         &self,
         owner: &Entry,
@@ -720,7 +719,7 @@ impl<P: Planner> Axis<P> {
         Some(Way { left: UNKNOWN, ..way })
     }
 
-    /// A way along a law that will be too fast later, and from beside it within this `room`; on the law without a
+    /// A way along a law that will be too fast later: from beside it within this `room`, or on the law without a
     /// room. Each step is checked before it is made.
     fn along_law(
         &self,
@@ -786,13 +785,13 @@ impl<P: Planner> Axis<P> {
         (least > 0.0 && leads.iter().any(Option::is_some)).then_some(room)
     }
 
-    /// Whether a slave that is ahead of the law waits for it. Applies to a law whose only even stretch is its rest at
-    /// the end, which is further on.
+    /// Whether a slave that is ahead of the law waits for it. Applies to a law that has constant velocity only at its
+    /// rest at the end, which is further ahead.
     fn lets_law_come(&self, view: &View<'_, P::Plan>, difference: &Setpoint, line: f64) -> bool {
         let Some(coupling) = &self.follower.coupling else {
             return false;
         };
-        // A start that waits for a place of the master is in time if the slave goes ahead to that rest.
+        // A start that waits for a place of the master is in time if the slave moves ahead to that rest.
         let is_timed = coupling
             .gearing
             .sync
@@ -806,7 +805,7 @@ impl<P: Planner> Axis<P> {
         left.is_some_and(|left| difference.position * left > 0.0 && left.abs() > difference.position.abs())
     }
 
-    /// A velocity (u/s) of the slave's own, which does not lead onto the law.
+    /// A velocity (u/s) of the slave itself, which does not lead onto the law.
     ///
     /// # Errors
     /// The reason why it may not move.
@@ -823,10 +822,10 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// Moves as fast as it may, in the direction of the law, which has this `velocity` (u/s).
+    /// Moves as fast as possible, in the direction of the law, which has this `velocity` (u/s).
     ///
     /// # Errors
-    /// The reason why it may not go there.
+    /// The reason why it may not move there.
     fn at_pace(
         &self,
         owner: &Entry,
@@ -855,7 +854,7 @@ impl<P: Planner> Axis<P> {
     /// A ramp in the slave's own coordinates, planned like that of MC_MoveVelocity, and its limits.
     ///
     /// # Errors
-    /// The reason why it may not go there.
+    /// The reason why it may not move there.
     fn to_velocity(&self, owner: &Entry, velocity: f64) -> Result<(Motion<P::Plan>, Limits), ErrorId> {
         let limits = self.limits_of_approach(owner);
         let mut entry = Entry {
@@ -876,7 +875,7 @@ impl<P: Planner> Axis<P> {
         Ok((motion, limits))
     }
 
-    /// Takes `way` from now on; the motion before was within `before`.
+    /// Starts `way`; the motion before was within `before`.
     fn take_way(&mut self, way: Way<P::Plan>, before: Limits, scope: &mut Scope<'_>) {
         let scans = way.motion.scans();
         self.mover.take_over_from(before);
@@ -887,7 +886,7 @@ impl<P: Planner> Axis<P> {
         if self.modulo.is_some() {
             self.start_of_plan();
         }
-        // Beside a line at rest it comes to rest.
+        // Beside a line at rest it ends at rest.
         let from = match way.rung {
             Rung::BesideLine {
                 start, velocity: 0.0, ..
@@ -920,7 +919,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// There is no way on. A way that MC_Power or a limit switch bars waits for permission.
+    /// There is no way. A way that MC_Power or a limit switch bars waits for permission.
     fn stay_back(&mut self, error: ErrorId, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         if let Some(coupling) = &mut self.follower.coupling {
             coupling.rung = Rung::Due;
@@ -993,8 +992,8 @@ impl<P: Planner> Axis<P> {
     }
 }
 
-/// The direction of the law, as the sign of a distance (u) or a velocity (u/s): along its next even stretch `line`,
-/// or to its rest if it has no other stretch.
+/// The direction of the law, as the sign of a distance (u) or a velocity (u/s): along its next stretch `line`, or to
+/// its rest if it has no other stretch.
 fn heading<Q: Plan>(leads: &Leads<'_, Q>, line: f64) -> f64 {
     if line == 0.0 {
         way_to_rest(leads, 0).unwrap_or(0.0)

@@ -1,11 +1,11 @@
 //! The part of its limits that slaves leave to their master (`on_limit` `slow_master`).
 //!
-//! Bounds are collected at the end of each motion step, from the lowest slaves up, and apply from then
-//! on. They apply to commands of the master, to commands that wait, and to the motion in progress, which
-//! is planned anew from its state as for an override. Only the ramp after a fault ignores slaves.
+//! Bounds are collected at the end of each motion step, from the lowest slaves up, and apply from then on. They apply
+//! to commands of the master, to waiting commands, and to the motion in progress, which is planned anew from its
+//! state as for an override. Only the ramp after a fault ignores slaves.
 //!
-//! A bound lasts from the first scan in gear to the end of the coupling, also while the slave lags or
-//! changes to another ratio.
+//! A bound lasts from the first scan in gear to the end of the coupling, also while the slave lags or changes to
+//! another ratio.
 
 use super::super::commands::{Entry, Leg, REST, Work};
 use super::super::{Axis, Motion};
@@ -46,8 +46,8 @@ impl<P: Planner> Axis<P> {
         limits.or_smaller(&self.follower.bound.now)
     }
 
-    /// Lowers the limits of `entry` to those that slaves leave. Commands behind a master, commands that keep their
-    /// times and commands without motion have no limits to lower here.
+    /// Lowers the limits of `entry` to those that slaves leave. Commands that follow a master, keep their times or
+    /// move nothing have no limits to lower here.
     pub(in crate::axis) fn bound_entry(&self, entry: &mut Entry) {
         if !Self::has_bound(&entry.work) {
             return;
@@ -236,7 +236,7 @@ impl<P: Planner> Axis<P> {
         self.end_orphan();
     }
 
-    /// It has no motion, or one that is at its goal.
+    /// Whether it has no motion, or one at its goal.
     fn is_at_goal(&self) -> bool {
         match self.mover.motion() {
             Motion::Run { elapsed, scans, .. } => elapsed >= scans,
@@ -244,8 +244,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the motion in progress may continue: its limits become lower, it keeps them, and it leads
-    /// to the same end.
+    /// Whether the motion in progress may continue: its limits become lower, it keeps them, and it leads to the same
+    /// end.
     fn goes_on_within(&self, was: &Entry, owner: &Entry) -> bool {
         let is_lower = owner.limits == owner.limits.or_smaller(&was.limits);
         let Motion::Run { plan, elapsed, .. } = self.mover.motion() else {
@@ -284,8 +284,7 @@ impl<P: Planner> Axis<P> {
     }
 }
 
-/// The limits of a master whose slave has these `limits` behind a gear of this ratio; none if the slave
-/// does not move.
+/// The limits of a master whose slave has these `limits` and this gear ratio; none if the slave does not move.
 fn behind(limits: &Limits, (numerator, denominator): (i32, u16)) -> Option<Limits> {
     let (ways, turns) = (f64::from(denominator), f64::from(numerator).abs());
     let behind = |limit: f64| limit * ways / turns;
@@ -298,8 +297,8 @@ fn behind(limits: &Limits, (numerator, denominator): (i32, u16)) -> Option<Limit
     })
 }
 
-/// The part of `bound` that a moving shift leaves. A falling speed of the shift may be a rising speed of
-/// the slave, so the lower rate applies both ways.
+/// The part of `bound` that a moving shift leaves. A decreasing speed of the shift may be an increasing speed of the
+/// slave, so the lower rate applies in both directions.
 fn beside(bound: &Limits, shift: &Limits) -> Limits {
     let less = |limit: f64, taken: f64| {
         if limit.is_finite() {

@@ -99,8 +99,8 @@ impl<P: Planner> Axis<P> {
         self.note_steady();
     }
 
-    /// The first part of the motion step of a slave, behind a gear or on a cam: power, and a lost master.
-    /// Returns whether it still follows; if not, its step is done.
+    /// The first part of the motion step of a slave, in a gear or on a cam: power, and a lost master. Returns whether
+    /// it still follows; if not, its step is done.
     pub(super) fn still_follows(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) -> bool {
         self.apply_power(scope);
         self.follow_torque_order();
@@ -117,7 +117,7 @@ impl<P: Planner> Axis<P> {
                 }
             }
         }
-        // One that no block follows has become a halt.
+        // An owner without a block has become a halt.
         let follows = self.follows() && !self.has_lost_master();
         if !follows {
             self.advance(scope);
@@ -125,13 +125,13 @@ impl<P: Planner> Axis<P> {
         follows
     }
 
-    /// Whether the owner follows a master, behind a gear or on a cam.
+    /// Whether the owner follows a master, in a gear or on a cam.
     pub(in crate::axis) fn follows(&self) -> bool {
         self.is_coupled() || self.is_on_cam()
     }
 
-    /// A paused slave continues if the master's next motion `is_new`. Returns whether it stays paused;
-    /// its step is done then.
+    /// A paused slave continues if the master's future motion `is_new`. Returns whether it stays paused; its step is
+    /// then done.
     pub(super) fn stays_paused(&mut self, is_new: bool, scope: &mut Scope<'_>) -> bool {
         if self.is_paused() && is_new {
             self.resume(scope);
@@ -155,7 +155,7 @@ impl<P: Planner> Axis<P> {
         self.follower.coupling.as_ref().map(|coupling| coupling.rung)
     }
 
-    /// Coordinates of master or slave have moved: the law moves with them, and nothing else changes.
+    /// Coordinates of master or slave were shifted: the law is shifted with them, and nothing else changes.
     fn rebase(&mut self, view: &View<'_, P::Plan>, scan: u64) {
         let (here, moves) = (self.place(), self.frame.moves());
         let own = self.coordinates_moved(scan);
@@ -164,12 +164,12 @@ impl<P: Planner> Axis<P> {
         };
         let now = view.seen();
         for (was, now) in coupling.was.iter_mut().zip(&now) {
-            // A move of coordinates within the motion step was not seen before it.
+            // A shift of coordinates within the motion step was not seen before it.
             let late = now.moved - was.moved;
             was.place.position += late;
             was.at.position += late;
             if late.abs() > FURTHEST {
-                // At numbers of that size a step is lost in rounding.
+                // At numbers of this size a step is lost in rounding.
                 let phase = was.place.phase;
                 (was.place, was.at.position) = (Place { phase, ..now.place }, now.at.position);
             }
@@ -203,8 +203,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Notes the master's next motion. Returns whether that or a limit has changed since the last scan,
-    /// or whether the way onto the law is due to be searched again.
+    /// Notes the master's future motion. Returns whether that or a limit has changed since the last scan, or whether
+    /// the way onto the law is due to be searched again.
     fn look_ahead(&mut self, view: &View<'_, P::Plan>) -> bool {
         let limits = self.slowed(&self.parameters.limits);
         let Some(coupling) = &mut self.follower.coupling else {
@@ -387,8 +387,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// On a way of several turns back onto its law, the rest of the way is searched again from the present place: a
-    /// plan that began further away is as coarse as that distance.
+    /// On a way of several turns back onto its law, searches the rest of the way again from the present place. A plan
+    /// that began further away is as coarse as that distance.
     fn look_from_near(&mut self, beside: &Setpoint, line: f64) {
         let (Some(modulo), Some(coupling)) = (&self.modulo, &mut self.follower.coupling) else {
             return;
@@ -399,7 +399,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// In gear, unless the last published set-point has ended that.
+    /// In gear, unless the set-point published last has ended that.
     fn lock_unless_stopped(&mut self, anchor: Anchor, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         if self.is_coupled() && !self.is_paused() {
             self.lock(anchor, view, scope);
@@ -425,8 +425,8 @@ impl<P: Planner> Axis<P> {
         is_on
     }
 
-    /// After a step of its own: in gear, if it has reached the velocity of the law, was not in gear
-    /// before, and can stay.
+    /// After a step of its own: in gear if it has reached the velocity of the law, was not in gear before, and can
+    /// stay on the law.
     fn lock_at_velocity(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let Some(coupling) = &self.follower.coupling else {
             return;
@@ -481,8 +481,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The limit that the law of measured values exceeds between the ends of the last two scans, although
-    /// both ends keep it.
+    /// The limit that the law of measured values exceeds between the ends of the last two scans, although it keeps it
+    /// at both ends.
     fn beyond_on_the_way(
         &self,
         anchor: &Anchor,
@@ -519,8 +519,8 @@ impl<P: Planner> Axis<P> {
             .find(|(_, value, limit)| !(*value <= limit * (1.0 + ROUNDING)))
     }
 
-    /// Whether measured places are fine enough that rounding causes no step of the slave. Only jumps lead
-    /// to places that are too coarse.
+    /// Whether measured places are fine enough that rounding causes no step of the slave. Only jumps lead to places
+    /// that are too coarse.
     pub(super) fn is_told_finely(&self, view: &View<'_, P::Plan>) -> bool {
         let Some(coupling) = self.follower.coupling.as_ref().filter(|_| self.follows_actual()) else {
             return true;
@@ -539,17 +539,17 @@ impl<P: Planner> Axis<P> {
         self.beyond(place, &law, &coupling.limits, self.rough(view))
     }
 
-    /// `Some` if this step was not checked against the limits before. Causes: the slave stays in gear as
-    /// long as it can, the master's motion ahead is not known, it was not known until now, or the master
-    /// is at rest, perhaps after a plan of one scan. `Some(TRUE)` if the master's motion is less smooth
-    /// than the slave needs; a shift is as smooth as the slave.
+    /// `Some` if this step was not checked against the limits before. The causes are: the slave stays in gear as long
+    /// as it can; the master's future motion is not known, or was not until now; the master is at rest, perhaps after
+    /// a plan of one scan. `Some(TRUE)` if the master's motion is less smooth than the slave needs. A shift is as
+    /// smooth as the slave.
     fn rough(&self, view: &View<'_, P::Plan>) -> Option<bool> {
         let gearing = &self.follower.coupling.as_ref()?.gearing;
         let degree = self.slowed(&self.parameters.limits).order().degree();
         let own = view.seen().map(|seen| seen.own_rates()[1]);
         let is_rough = view.degree() < degree && gearing.derivative(own) != 0.0;
         match view.future.kind() {
-            // Their motion was planned for this slave, unless it does something else.
+            // The motion of the masters was planned for this slave, unless the slave does something else.
             _ if self.slows_master() && view.keeps_bound() && !self.adds_motion() => None,
             _ if self.config.following.on_limit == OnLimit::Error => Some(is_rough),
             Kind::Unknown | Kind::Measured | Kind::Still | Kind::NotSeen => Some(is_rough),
@@ -575,7 +575,7 @@ impl<P: Planner> Axis<P> {
         self.note_sync(view, scope);
     }
 
-    /// No longer in gear: the law needs `value`, and at most `limit` is allowed.
+    /// No longer in gear: the law needs `value`, but only `limit` is allowed.
     pub(in crate::axis) fn lose_gear(&mut self, (what, value, limit): Beyond, scope: &mut Scope<'_>) {
         if self.is_on_cam() {
             return self.lose_sync((what, value, limit), scope);
@@ -587,9 +587,9 @@ impl<P: Planner> Axis<P> {
         self.record(event, &mut self.owner_scope(scope));
     }
 
-    /// The limit that the state `next` at `place` exceeds. If the motion ahead is not known (`rough` says
-    /// how the master moves), there are two more checks: a step that no motion within the limits can
-    /// make, and a state that must lead out of them. They cost a ramp.
+    /// The limit that the state `next` at `place` exceeds. If the future motion is not known (`rough` says how the
+    /// master moves), there are two more checks: a step that no motion within the limits can make, and a state that
+    /// must lead beyond them. They cost a ramp.
     pub(super) fn beyond(
         &self,
         place: Option<Place>,
@@ -654,7 +654,7 @@ impl<P: Planner> Axis<P> {
         Some(("velocity", most.copysign(next.velocity), limits.velocity))
     }
 
-    /// Publishes `next`, whose whole turns are those of `place`, if it may follow the last set-point.
+    /// Publishes `next`, whose whole turns are those of `place`, if it is a permitted step from the last set-point.
     pub(super) fn publish_behind(&mut self, place: Place, mut next: Setpoint, scope: &mut Scope<'_>) {
         let mut last = *self.mover.setpoint();
         let mut turns = place.turns;
@@ -687,7 +687,7 @@ impl<P: Planner> Axis<P> {
         self.mover.publish(next);
     }
 
-    /// Whether `next` is no further from the `last` set-point than the axis may go in a scan.
+    /// Whether `next` is no further from the `last` set-point than the axis may move in a scan.
     fn is_step_behind(&self, last: &Setpoint, next: &Setpoint) -> bool {
         let scan = LONGEST * self.planner.cycle();
         let fits = |limits: &Limits| steps_within(last, next, limits, scan, 0.0);
@@ -700,7 +700,7 @@ impl<P: Planner> Axis<P> {
             )
     }
 
-    /// The master went out of operation: comes to rest and searches no way onto the law.
+    /// The master went out of operation: the slave comes to rest and searches no way onto the law.
     #[cold]
     fn hold_without_master(&mut self, scope: &mut Scope<'_>) {
         self.pause(ErrorId::MasterLost, scope);
@@ -714,7 +714,7 @@ impl<P: Planner> Axis<P> {
         self.hold_off_cam();
     }
 
-    /// Its present distance from the law, and whether that is too large.
+    /// Computes its present distance from the law, and whether that is too large.
     fn measure(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let here = self.place();
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
@@ -736,8 +736,8 @@ impl<P: Planner> Axis<P> {
     }
 }
 
-/// Whether a law of measured values left a plan this `room` beside it during the whole scan. The law has these two
-/// states at the ends of a scan of this `cycle` (s). The sum of both had these two velocities there.
+/// Whether a law of measured values left a plan this `room` beside it during the whole scan. The law had these two
+/// states at the ends of a scan of this `cycle` (s); the sum of both had these two velocities there.
 pub(super) fn leaves_room(
     law: &[Setpoint; 2],
     room: &Limits,

@@ -1,8 +1,6 @@
-//! The place of an axis in the chains of masters and slaves. [`couple`](crate::couple) finds it from all
-//! axes.
+//! The position of an axis in the chains of masters and slaves. [`couple`](crate::couple) finds it from all axes.
 
-/// The place of an axis, and whether it follows a master or some slave follows it. What every scan looks at comes
-/// first.
+/// The position of an axis, and whether it follows a master or has slaves. Fields that every scan reads come first.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub(crate) struct Links {
@@ -63,7 +61,7 @@ impl Links {
         self.some_follow = some_follow;
     }
 
-    /// Some slave may follow it, or did.
+    /// Whether a slave may follow it, or followed it.
     #[inline]
     pub(in crate::axis) fn is_followed(&self) -> bool {
         self.is_followed
@@ -73,7 +71,7 @@ impl Links {
         self.is_followed = true;
     }
 
-    /// The current search for a ring has reached this axis.
+    /// Whether the present search for a ring has reached this axis.
     pub(crate) fn is_above(&self) -> bool {
         self.is_above
     }

@@ -1,4 +1,4 @@
-//! The share of the limits that a step between two set-points needs, for any motion between them.
+//! The share of the limits that a step between two set-points needs, at least, for any motion between them.
 
 use super::super::commands::ROUNDING;
 use super::follow::Beyond;
@@ -7,30 +7,30 @@ use standstill_planner::{Limits, Setpoint};
 /// The order of the results of [`Step::needs`].
 pub(super) const DERIVATIVES: [&str; 4] = ["velocity", "acceleration", "jerk", "snap"];
 
-/// A third derivative of at most J moves the end at most J cycle^3 / `BENT` away from the place that the velocities
+/// A third derivative of at most J moves the end by at most J cycle^3 / `BENT` from the position that the velocities
 /// and accelerations at both ends of a scan give. `BENT` is 36 times the root of 3 (error of the trapezoidal rule
 /// with end correction).
 const BENT: f64 = 62.353_829_072_479_58;
 
-/// The largest relative error of a position, relative to the largest position that it was made from.
+/// The largest relative error of a position, relative to the largest position from which it was computed.
 pub(super) const RESOLVED: f64 = 16.0 * f64::EPSILON;
 
 /// Two set-points one scan apart.
 pub(super) struct Step<'a> {
     pub last: &'a Setpoint,
     pub next: &'a Setpoint,
-    /// The way between them (u), if known.
+    /// The distance between them (u), if known.
     pub way: Option<f64>,
-    /// The largest other position that the way was made from (u).
+    /// The largest other position from which that distance was computed (u).
     pub coarsest: f64,
     /// Length of a scan (s).
     pub cycle: f64,
 }
 
 impl Step<'_> {
-    /// The velocity, acceleration, jerk and snap that are at least reached between the two, less the
-    /// largest rounding error. They follow from the change of each derivative, and from the part of it
-    /// that the next derivatives do not explain.
+    /// The velocity, acceleration, jerk and snap that are reached between the two, at least, less the largest
+    /// rounding error. They follow from the change of each derivative, less the part that the next derivatives
+    /// explain.
     pub(super) fn needs(&self) -> [f64; 4] {
         let Self {
             last, next, cycle, ..
@@ -69,17 +69,17 @@ impl Step<'_> {
     }
 }
 
-/// How much rounding may exceed a limit if it moves a moment by `1`, relative to the limit. If a motion is always at
-/// its limit, the room left grows with the square of the excess.
+/// The part by which rounding may exceed a limit, relative to the limit, if it changes a moment by `1`. If a motion
+/// is always at its limit, the room left grows with the square of the excess.
 const FAR: f64 = 64.0;
 
 /// A moment with a rounding error above this, relative to its largest possible value, is ignored.
 const COARSE: f64 = 1e-3;
 
 impl Step<'_> {
-    /// The first derivative whose limit no motion between the two set-points keeps: its name, the least
-    /// value that some motion needs, and the limit. Each derivative is checked by itself, independent of
-    /// the lower ones between the two.
+    /// The first derivative whose limit every motion between the two set-points exceeds: its name, the least value
+    /// that a motion needs, and the limit. Each derivative is checked by itself, independent of the lower ones
+    /// between the two.
     ///
     /// The derivative is a function of time between M - L and M + L, and the set-points give its first moments. The
     /// possible moments of such a function are known: see [`are_possible`]. M is 0, except for accelerations with
@@ -112,8 +112,8 @@ impl Step<'_> {
         }
     }
 
-    /// The least distance from the middle of the range that a motion keeps in the derivative of this order,
-    /// to a part in 2^20; more than that of `range`. Cost: at most 84 checks.
+    /// The least distance from the middle of the range that a motion can keep in the derivative of this order, to a
+    /// part in 2^20; `range` is too low. Cost: at most 84 checks.
     fn least(&self, order: usize, range: (f64, f64)) -> f64 {
         let (middle, limit) = range;
         let (mut low, mut high) = (limit, 2.0 * limit);
@@ -134,8 +134,8 @@ impl Step<'_> {
         high
     }
 
-    /// Whether some motion leads from one set-point to the next whose derivative of this order stays
-    /// within `limit` of `middle`, which is 0 above order 2.
+    /// Whether a motion leads from one set-point to the next whose derivative of this order stays within `limit` of
+    /// `middle`, which is 0 above order 2.
     fn is_possible(&self, order: usize, (middle, limit): (f64, f64)) -> bool {
         let Self {
             last, next, cycle, ..
@@ -188,16 +188,17 @@ impl Step<'_> {
     }
 }
 
-/// Whether there is a function f of time t in [0, 1] between `-most` and `most` with the first `count` of these moments: the
-/// integrals of f (1 - t)^n; fewer of them are possible.
+/// Whether there is a function f of time t in [0, 1] between `-most` and `most` with the first `count` of these
+/// moments. A moment is the integral of f (1 - t)^n. The moments before the last of them must be known to be
+/// possible.
 ///
-/// For g between 0 and 1 with the moments c, the exponential of -(c0 / z + c1 / z^2 + ..) is 1 - (n0 / z + n1 / z^2 + ..) with the
-/// moments n of a measure. There is such a g where that measure is nowhere below 0, and so for 1 - g, and for both with time
-/// reversed.
+/// For g between 0 and 1 with the moments c, the exponential of -(c0 / z + c1 / z^2 + ..) is 1 - (n0 / z + n1 / z^2 +
+/// ..), where n are the moments of a measure. Such a g exists if that measure is nowhere negative. The same holds for
+/// 1 - g, and for both with reversed time.
 ///
 /// Source: N. I. Akhiezer and M. G. Krein, Some Questions in the Theory of Moments, on the L-problem of A. A. Markov.
 fn are_possible(moments: &[f64; 4], count: usize, most: f64) -> bool {
-    // Of g, which is half of 1 + f / most.
+    // The moments of g = (1 + f / most) / 2.
     let [c0, c1, c2, c3] = moments.map(|moment| 0.5 * moment / most);
     let known = [0.5 + c0, 0.25 + c1, 1.0 / 6.0 + c2, 0.125 + c3];
     let [c0, c1, c2, c3] = known;
@@ -214,7 +215,7 @@ fn are_possible(moments: &[f64; 4], count: usize, most: f64) -> bool {
     }
 }
 
-/// The moments n of the measure that belongs to these.
+/// The moments n of the measure for the moments c.
 fn measure([c0, c1, c2, c3]: [f64; 4]) -> [f64; 4] {
     let square = c0 * c0;
     [
@@ -225,13 +226,13 @@ fn measure([c0, c1, c2, c3]: [f64; 4]) -> [f64; 4] {
     ]
 }
 
-/// How much the moments spread beyond those of a function that is 1 in one piece.
+/// The spread of the moments, compared with that of a function that is 1 in one piece.
 fn spread([c0, c1, c2]: [f64; 3]) -> f64 {
     let square = c0 * c0;
     c0 * c2 - c1 * c1 - square * square / 12.0
 }
 
-/// A scan of constant snap, from a state on: velocity, acceleration, jerk and snap.
+/// A scan of constant snap from a state: velocity, acceleration, jerk and snap.
 pub(super) struct Piece {
     velocity: f64,
     acceleration: f64,
@@ -275,7 +276,8 @@ impl Piece {
             let peak = acceleration + 0.5 * jerk * turn;
             most.acceleration = most.acceleration.max(peak.abs());
         }
-        // Where the acceleration is 0: roots of a quadratic, without taking a small difference of large numbers.
+        // Where the acceleration is 0: roots of a quadratic equation, computed without a small difference of large
+        // numbers.
         let discriminant = jerk * jerk - 2.0 * snap * acceleration;
         if discriminant >= 0.0 {
             let root = -(jerk + standstill_planner::math::sqrt(discriminant).copysign(jerk));
@@ -297,7 +299,7 @@ mod tests {
 
     const CYCLE: f64 = 0.01;
 
-    /// The moments of a function that is `most` and `-most` in turn, and changes at these times.
+    /// The moments of a function that is `most` and `-most` in turn, and switches at these times.
     fn moments(most: f64, switches: &[f64]) -> [f64; 4] {
         let mut moments = [0.0; 4];
         let mut from = 0.0;
@@ -314,7 +316,8 @@ mod tests {
         moments
     }
 
-    /// Of all functions with the same first n moments, one that changes its sign at most n - 1 times is the smallest.
+    /// Of all functions with the same first n moments, the one with the smallest magnitude changes its sign at most n
+    /// - 1 times.
     #[test]
     fn moments_are_possible_up_to_the_smallest_function_that_has_them() {
         let mut random = 1_u64;
@@ -373,8 +376,7 @@ mod tests {
         step(last, next).needs()
     }
 
-    /// For each derivative alone the ends of a scan are within the limit; together they show that it was
-    /// exceeded.
+    /// At the ends of the scan each derivative is within its limit. Only together they show that one was exceeded.
     #[test]
     fn a_switch_within_a_scan_shows_at_its_ends() {
         let start = Setpoint {
@@ -399,7 +401,7 @@ mod tests {
         assert!((least / 1.02e4 - 1.0).abs() < 1e-4, "{least}");
     }
 
-    /// A speed falls faster than the deceleration limit, but slower than the acceleration limit.
+    /// A speed that falls faster than the deceleration limit, but slower than the acceleration limit.
     #[test]
     fn each_way_has_its_own_limit() {
         let limits = Limits {

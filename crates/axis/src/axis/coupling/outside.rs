@@ -1,5 +1,5 @@
-//! A master that is commanded to a place outside the software limits of its slave. This is reported at once, not only
-//! when the slave stops.
+//! A master whose commands lead a slave outside its software limits. This is reported at once, not only when the
+//! slave stops.
 
 use super::super::{Axis, Motion};
 use super::view::{View, way_to_rest};
@@ -10,7 +10,7 @@ use standstill_planner::{Leads, Plan, Planner};
 /// The distance (in the unit of the `leads`) from the end of this scan until all masters have come to rest. `None`
 /// while it is not known or one of them is endless.
 pub(super) fn way_left<Q: Plan>(view: &View<'_, Q>, leads: &Leads<'_, Q>) -> Option<f64> {
-    // At the end of this scan, a plan that is not late is one scan further than at its beginning.
+    // If the plan is not late, the end of this scan is one scan after its beginning in the leads.
     way_to_rest(leads, u64::from(!view.future.is_late()))
 }
 
@@ -25,8 +25,8 @@ impl Coupling {
 }
 
 impl<P: Planner> Axis<P> {
-    /// Whether it may leave its software limits on its way. It may not on a plan that counts from the place `from`,
-    /// comes to rest inside, and does not reverse outside.
+    /// Whether it may leave its software limits. It can't on a plan that counts from the position `from`, comes to
+    /// rest inside, and does not reverse outside.
     pub(super) fn may_leave_on_way(&self, from: Option<f64>) -> bool {
         let Some((min, max)) = self.parameters.software_limits else {
             return false;
@@ -39,8 +39,8 @@ impl<P: Planner> Axis<P> {
         end < range.0 || end > range.1 || !self.turns_within((plan, 0), range)
     }
 
-    /// Records that the masters lead the slave out of its software limits, once for each end place. The law is known
-    /// once the slave was in gear, or from the sync positions of MC_GearInPos. A cam is known as soon as it has a
+    /// Records that the masters lead the slave outside its software limits, once for each end position. The law is
+    /// known once the slave was in gear, or from the sync positions of MC_GearInPos. A cam is known once it has a
     /// place.
     ///
     /// Cost, if a master got another plan: one evaluation of the law or the cam, and two of each plan.

@@ -1,8 +1,8 @@
 //! MC_PhasingAbsolute and MC_PhasingRelative: the slave sees its master at a shifted place.
 //!
 //! The shift moves on a plan of its own, in units of the master. The plan keeps the sum of master and shift inside
-//! the limits of the slave: it is slower than asked, or waits for room. The shift belongs to the slave. It remains
-//! when another coupling with the same master takes over, and ends with the last coupling.
+//! the limits of the slave: it is slower than commanded, or waits for room. The shift belongs to the slave. It
+//! remains when another coupling with the same master takes over, and ends with the last coupling.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_PhasingAbsolute, MC_PhasingRelative; V21. docs/coupling.md states what
 //! the standard leaves open.
@@ -21,7 +21,7 @@ struct Shift {
     /// To this value, or by it (u of the master).
     shift: f64,
     is_relative: bool,
-    /// The limits asked for; infinite if the slave's limits decide.
+    /// The commanded limits; infinite if the slave's limits decide.
     limits: Limits,
     /// Whether this command moves the shift now.
     runs: bool,
@@ -34,11 +34,11 @@ struct Moving<Plan> {
     elapsed: u64,
     scans: u64,
     limits: Limits,
-    /// The same, or the limits of the earlier shifts from which it took over in motion.
+    /// The same, or the limits of the earlier shifts whose motion it took over.
     most: Limits,
     /// The known motion of the masters when it was planned.
     kind: Kind,
-    /// The masters have a new motion since then, so there may be more room.
+    /// The motion of the masters has changed since then, so there may be more room.
     is_dated: bool,
 }
 
@@ -110,8 +110,8 @@ impl Seen {
 }
 
 impl<P: Planner> Axis<P> {
-    /// The distance by which the slave sees this master ahead of its real place (u of the master); 0 if
-    /// it does not follow it.
+    /// The distance by which the slave sees this master ahead of its real place (u of the master); 0 if it does not
+    /// follow it.
     pub fn phase_of(&self, master: AxisId) -> f64 {
         let mut phases = self.followed().into_iter().zip(self.phases());
         phases
@@ -124,8 +124,8 @@ impl<P: Planner> Axis<P> {
         self.follower.phasing.legs.map(|leg| leg.now.position)
     }
 
-    /// MC_PhasingAbsolute, MC_PhasingRelative: shifts the master as the slave sees it. Nothing is planned
-    /// here, because the master moves first in the motion step.
+    /// MC_PhasingAbsolute, MC_PhasingRelative: shifts the master as the slave sees it. Nothing is planned here,
+    /// because in the motion step the master moves first.
     ///
     /// # Errors
     /// The [`ErrorId`] the block shows: the axis does not follow this master, a pin is not usable, or
@@ -225,7 +225,7 @@ impl<P: Planner> Axis<P> {
         self.follower.phasing = Phasing::default();
     }
 
-    /// The shifts, if `entry`, which takes over, continues them behind the same masters.
+    /// The shifts, if `entry`, which takes over, follows the same masters and continues them.
     pub(in crate::axis) fn lend_phasing(&mut self, entry: &Entry) -> Phasing<P::Plan> {
         if self.goes_on_behind_masters(entry) {
             core::mem::take(&mut self.follower.phasing)
@@ -234,7 +234,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The owner before has ended; its phase shift goes on.
+    /// The last owner has ended; its phase shift continues.
     pub(in crate::axis) fn keep_phasing(&mut self, phasing: Phasing<P::Plan>) {
         self.follower.phasing = phasing;
     }
@@ -311,7 +311,7 @@ impl<P: Planner> Axis<P> {
         }
         let mut shifted = *view;
         for leg in &mut self.follower.phasing.legs {
-            // The condition that stopped it has ended.
+            // The reason why it was stopped has ended.
             leg.now = Setpoint::at_rest(leg.now.position);
         }
         if let Some((leg, moving)) = &mut self.follower.phasing.motion {
@@ -372,7 +372,7 @@ impl<P: Planner> Axis<P> {
         };
         let asked = shift.shift;
         if shift.is_relative {
-            // From now on a fixed value, however often it is planned anew.
+            // From now on a fixed value, even if it is planned anew.
             shift.shift += now.position;
             shift.is_relative = false;
         }
@@ -394,7 +394,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Plans the shift in progress anew if its masters have left more room since, and it is done sooner with that.
+    /// Plans the shift in progress anew if its masters leave more room since, and it is done sooner with that.
     ///
     /// Cost: that of [`Axis::shifted_view`], once for each motion of the masters.
     fn hasten_shift(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
@@ -433,7 +433,7 @@ impl<P: Planner> Axis<P> {
         self.record(Event::Phasing { to, scans }, scope);
     }
 
-    /// The way of a shift from its state `now`, with the part of the `room` that it asks for.
+    /// The plan of a shift from its state `now`, within the part of the `room` that it needs.
     fn planned_shift(
         &self,
         shift: &Shift,
@@ -459,7 +459,7 @@ impl<P: Planner> Axis<P> {
         };
         let mut plan = planned(&limits)?;
         if let (Some(most), true) = (&most, self.slows_master() && plan.excess().is_some()) {
-            // At such low rates it would exceed the room that the master leaves.
+            // At such low rates it would exceed the room left by the master.
             limits = Limits {
                 velocity: limits.velocity,
                 acceleration: limits.acceleration.max(most.acceleration),
@@ -480,8 +480,8 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The part of the slave's limits that the law leaves, in units of the master. None if it leaves
-    /// nothing, or while the slave is not in gear or the master's motion ahead is not known.
+    /// The part of the slave's limits that the law leaves, in units of the master. None if it leaves nothing, while
+    /// the slave is not in gear, or while the master's future motion is not known.
     fn room_for_shift(
         &self,
         (leg, asked): (usize, &Limits),
@@ -501,7 +501,7 @@ impl<P: Planner> Axis<P> {
             return Some(*limits);
         }
         let room = match view.future.kind() {
-            // A master's step in this scan belonged to another plan, which has left it less room.
+            // The master's step in this scan belonged to another plan, which left it less room.
             _ if self.slows_master() && (view.future.is_new || view.future.is_late()) => return None,
             Kind::Still => *limits,
             Kind::Measured => self.room_now(view, limits)?,

@@ -1,9 +1,9 @@
-//! A scan in which nothing is new: the slave is in gear or in sync on a cam, its master continues as
-//! before, and the set-point is the law.
+//! A scan in which nothing is new: the slave is in gear, or in sync on a cam, its master continues as before, and the
+//! set-point is the law.
 //!
-//! This is what [`follow`](super::follow) does in such a scan, and no more. If anything has changed, this
-//! code changes nothing and leaves the step to `follow`. So such a slave costs little more than an axis
-//! in a move, and every bit is the same.
+//! This module does what [`follow`](super::follow) does in such a scan, and no more. If anything has changed, it
+//! changes nothing and leaves the step to `follow`. So such a slave costs little more than an axis in a move, and
+//! every bit of the result is the same.
 
 use super::super::commands::ROUNDING;
 use super::super::modulo::Modulo;
@@ -31,8 +31,8 @@ pub(in crate::axis) struct Steady {
     pub(super) source: Source,
 }
 
-/// The limits that the set-point of a slave may use in a scan in which nothing is new, computed once. All
-/// are finite, so a value within them is a number.
+/// The limits for the set-point of a slave in a scan in which nothing is new, computed once. All are finite, so a
+/// value within them is a number.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Room {
     /// Its derivatives: the limits of the slave.
@@ -95,8 +95,8 @@ impl Room {
 }
 
 impl KnownPart {
-    /// Whether the known motion of the master continues in this scan: it follows the plan of that axis,
-    /// this many scans after its start.
+    /// Whether the known motion of the master continues in this scan: it follows the plan of that axis, this number
+    /// of scans after its start.
     #[inline(always)]
     pub(super) fn goes_on(&self, (root, elapsed): (usize, u64)) -> bool {
         // The first scan of a plan is recognized by the end of the plan.
@@ -105,8 +105,8 @@ impl KnownPart {
 }
 
 impl Coupling {
-    /// Whether the coupling permits a step in which nothing is new: it is in gear behind the set-point of
-    /// one master, the limits of the slave are these, and its coordinates have moved this many times.
+    /// Whether the coupling permits a step in which nothing is new: it is in gear with the set-point of one master,
+    /// the slave has these limits, and its coordinates were shifted this number of times.
     fn may_go_on(&self, limits: &Limits, moves: u32) -> bool {
         self.rung.is_locked()
             && self.gearing.second.is_none()
@@ -126,9 +126,8 @@ impl Coupling {
 }
 
 impl<P: Planner> Axis<P> {
-    /// Whether its own state permits a next step in which nothing is new. It is then in gear or in sync
-    /// on a cam; it does not move beside the law, waits for nothing, and does not check each of its
-    /// steps.
+    /// Whether its own state permits a next step in which nothing is new. It is then in gear, or in sync on a cam. It
+    /// does not move beside the law, waits for nothing, and does not check each of its steps.
     fn may_go_on(&self) -> bool {
         let (limits, moves) = (self.slowed(&self.parameters.limits), self.frame.moves());
         let in_gear = self.follower.coupling.as_ref();
@@ -164,8 +163,8 @@ impl<P: Planner> Axis<P> {
         self.follower.steady.is_settled = true;
     }
 
-    /// Whether nothing is new: it follows none, or it is a slave whose next step may be one in which
-    /// nothing is new. Every event that ends this calls [`Axis::unsettle`].
+    /// Whether nothing is new: it follows no master, or it is a slave whose next step may be one in which nothing is
+    /// new. Every event that ends this calls [`Axis::unsettle`].
     #[inline]
     pub(crate) fn is_settled(&self) -> bool {
         self.follower.steady.is_settled
@@ -184,7 +183,7 @@ impl<P: Planner> Axis<P> {
         self.note_source();
     }
 
-    /// Called before its step, if some slave may follow it: notes its place.
+    /// Notes its place before its step, if a slave may follow it.
     #[inline(always)]
     pub(crate) fn note_before(&mut self, scan: u64) {
         if !self.links.is_followed() {
@@ -227,12 +226,12 @@ impl<P: Planner> Axis<P> {
         )
     }
 
-    /// After its step, if it continued as its slaves know: the axis whose plan it follows, and the scans
-    /// since the start of that plan.
+    /// After a step that its slaves expected: the axis whose plan it follows, and the scans since the start of that
+    /// plan.
     #[inline(always)]
     fn went_on(&self) -> Option<(usize, u64)> {
         match self.mover.motion() {
-            // If something was new for it or for a master of it, its slaves check the step in full.
+            // If something was new for it or one of its masters, its slaves check the step completely.
             Motion::Geared if self.follower.steady.has_gone_on => {
                 let coupling = self
                     .follower
@@ -250,8 +249,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The step of a slave for which nothing is new, after that of its master. Returns FALSE and changes
-    /// nothing if something is new after all, because its master did not continue as known.
+    /// The step of a slave for which nothing is new, after that of its master. If its master did not continue as
+    /// expected, something is new after all: returns FALSE and changes nothing.
     ///
     /// Cost: one evaluation of the law.
     #[inline(always)]

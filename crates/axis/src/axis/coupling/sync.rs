@@ -1,5 +1,5 @@
-//! MC_GearInPos: a law that is given before the slave is on it, and a start that waits for a place of the
-//! master. MC_CamIn may also have such a start.
+//! MC_GearInPos: a law that is given before the slave is on it, and a start that waits for a position of the master.
+//! MC_CamIn may also have such a start.
 //!
 //! Until the start the command waits beside the owner of the slave, and does not affect it. When the master crosses
 //! the start point, the command is checked first: can the slave be in sync in time? Only then is the owner
@@ -44,17 +44,16 @@ pub(in crate::axis) struct Awaited {
     laid: Option<(Place, f64)>,
 }
 
-/// A place of the master at which something starts.
+/// A place of the master at which a command starts.
 #[derive(Clone, Copy, Debug)]
 struct StartPoint {
-    /// The sync point, and the distance of the start point before it, with the sign of the direction in
-    /// which it is crossed.
+    /// The sync point, and the distance of the start point before it, with the sign of the direction in which the
+    /// master crosses it.
     goal: f64,
     distance: f64,
-    /// It has not been searched yet.
+    /// It has not been checked yet.
     is_new: bool,
-    /// The master has been between start and sync point since the command was given, and has not gone
-    /// back.
+    /// The master has been between start and sync point since the command was given, and has not moved back.
     is_between: bool,
 }
 
@@ -96,7 +95,7 @@ impl StartPoint {
         let way = heading * course.way;
         let has_crossed = match course.length {
             None => heading * (before - point) < 0.0 && heading * (here - point) >= 0.0,
-            // Its distance behind the start point is shorter than its travel in this scan.
+            // The master is behind the start point by less than its travel in this scan.
             Some(length) => wrapped(heading * (here - point), length) < way,
         };
         if core::mem::take(&mut self.is_new) {
@@ -113,7 +112,7 @@ impl StartPoint {
 }
 
 impl Awaited {
-    /// The entry of `entry` while it waits; `None` if it has nothing to wait for.
+    /// The waiting `entry`; `None` if it has nothing to wait for.
     fn new(entry: Entry) -> Option<Self> {
         let (master, source, goal, distance) = match entry.work {
             Work::Gear(gearing) => {
@@ -139,8 +138,8 @@ impl Awaited {
         })
     }
 
-    /// The place of the cam at its master with new values. A cam that counts from the master's place at
-    /// the edge still does.
+    /// The place of the cam at its master with new values. A cam that counts from the master's place at the edge
+    /// keeps it.
     fn laid_for(&self, entry: &Entry, cams: &Cams<'_>) -> Option<(Place, f64)> {
         let (Work::Cam(before), Work::Cam(camming)) = (self.entry.work, entry.work) else {
             return None;
@@ -162,7 +161,7 @@ impl Awaited {
     /// The step of the master from the end of the last scan to `now`, on the master's side of the cam if a cam is
     /// given. `turn` is the length of the master's turn (u).
     fn course(&mut self, now: &Seen, turn: Option<f64>, cams: &Cams<'_>) -> Option<Course> {
-        // A move of coordinates within the motion step was not seen before it.
+        // A shift of coordinates within the motion step was not seen before it.
         let late = now.moved - self.was.moved;
         if let Work::Cam(camming) = self.entry.work {
             let cam = cams.cam(camming.cam)?;
@@ -243,7 +242,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// A command waits for its start point and replaces one that waited before.
+    /// Makes a command wait for its start point. It replaces one that waited before.
     pub(in crate::axis) fn await_start(
         &mut self,
         work: Work,
@@ -307,7 +306,7 @@ impl<P: Planner> Axis<P> {
         self.follower.awaited.as_ref().map(|awaited| awaited.master)
     }
 
-    /// The same master, with its values that are followed.
+    /// The same master, with its followed values.
     pub(crate) fn awaited_values(&self) -> Option<Values> {
         self.follower
             .awaited
@@ -315,7 +314,7 @@ impl<P: Planner> Axis<P> {
             .map(|awaited| (awaited.master, awaited.source))
     }
 
-    /// Before any axis has moved in this scan: notes the place of the master that a command waits for.
+    /// Before any axis has moved in this scan: notes the place of the master for which a command waits.
     pub(crate) fn note_awaited_master(&mut self, seen: Seen) {
         if let Some(awaited) = &mut self.follower.awaited {
             awaited.was = seen;
@@ -431,7 +430,7 @@ impl<P: Planner> Axis<P> {
         let in_scan = (view.now.at.velocity * self.planner.cycle()).abs();
         let mut enough = distance.abs() + late;
         for _ in 0..TRIALS {
-            // A master with turns is at its sync point again after that distance.
+            // After that distance a master with turns is at its sync point again.
             let exists = enough.is_finite() && view.turn.is_none_or(|length| enough < length);
             if !exists {
                 break;
@@ -441,7 +440,7 @@ impl<P: Planner> Axis<P> {
                 let enough = enough.copysign(distance);
                 return Err(("MasterStartDistance", distance, enough, ErrorId::SyncNotReachable));
             }
-            // From further away the slave may have a longer way that takes less time than that of the master.
+            // From further away the way of the slave may be longer and take less time than the master.
             enough += 2.0 * late;
         }
         let (pin, value) = match sync.mode {
@@ -476,7 +475,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The delay (u of the master) of `entry` at its sync point; infinite if no way leads onto the law. A slave that
-    /// would be late because it waits goes back, if its mode permits that.
+    /// would be late because it waits moves back instead, if its mode permits that.
     fn late_at_start(&mut self, entry: &Entry, view: &View<'_, P::Plan>) -> Result<f64, NotInTime> {
         self.lay_law(view);
         let late = self.late_on_way(entry, view)?;
@@ -580,8 +579,8 @@ impl<P: Planner> Axis<P> {
         Some(high)
     }
 
-    /// Settles the turns of a law with sync positions: that of the master, and that of the slave. No
-    /// effect on any other law, or on one already settled.
+    /// Fixes the turns of a law with sync positions: that of the master, and that of the slave. No effect on any
+    /// other law, or on one whose turns are fixed.
     pub(super) fn lay_law(&mut self, view: &View<'_, P::Plan>) {
         let Some(coupling) = &self.follower.coupling else {
             return;
@@ -610,15 +609,15 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The turn of `length` (u) in which the slave has its place when the master is at the sync point.
+    /// The turn, of `length` (u), in which the slave is when the master is at the sync point.
     fn slave_turn(&self, sync: &Sync, anchor: &Anchor, length: f64, view: &View<'_, P::Plan>) -> i64 {
         let Some(coupling) = &self.follower.coupling else {
             return 0;
         };
         let here = self.place();
         let cycle = self.planner.cycle();
-        // The slave's place without the command when the master gets there, and its place with the command. If the
-        // master's motion ahead is not known, its present place counts.
+        // The slave's position without the command when the master is there, and its position with the command. If
+        // the master's future motion is not known, its present place counts.
         let scans = self.scans_of_master(view, self.way_to_sync(view, anchor));
         let (kept, wanted) = match scans {
             Some(scans) => {
@@ -648,7 +647,7 @@ impl<P: Planner> Axis<P> {
         turns.wrapping_sub(wanted.turns).wrapping_add(anchor.slave.turns)
     }
 
-    /// In sync for the first time: recorded if the master is past the sync point.
+    /// In sync for the first time: records it if the master is past the sync point.
     pub(super) fn note_sync(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let Some(coupling) = &mut self.follower.coupling else {
             return;
@@ -670,8 +669,8 @@ impl<P: Planner> Axis<P> {
     }
 }
 
-/// The turn in which the master's sync point is. On the way from the start point it is the turn ahead;
-/// otherwise the next one the master passes, or the present one while it is at rest.
+/// The turn of the master's sync point. From the start point on it is the turn ahead; otherwise the next one that the
+/// master passes, or the present one while it is at rest.
 fn master_turn<Q>(sync: &Sync, was: &Seen, view: &View<'_, Q>) -> i64 {
     let Some(length) = view.turn else { return 0 };
     let (from, heading) = if sync.start_distance == 0.0 {

@@ -13,7 +13,7 @@ pub(crate) struct Seen {
     pub at: Setpoint,
     /// Its own velocity (u/s) and acceleration (u/s^2), if it is seen with a shift.
     pub unshifted: Option<[f64; 2]>,
-    /// The move of its coordinates in this scan (u).
+    /// The shift of its coordinates in this scan (u).
     pub moved: f64,
     /// Its set-point is the result of a plan.
     pub is_operating: bool,
@@ -21,7 +21,7 @@ pub(crate) struct Seen {
     pub degree: usize,
     /// Its motion was planned within the limits that its slaves leave.
     pub keeps_bound: bool,
-    /// Its feedback may be that of an axis at rest whose encoder trembles.
+    /// Its feedback may be that of an axis at rest with an encoder that trembles.
     pub trembles: bool,
 }
 
@@ -49,7 +49,7 @@ pub(crate) struct View<'a, Plan> {
     pub future: Future<'a, Plan>,
 }
 
-/// The next motion of the masters, as far as is known.
+/// The known future motion of the masters.
 #[derive(Clone, Copy)]
 pub(crate) struct Future<'a, Plan> {
     /// For each master; the second is empty if there is none.
@@ -58,7 +58,7 @@ pub(crate) struct Future<'a, Plan> {
     pub is_new: bool,
 }
 
-/// The next motion of a master, as far as is known.
+/// The known future motion of a master.
 #[derive(Clone, Copy)]
 pub(crate) struct Part<'a, Plan> {
     /// The axis that has the plan: the master, or the first axis of a chain in gear.
@@ -77,7 +77,7 @@ impl<Plan> Part<'_, Plan> {
     };
 }
 
-/// The next motion of an axis.
+/// The future motion of an axis.
 #[derive(Clone, Copy)]
 pub(crate) enum Course<'a, Plan> {
     /// It is at rest.
@@ -86,12 +86,12 @@ pub(crate) enum Course<'a, Plan> {
     Plan(&'a Plan, u64),
     /// Not known: more than one plan at once, or a curve.
     Unknown,
-    /// Measured values: the motion is not known and never quite even. The way onto the law is searched
-    /// again after this many scans.
+    /// Measured values: the motion is not known and its velocity is never quite constant. The way onto the law is
+    /// searched again after this number of scans.
     Measured(u64),
 }
 
-/// Scans after which the way is searched again while the master's next motion is not known.
+/// Scans after which the way is searched again while the master's future motion is not known.
 pub(super) const UNKNOWN: u64 = 16;
 
 /// The source of the set-points of an axis.
@@ -119,7 +119,7 @@ pub(in crate::axis) enum Kind {
     Measured,
 }
 
-/// The data of the masters' next motions that a slave keeps to detect a change.
+/// The data of the masters' future motions that a slave keeps to detect a change.
 pub(super) type Known = [KnownPart; 2];
 
 /// The data of one master.
@@ -134,7 +134,7 @@ pub(super) struct KnownPart {
 }
 
 impl KnownPart {
-    /// Whether the motion ahead was known.
+    /// Whether the future motion was known.
     pub(super) const fn is_foreseen(&self) -> bool {
         matches!(self.kind, Kind::Still | Kind::Plan)
     }
@@ -179,7 +179,7 @@ pub(in crate::axis) fn end_of<Q: Plan>(lead: &Lead<'_, Q>) -> Setpoint {
     lead.plan.at(u64::from(lead.plan.scans()))
 }
 
-/// The distance (u of the slave) over which the masters still lead it, from this many `scans` after the leads begin.
+/// The distance (u of the slave) that the masters still lead it, from this number of `scans` after the leads begin.
 /// `None` if one of them does not come to rest.
 pub(in crate::axis) fn way_to_rest<Q: Plan>(leads: &Leads<'_, Q>, scans: u64) -> Option<f64> {
     leads.iter().flatten().try_fold(0.0, |way, lead| {
@@ -190,8 +190,7 @@ pub(in crate::axis) fn way_to_rest<Q: Plan>(leads: &Leads<'_, Q>, scans: u64) ->
 }
 
 impl<'a, P: Plan> Future<'a, P> {
-    /// The present data of the master, and whether its motion continues the one `known` from the scan
-    /// before.
+    /// The present data of the masters, and whether their motion continues the one `known` from the scan before.
     fn compare(&self, known: &Known) -> (Known, bool) {
         let [first, second] = &self.parts;
         let (first, goes_on) = first.compare(&known[0]);
@@ -199,9 +198,8 @@ impl<'a, P: Plan> Future<'a, P> {
         ([first, second], goes_on && second_goes_on)
     }
 
-    /// Notes the known motion and the limits of the slave. Returns whether the motion or a limit has
-    /// changed since the last scan. Unless the slave is locked, it also returns TRUE when the scans until
-    /// the next search are over.
+    /// Notes the known motion and the limits of the slave. Returns whether the motion or a limit has changed since
+    /// the last scan. Unless the slave is locked, also returns TRUE when the scans until the next search are over.
     pub(super) fn is_new_to(
         &self,
         (known, left, held): (&mut Known, &mut u64, &mut Limits),
@@ -320,7 +318,7 @@ impl<Plan> View<'_, Plan> {
         self.now.keeps_bound && self.second.is_none_or(|seen| seen.keeps_bound)
     }
 
-    /// Whether all masters may be at rest behind encoders that tremble.
+    /// Whether all masters may be at rest with encoders that tremble.
     pub(super) fn trembles(&self) -> bool {
         self.now.trembles && self.second.is_none_or(|seen| seen.trembles)
     }
@@ -391,7 +389,7 @@ impl<P: Planner> Axis<P> {
         !matches!(self.mover.motion(), Motion::Follow | Motion::Torque { .. })
     }
 
-    /// Its next motion, if that is its own plan.
+    /// Its future motion, if that is its own plan.
     pub(crate) fn course(&self) -> Course<'_, P::Plan> {
         match self.mover.motion() {
             _ if self.mover.layer().is_some() => Course::Unknown,
@@ -399,9 +397,9 @@ impl<P: Planner> Axis<P> {
             // The motion along a curve through points ahead is not known.
             Motion::Run { plan, elapsed, .. } if self.planner.is_curve((plan, *elapsed)) => Course::Unknown,
             Motion::Run { plan, elapsed, .. } => Course::Plan(plan, *elapsed),
-            // Slaves look along the plan of its master while it is in gear behind that plan.
+            // While it is in gear behind a plan of its master, slaves look along that plan.
             Motion::Geared if self.follower.stands && self.factor_in_gear().is_none() => Course::Still,
-            // In gear behind measured values its motion is no more even than they are.
+            // In gear with measured values its velocity is no more constant than theirs.
             Motion::Geared if self.follows_actual() => Course::Measured(UNKNOWN),
             Motion::Follow | Motion::Torque { .. } | Motion::Geared | Motion::Closing { .. } => {
                 Course::Unknown
@@ -430,7 +428,7 @@ impl<P: Planner> Axis<P> {
         self.follower.steady.source != self.source()
     }
 
-    /// The next motion of its actual values.
+    /// The future motion of its actual values.
     pub(crate) fn course_of_actual(&self) -> Course<'_, P::Plan> {
         if self.is_measured_still() {
             Course::Still
