@@ -1,7 +1,7 @@
 //! Actual positions as a master. They are filtered into a motion with a velocity, an acceleration, a jerk and a snap.
 //!
 //! A change of one increment in a scan is thousands of times the snap of a machine. So slaves see the feedback
-//! through four moving averages in a row, each over the time `actual_filter`. The input is the position held from
+//! through four moving averages in series, each over the time `actual_filter`. The input is the position, held from
 //! latch to latch. Four averages of a step make a motion in pieces of constant snap, each one scan long, so its
 //! derivatives are exact and not estimated. An average has L scans of T, and the noise is at most q in either
 //! direction. Then the largest errors against the undisturbed motion are: snap 16 q / (L T)^4, jerk 8 q / (L T)^3,
@@ -20,7 +20,7 @@ use crate::{ACTUAL_FILTER_MAX, AxisConfig, DrivePosition, Scaling};
 use standstill_planner::turns::split;
 use standstill_planner::{Place, Planner, Setpoint};
 
-/// Averages in a row.
+/// Averages in series.
 const AVERAGES: usize = 4;
 
 /// Steps kept.
@@ -54,7 +54,7 @@ struct State {
     rates: [f64; 4],
 }
 
-/// A place of the averages: whole increments, and the remainder ahead of them.
+/// A position of the averages: whole increments, and the remainder ahead of them.
 type AtIncrement = (i64, State);
 
 /// The filter for a drive that counts increments.
@@ -77,7 +77,7 @@ struct Counted {
     last: Option<(i64, i64)>,
     /// The same in the scan before.
     before: Option<(i64, i64)>,
-    /// Scans since the last step.
+    /// The number of scans since the last step.
     still: u32,
     band: Band,
 }
@@ -105,8 +105,8 @@ struct Told {
 }
 
 impl Band {
-    /// The part of `told` that is motion: `told` itself, or a constant place after `told` has been at rest for `rest`
-    /// scans.
+    /// The part of `told` that is motion: `told` itself, or a constant position after `told` has been at rest for
+    /// `rest` scans.
     fn pass(&mut self, told: i64, rest: u32) -> i64 {
         if let Some(held) = self.held
             && held.abs_diff(told) <= BAND / 2
@@ -187,7 +187,7 @@ impl Counted {
         };
         let rest = REST.max(4 * self.length);
         let next = self.band.pass(told, rest);
-        // No axis moves 2^31 increments in a scan: such a jump is not a motion.
+        // No axis moves 2^31 increments in a scan. Such a jump is not a motion.
         let step = next.checked_sub(fed).and_then(|step| i32::try_from(step).ok());
         let Some(step) = step else {
             return self.start(told);
@@ -251,7 +251,7 @@ impl Counted {
         i128::from(self.out[0]).abs() * TREMBLE <= self.scale()
     }
 
-    /// Renames the positions of this scan: the last step counts as 0.
+    /// Shifts the positions of this scan: the last step counts as 0.
     #[cold]
     fn rename(&mut self) {
         let (Some((told, fed)), Some((old, old_fed))) = (self.last, self.before) else {
@@ -349,7 +349,7 @@ impl Told {
         self.places[0] = self.places[1];
     }
 
-    /// Renames positions: `old` (u) becomes `name` (u), or a turn more or less. All others become `by` (u) more.
+    /// Shifts positions: `old` (u) becomes `name` (u), or a turn more or less. All others become `by` (u) more.
     fn rename(&mut self, old: f64, name: f64, by: f64, turn: Option<f64>) {
         let round = turn.filter(|length| (old + by - name).abs() > length / 2.0);
         let back = round.map_or(0.0, |length| length.copysign(old + by - name));
@@ -428,8 +428,8 @@ impl Measured {
         }
     }
 
-    /// Renames the last latched position to `name` (u), and earlier ones by `by` (u), except for a
-    /// `turn`. Increments never change their names.
+    /// Sets the last latched position to `name` (u), and shifts earlier ones by `by` (u), except for a `turn`.
+    /// Increments are never shifted.
     pub fn call(&mut self, name: f64, by: f64, turn: Option<f64>) {
         if let Some(told) = &mut self.told {
             let (_, last) = told.places[0];
@@ -437,14 +437,14 @@ impl Measured {
         }
     }
 
-    /// Renames `old` (u) to `name` (u) from now on.
+    /// Shifts the coordinates: from now on the position `old` (u) has the value `name` (u).
     pub fn shift(&mut self, old: f64, name: f64) {
         if let Some(told) = &mut self.told {
             told.rename(old, name, name - old, None);
         }
     }
 
-    /// The drive reported its increments under new names in this scan.
+    /// The drive reported shifted increments in this scan.
     pub fn rename(&mut self) {
         if let Some(counted) = &mut self.counted {
             counted.rename();
@@ -552,7 +552,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// How far an increment is (u), with its sign.
+    /// The length of an increment (u), with its sign.
     fn unit_of_increment(&self) -> f64 {
         let unit = |scaling: Scaling| {
             let unit = f64::from(scaling.units()) / f64::from(scaling.increments());

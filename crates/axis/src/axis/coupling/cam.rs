@@ -1,19 +1,19 @@
-//! On a cam: MC_CamIn and MC_CamOut on the slave's side.
+//! Slaves on a cam: MC_CamIn and MC_CamOut on the slave's side.
 //!
-//! In sync the set-point *is* the cam at the master's place of the same scan ([`CamLaw`]). A slave that cannot be
-//! there stays on the curve. It then follows a lagging master of its own, its shadow. It does not leave the curve,
-//! because that could take a tool into an obstacle. Only before it has reached the curve does the slave move in its
+//! In sync the set-point *is* the cam at the master's place in the same scan ([`CamLaw`]). A slave that can't be
+//! there stays on the curve, and follows a master of its own that lags: its shadow. It does not leave the curve,
+//! because that could move a tool into an obstacle. Only before it has reached the curve does the slave move in its
 //! own coordinates. That move ends at a place where the curve is at rest.
 //!
 //! | file | subject |
 //! | --- | --- |
 //! | [`follow`] | the motion step of a slave on a cam |
-//! | [`onto`] | how it comes onto the curve |
+//! | [`onto`] | how it gets onto the curve |
 //! | [`start`] | a start that waits for a place of the master |
 //! | [`shadow`] | its shadow in step with the master |
-//! | [`near`] | a shadow far behind a master with turns |
+//! | [`near`] | a shadow many turns behind its master |
 //! | [`corners`] | rest at rows where a derivative of the cam jumps |
-//! | [`ahead`] | whether it keeps its limits along the next motion of the master, and where that motion ends |
+//! | [`ahead`] | whether it keeps its limits along the future motion of the master, and where that motion ends |
 //! | [`beside`] | the limits that it leaves to a shift, and to its master |
 //! | [`steady`] | the motion step in a scan in which nothing is new |
 //! | [`ends`], [`after`] | ends of a cam, and the change to the next command |
@@ -59,8 +59,8 @@ pub struct CamFit {
     pub smooth: CamSmooth,
     /// The number that its limits require. It comes to rest at a row where one of these jumps.
     pub limits_need: usize,
-    /// The highest or the lowest place of the cam if it is outside the software limits, the limit, and the error for
-    /// a cam with absolute slave places.
+    /// The highest or the lowest position of the cam if it is outside the software limits, the limit, and the error
+    /// for a cam with absolute slave positions.
     pub outside: Option<(f64, f64, ErrorId)>,
     /// The highest constant velocity of the master (u/s) with which the slave can follow.
     pub highest: f64,
@@ -90,16 +90,16 @@ enum Rung {
     BesideLine { start: Place, velocity: f64, begin: u64 },
     /// The same beside the master itself.
     BesideMaster,
-    /// The same beside a master whose motion ahead is not known, within this room.
+    /// The same beside a master whose future motion is not known, within this room.
     BesideMeasured { room: Limits },
-    /// On the curve at a place of its own, by a plan from `start` to rest at a corner, or before it.
+    /// On the curve at a place of its own, by a plan from `start` to rest at a corner or before it.
     Corner { start: Place },
     /// A move in the slave's own coordinates, in the turn with this number. It ends at the place of the curve for a
     /// master at this place, or at rest if there is none.
     Moving { turns: i64, to: Option<Place> },
     /// It waits at its position: no plan onto the curve exists yet.
     Waiting,
-    /// The master went out of operation: the slave is at rest until a block couples it anew.
+    /// The master went out of operation: the slave is at rest until a block couples it again.
     Lost,
 }
 
@@ -109,7 +109,7 @@ impl Rung {
     }
 }
 
-/// A place of a master of its own, and its motion there.
+/// A master of the slave's own: its place, and its motion there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shadow {
     place: Place,
@@ -122,47 +122,47 @@ pub(in crate::axis) struct OnCam {
     camming: Camming,
     /// The place of the cam, once it is known.
     anchor: Option<Anchor>,
-    /// Its place at the master, and the corresponding place of the cam, if both were decided before it
+    /// The beginning of the cam: a place of the master, and the place of the cam there, if both were fixed before it
     /// was engaged.
     begins: Option<(Place, f64)>,
-    /// It has to be in sync at its sync position, and its way there is not chosen yet.
+    /// It has to be in sync at its sync position, and the way there is not chosen yet.
     is_timed: bool,
     rung: Rung,
     /// It has been in sync.
     was_in_sync: bool,
     /// The place of the slave on the curve, as a place of its master, if it is on the curve.
     shadow: Option<Shadow>,
-    /// The limits of the shadow in motion; while it `slows` down, those of its way.
+    /// The limits of the shadow in motion. While it `slows` down, they apply only along its way.
     shadow_limits: Limits,
     slows: bool,
-    /// Limits within which its shadow can come to rest before the next corner of the cam, and the limits
-    /// of the slave then.
+    /// Limits with which its shadow can come to rest before the next corner of the cam, and the limits of the slave
+    /// at that time.
     brakes: Option<(Limits, Limits)>,
     /// The place on the cam at the end of the last scan.
     at: CamAt,
     ends: Ends,
     /// The master at the end of the last scan, in its present coordinates.
     was: Seen,
-    /// The known part of the master's motion ahead.
+    /// The known part of the master's future motion.
     known: Known,
     /// Scans until the way is searched again; the largest number for never.
     left: u64,
-    /// The kind of way recorded last.
+    /// The approach recorded last.
     told: Option<Approach>,
-    /// The limits that it was last checked against.
+    /// The limits against which it was last checked.
     limits: Limits,
-    /// The number of moves of the slave's own coordinates.
+    /// The number of shifts of the slave's own coordinates.
     moves: u32,
     /// The distance of the slave from the cam at its master's place (u).
     deviation: f64,
-    /// The first place of the cam and the superimposed distance together, less the place of the layer that is added
-    /// to it (u).
+    /// The first position of the cam plus the superimposed distance, less the place of the layer that is added to it
+    /// (u).
     lead: f64,
-    /// The first place of the cam, without the distance superimposed since (u).
+    /// The first position of the cam, without the distance superimposed since (u).
     laid: f64,
     /// The limits that it leaves to its master, once the master keeps the limits of the slave.
     bound: Option<Limits>,
-    /// The place to which its master leads it (u), if that is outside its software limits.
+    /// The position to which its master leads it (u), if that is outside its software limits.
     leads_outside: Option<f64>,
 }
 
@@ -242,7 +242,7 @@ impl OnCam {
         }
     }
 
-    /// The place to which its master leads it (u), as last recorded.
+    /// The position to which its master leads it (u), as last recorded.
     pub(super) fn leads_outside(&mut self) -> &mut Option<f64> {
         &mut self.leads_outside
     }
@@ -318,7 +318,8 @@ impl<P: Planner> Axis<P> {
         configured.map_or_else(|| self.corner_order(), usize::from)
     }
 
-    /// The smoothness of a cam as far as this axis needs it: without a jerk limit it may begin and end with a slope.
+    /// The smoothness of a cam as far as this axis needs it. Without a jerk limit the cam may begin and end with a
+    /// slope.
     fn smooth_of_cam(&self, head: &CamHead) -> CamSmooth {
         if self.corner_order() > 1 {
             head.smooth
@@ -332,8 +333,7 @@ impl<P: Planner> Axis<P> {
     ///
     /// # Errors
     /// The reason why this axis can't follow the cam: [`ErrorId::CamNotSmooth`],
-    /// [`ErrorId::TargetOutsideSoftwareLimits`] of an absolute cam, [`ErrorId::CamBeyondLimits`]. It is
-    /// recorded.
+    /// [`ErrorId::TargetOutsideSoftwareLimits`] of an absolute cam, [`ErrorId::CamBeyondLimits`]. It is recorded.
     pub fn check_cam(
         &self,
         head: &CamHead,
@@ -384,7 +384,7 @@ impl<P: Planner> Axis<P> {
         Err(self.refuse_row(row, what, jump, 0.0, ErrorId::CamNotSmooth, scope))
     }
 
-    /// Records that a row of a table is refused, and passes its error on.
+    /// Records that a row of a table is refused, and returns its error.
     pub fn refuse_row(
         &self,
         row: usize,
@@ -459,7 +459,7 @@ impl<P: Planner> Axis<P> {
         self.follower.on_cam.as_ref().map(|on_cam| &on_cam.was)
     }
 
-    /// The size of its master's places with which the cam is evaluated (u of the slave).
+    /// The largest position of its master with which the cam is evaluated (u of the slave).
     pub(super) fn size_of_master_on_cam(&self) -> f64 {
         self.follower
             .on_cam
@@ -482,7 +482,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Checks the values at the pins of MC_CamIn.
+    /// Checks the pins of MC_CamIn.
     pub(in crate::axis) fn check_cam_in(
         &self,
         cam: &CamIn,
@@ -509,7 +509,7 @@ impl<P: Planner> Axis<P> {
             ("MasterScaling", cam.master_scaling),
             ("SlaveScaling", cam.slave_scaling),
         ] {
-            // Other values are so far from 1 that a cam and its derivatives are no longer finite.
+            // Any other value is so far from 1 that a cam and its derivatives would no longer be finite.
             if !(value.is_normal() && value.abs() > 1e-30 && value.abs() < 1e30) {
                 return refuse(pin, value, f64::NAN, ErrorId::CamScalingInvalid);
             }
@@ -537,7 +537,7 @@ impl<P: Planner> Axis<P> {
         };
         let head = scope.cams.cam(cam.table).map(|cam| *cam.head);
         if let Some(head) = head {
-            // It may have been selected for another slave.
+            // The cam may have been selected for another slave.
             self.check_smooth(&head, scope)?;
             let period = head.end - head.begin;
             if head.periodic && !(cam.start_distance.abs() < period) {
@@ -600,7 +600,7 @@ impl<P: Planner> Axis<P> {
             .get_or_insert_with(|| OnCam::new(camming, limits, moves));
         let is_lost = on_cam.rung == Rung::Lost;
         if on_cam.camming != camming {
-            // After the master was lost, other values must not start a motion.
+            // After the master is lost, other values must not start a motion.
             *on_cam = OnCam {
                 was: on_cam.was,
                 known: on_cam.known,

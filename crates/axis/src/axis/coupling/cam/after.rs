@@ -1,9 +1,9 @@
-//! The change from a cam to the next command, at an end of the cam or at a given place. The next command may be a cam
-//! on which the slave stays in sync.
+//! The change from a cam to the next command, at an end of the cam or at a given position. The next command may be a
+//! cam on which the slave stays in sync.
 //!
-//! If the next cam meets the one in progress with all derivatives that the slave's order needs, the slave is on the
-//! next cam in the scan in which its master passes that place. If not, the slave ends that scan on the cam in
-//! progress. It then comes onto the next cam like onto any other.
+//! If the next cam meets the present one with all derivatives that the slave's order needs, the slave is on the next
+//! cam in the scan in which its master passes that position. If not, the slave ends that scan on the present cam. It
+//! then gets onto the next cam like onto any other.
 
 use super::super::super::Axis;
 use super::super::super::commands::{Camming, ROUNDING, Work};
@@ -25,7 +25,7 @@ struct Ended {
     over: f64,
     /// The place of the slave there.
     slave: Place,
-    /// The master moves up.
+    /// The master moves in positive direction.
     upwards: bool,
 }
 
@@ -103,9 +103,9 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The cam is over: the slave holds its last place, even if its shadow went past the end on a way that leads
-    /// back. It reaches an end that is a corner within the last scan of its way, except for rounding, and is at rest
-    /// at the end of that scan.
+    /// The cam is over: the slave holds its last place, even if its shadow passed the end on a way that leads back.
+    /// It reaches an end that is a corner, except for rounding, within the last scan of its way, and is at rest at
+    /// the end of that scan.
     pub(super) fn stay_at_end(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         if self.is_locked_on_cam() || self.is_coming_to_corner() {
             return;
@@ -122,7 +122,8 @@ impl<P: Planner> Axis<P> {
         self.lock_on_cam(scope);
     }
 
-    /// The place in the cam in progress where the next cam takes over, if a cam waits and the place is not the end.
+    /// The position in the present cam at which the next cam takes over, if a cam waits and the position is not the
+    /// end.
     fn switch_of_next(&self) -> Option<f64> {
         match self.queue.first()?.work {
             Work::Cam(camming) => camming.switch_at,
@@ -130,13 +131,13 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether a cam has just become the owner's.
+    /// Whether the owner has just got a cam.
     fn is_now_due(&self) -> bool {
         let is_new = |on_cam: &OnCam| on_cam.rung == Rung::Due && on_cam.anchor.is_none();
         self.follower.on_cam.as_ref().is_some_and(is_new)
     }
 
-    /// The next cam begins where the last one ended, and the slave comes onto it.
+    /// The next cam begins where the last one ended, and the slave gets onto it.
     fn go_on_behind(&mut self, ended: &Ended, shadow: &Shadow, scope: &Scope<'_>) {
         let Some(mut on_cam) = self.follower.on_cam else {
             return;
@@ -158,8 +159,8 @@ impl<P: Planner> Axis<P> {
         self.follower.on_cam = Some(on_cam);
     }
 
-    /// In sync, before the step of this scan: switches to a waiting cam if the master passes the place where it takes
-    /// over and both cams meet there. The slave is on the new cam in the same scan. Returns whether it is.
+    /// In sync, before the step of this scan: switches to a waiting cam if the master passes the position at which it
+    /// takes over and both cams meet there. The slave is on the new cam in the same scan. Returns whether it is.
     pub(super) fn switches_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) -> bool {
         let Some((next, passed)) = self.next_cam_met(view, scope) else {
             return false;
@@ -186,8 +187,8 @@ impl<P: Planner> Axis<P> {
         true
     }
 
-    /// The next cam at the end of this scan, if it takes over in this scan and meets the one in progress; also the
-    /// end of that one, if it was passed.
+    /// The next cam at the end of this scan, if it takes over in this scan and meets the present one; also the end of
+    /// the present one, if it was passed.
     fn next_cam_met(
         &mut self,
         view: &View<'_, P::Plan>,
@@ -316,7 +317,7 @@ impl<P: Planner> Axis<P> {
             ..Place::default()
         };
         if let Some(modulo) = &self.modulo {
-            // The nearest of the turns that mean the same place.
+            // The nearest of the turns for the same position.
             let away = off(ended.slave, at(&camming.law, slave), modulo.length) / modulo.length;
             let nearest = if away < 0.0 { away - 0.5 } else { away + 0.5 };
             slave.turns = nearest as i64;
@@ -338,8 +339,8 @@ impl Curve<'_> {
         }
     }
 
-    /// Whether a shadow went past an end of a cam without periods because its master braked, and the master itself is
-    /// not there yet. The shadow will go back.
+    /// Whether a shadow passed an end of a cam without periods because its master braked, while the master itself is
+    /// not there yet. The shadow will move back.
     fn is_ahead_past_end(&self, shadow: Place, master: Place) -> bool {
         let head = self.cam.head;
         let (shadow, master) = (self.unwound(shadow), self.unwound(master));
@@ -348,7 +349,7 @@ impl Curve<'_> {
         !head.periodic && (is_behind || is_before)
     }
 
-    /// The point where `place` of the cam (u of the master's side) is passed between `before` and `here`. None of
+    /// The point at which `place` of the cam (u of the master's side) is passed between `before` and `here`. None of
     /// these is reduced to one period. On a cam with periods it may be in any period.
     fn passes(&self, place: f64, before: f64, here: f64) -> Option<f64> {
         let head = self.cam.head;

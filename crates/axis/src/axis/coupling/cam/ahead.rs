@@ -1,7 +1,7 @@
 //! Whether a slave keeps its limits on a cam along the known motion of its master.
 //!
-//! The rest of a plan is checked in pieces, each with the bounds of the cam on that part. Where the cam is bent,
-//! these bounds are on the safe side by some per cent. Longer pieces add more.
+//! The rest of a plan is checked in pieces, each with the bounds of the cam on that part. On a bent part of the cam
+//! these bounds are some per cent too high, which is safe. They are higher still for longer pieces.
 
 use super::super::super::Axis;
 use super::super::follow::Beyond;
@@ -14,7 +14,7 @@ use standstill_planner::{CamBounds, Lead, Limits, Place, Plan, Planner, Setpoint
 /// Most pieces of a plan that are checked one by one.
 const PIECES: u32 = 40;
 
-/// While the master accelerates, each is checked in this number of parts, as a power of two.
+/// While the master accelerates, each piece is checked in this number of parts, as a power of two.
 const PARTS: u64 = 3;
 
 /// Most parts in all.
@@ -27,7 +27,8 @@ struct Path<'a, Q> {
 }
 
 impl<Q: Plan> Path<'_, Q> {
-    /// The state this number of scans after the start of the plan; the position counts from where the lead begins.
+    /// The state this number of scans after the start of the plan. The position counts from the beginning of the
+    /// lead.
     fn at(&self, scan: u64) -> Setpoint {
         let at = self.lead.plan.at(scan).times(self.lead.factor);
         Setpoint {
@@ -44,7 +45,7 @@ fn larger(one: f64, other: f64) -> f64 {
 
 impl<P: Planner> Axis<P> {
     /// The place of the slave on the cam (u) when its master has come to rest. `None` if that is not known or the
-    /// master is endless.
+    /// motion of the master is endless.
     pub(in crate::axis::coupling) fn rest_of_cam(
         &self,
         view: &View<'_, P::Plan>,
@@ -67,7 +68,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The first limit that a slave on `curve` would exceed along the rest of a plan, which begins with the master at
-    /// `place`. A plan of a lower `degree` than the limits has jumps that the slave may not have.
+    /// `place`. The motion of a plan of a lower `degree` than the limits has jumps that the slave may not have.
     ///
     /// Cost: that of [`Axis::along_cam`].
     pub(super) fn beyond_on_cam(
@@ -168,14 +169,14 @@ impl<P: Planner> Axis<P> {
                 break;
             }
         }
-        // One box for all that is left.
+        // One box for all the rest.
         let peaks = self.planner.peaks((lead.plan, scan))?;
         found(&curve.bounds(), &peaks.times(lead.factor))
     }
 }
 
 impl Curve<'_> {
-    /// The bounds of the cam on the way of a master that is at `x` and continues with a constant velocity, and that
+    /// The bounds of the cam ahead of a master that is at `x` and continues with a constant velocity, and that
     /// motion. None for a master at rest.
     fn cruise(&self, x: f64, from: &Setpoint) -> Option<(CamBounds, Setpoint)> {
         if from.velocity == 0.0 {
@@ -203,7 +204,7 @@ impl Curve<'_> {
     }
 }
 
-/// The derivative that jumps behind a master of a lower degree.
+/// The derivative that jumps with a master of a lower degree.
 fn rough(degree: usize, limits: &Limits) -> Beyond {
     if degree < 3 {
         ("jerk", f64::INFINITY, limits.jerk)
@@ -218,13 +219,13 @@ fn part_of<Q: Plan>(path: &Path<'_, Q>, from: u64, to: u64, cycle: f64) -> ((f64
     let (first, inside, last) = (path.at(from), path.at(from.saturating_add(1)), path.at(to));
     let time = to.saturating_sub(from) as f64 * cycle;
     let bent = bent(time);
-    // Computed from the inside, because a derivative at an end may belong to the next part.
+    // Computed from within the part, because a derivative at an end may belong to the next part.
     let (back, on) = (-cycle, time - cycle);
     let jerk_at = |t: f64| inside.jerk + inside.snap * t;
     let acceleration_at = |t: f64| inside.acceleration + inside.jerk * t + 0.5 * inside.snap * t * t;
     let snap = inside.snap.abs();
     let jerk = larger(jerk_at(back), jerk_at(on));
-    // It is largest at an end, or where the jerk is 0.
+    // The derivative is largest at an end, or where the jerk is 0.
     let level = -inside.jerk / inside.snap;
     let between = if level > back && level < on { level } else { on };
     let accelerations = [back, between, on].map(acceleration_at);

@@ -2,7 +2,7 @@
 //! (`on_limit` `slow_master`), and to a superimposed motion.
 //!
 //! The first two are boxes: within them the slave keeps its limits at every place of the cam. A box with a higher
-//! velocity leaves less of the other three.
+//! velocity leaves less of the other three derivatives.
 
 use super::super::super::Axis;
 use super::super::follow::Beyond;
@@ -29,7 +29,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The limits left to its master, which keeps the limits of the slave.
+    /// The limits left to its master, if the master keeps the limits of the slave.
     pub(in crate::axis::coupling) fn bound_on_cam(&self) -> Option<Limits> {
         self.follower.on_cam.as_ref()?.bound
     }
@@ -59,7 +59,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The limits that the cam leaves to a shift with the limits `asked`, in units of the master. None if it leaves
-    /// nothing, or while the slave is not in sync or the master's motion ahead is not known.
+    /// nothing, or while the slave is not in sync or the master's future motion is not known.
     pub(in crate::axis::coupling) fn room_for_shift_on_cam(
         &self,
         asked: &Limits,
@@ -102,8 +102,8 @@ impl<P: Planner> Axis<P> {
         is_room.then(|| self.share_of_shift(room, &own))
     }
 
-    /// The part of the slave's limits that the cam always leaves, and whether it stays like that because the master
-    /// is endless. None if nothing is left or the master's motion ahead is not known.
+    /// The part of the slave's limits that the cam always leaves, and whether that never changes because the motion
+    /// of the master is endless. None if nothing is left or the master's future motion is not known.
     pub(in crate::axis) fn room_on_cam(
         &self,
         view: &View<'_, P::Plan>,
@@ -126,8 +126,8 @@ impl<P: Planner> Axis<P> {
         all.into_iter().all(|room| room > 0.0).then_some((room, endless))
     }
 
-    /// The largest magnitudes of the derivatives that the cam needs along the master's motion ahead, and whether that
-    /// is endless.
+    /// The largest magnitudes of the derivatives that the cam needs along the master's future motion, and whether
+    /// that is endless.
     fn used_on_cam(&self, view: &View<'_, P::Plan>, cams: &Cams<'_>) -> Option<(Setpoint, bool)> {
         let on_cam = self.follower.on_cam.as_ref()?;
         let curve = on_cam.curve(cams.cam(on_cam.camming.cam)?)?;
@@ -165,14 +165,14 @@ impl<P: Planner> Axis<P> {
         CamBounds::beyond(&all, &limits)
     }
 
-    /// Distances added from now on move the cam from its present place; the layer is at `place` (u).
+    /// From now on added distances move the cam, from its present place. The layer is at `place` (u).
     pub(in crate::axis) fn lay_layer_on_cam(&mut self, place: f64) {
         if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.lead = on_cam.anchor.map_or(0.0, |anchor| anchor.slave.phase) - place;
         }
     }
 
-    /// The largest magnitudes of the derivatives of the master from now on, as far as is known.
+    /// The largest known magnitudes of the derivatives of the master from now on.
     fn most_of_master(&self, view: &View<'_, P::Plan>) -> Option<Setpoint> {
         match view.future.kind() {
             Kind::Still => Some(Setpoint::default()),

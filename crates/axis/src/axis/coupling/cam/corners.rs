@@ -1,4 +1,4 @@
-//! Corners: rows of a cam with a jump in a derivative that may not jump within the limits of the slave. The slave
+//! Corners: rows of a cam at which a derivative jumps that may not jump within the limits of the slave. The slave
 //! comes to rest there.
 //!
 //! On the curve a slave keeps its limits at a corner only at rest. It is in sync until its shadow has to brake for
@@ -16,28 +16,28 @@ use super::{Curve, OnCam, Rung, Shadow};
 use crate::{Approach, OnLimit, Scope};
 use standstill_planner::{DirectedLimits, Excess, Lead, Limits, Plan, Planner, Setpoint};
 
-/// Velocities of a shadow whose limits are tried on the way to a corner, as shares of the velocity left up to the
-/// highest one. A higher velocity leaves less acceleration.
+/// Velocities of a shadow that are tried on the way to a corner, as shares of the range up to the highest velocity. A
+/// higher velocity leaves less acceleration.
 const SHARES: [f64; 4] = [0.01, 0.1, 0.3, 1.0];
 
-/// A shadow that still accelerates gets faster before it comes to rest, until its acceleration is 0. Its limits are
-/// searched this number of times. They leave it this factor times the velocity that it gains: a higher velocity
-/// leaves other rates, with which it gains more.
+/// A shadow that still accelerates gets faster until its acceleration is 0, and only then comes to rest. Its limits
+/// are searched in this number of rounds. In each they leave it this factor times the velocity that it gains, because
+/// a higher velocity leaves other rates, with which it gains more.
 const FADING: u32 = 3;
 const GAINED: f64 = 1.25;
 
-/// A shadow continues to rest on a corner only if that takes at most this number of times the scans of a stop.
+/// A shadow moves on to rest at a corner only if that takes at most this number of times the scans of a stop.
 const NEAR: u32 = 4;
 
-/// How a shadow comes to rest: the plan, the distance `on` (u of the master), and the distance `back` behind its
-/// present place.
+/// How a shadow comes to rest: the plan, its distance `on` in the direction of the corner (u of the master), and its
+/// distance `back` behind the present place.
 struct Stop<Q> {
     plan: Q,
     on: f64,
     back: f64,
 }
 
-/// A corner on the way of a shadow.
+/// A corner ahead of a shadow.
 #[derive(Clone, Copy)]
 pub(super) struct Corner {
     /// Place on the master's side of the cam (u), not reduced to one period.
@@ -96,7 +96,7 @@ impl<P: Planner> Axis<P> {
         self.note_brakes(found)
     }
 
-    /// The same for a shadow on its own way.
+    /// The same for a shadow on a way of its own.
     pub(super) fn corner_on_way(&mut self, next: &Shadow, scope: &Scope<'_>) -> Option<Corner> {
         let is_due = matches!(self.cam_rung(), Some(Rung::Corner { .. }));
         let curve = self.curve_with_corners(scope).filter(|_| !is_due)?;
@@ -126,10 +126,10 @@ impl<P: Planner> Axis<P> {
         (is_past || !now.at.is_at_rest()).then_some(corner)
     }
 
-    /// Limits within which a shadow that is at `next` at the end of this scan comes to rest before the next corner.
+    /// Limits with which a shadow that is at `next` at the end of this scan comes to rest before the next corner.
     /// None if the corner is far away.
     ///
-    /// Cost: a check of each row on that way, and at most ten ramps if a corner is near.
+    /// Cost: a check of each row until there, and at most ten ramps if a corner is near.
     ///
     /// # Errors
     /// The corner, if there are no such limits.
@@ -220,7 +220,7 @@ impl<P: Planner> Axis<P> {
         Some(limits)
     }
 
-    /// How a shadow in this state comes to rest. None if it exceeds these limits on the way.
+    /// How a shadow in this state comes to rest. None if it exceeds these limits.
     fn stopping(&self, at: &Setpoint, limits: &Limits, goes_up: bool) -> Option<Stop<P::Plan>> {
         let start = Setpoint { position: 0.0, ..*at };
         let plan = self.planner.ramp_to(&start, 0.0, limits, limits).ok()?;
@@ -239,14 +239,14 @@ impl<P: Planner> Axis<P> {
         stays.then_some(Stop { plan, on, back })
     }
 
-    /// Whether it is on its way to rest at a corner.
+    /// Whether it comes to rest at a corner.
     pub(super) fn is_coming_to_corner(&self) -> bool {
         let is_under_way =
             matches!(self.mover.motion(), Motion::Closing { elapsed, scans, .. } if elapsed < scans);
         is_under_way && matches!(self.cam_rung(), Some(Rung::Corner { .. }))
     }
 
-    /// The same, and its limits have not changed since that was planned.
+    /// The same, and its limits have not changed since that plan was made.
     pub(super) fn is_bound_for_corner(&self) -> bool {
         let brakes = self
             .follower
@@ -257,7 +257,7 @@ impl<P: Planner> Axis<P> {
         is_known && self.is_coming_to_corner()
     }
 
-    /// From this scan on the slave goes along the curve to rest at the corner. If its limits leave no such way, it
+    /// From this scan on the slave moves along the curve to rest at the corner. If its limits leave no such way, it
     /// leaves the curve and comes to rest.
     pub(super) fn brake_for_corner(
         &mut self,

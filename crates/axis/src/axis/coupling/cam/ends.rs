@@ -3,13 +3,13 @@
 
 use standstill_planner::{Cam, CamAt};
 
-/// An end that was reported is reported again only after the slave was this part of the period away from it.
+/// A reported end is reported again only after the slave was this part of the period away from it.
 const AWAY: f64 = 0.25;
 
-/// The same for an end where it began, which was never reported.
+/// The same for the end at which it began, which was never reported.
 const OFF: f64 = 0.01;
 
-/// A place this near to an end counts as on it, relative to the period or to the places of both ends.
+/// A place this near to an end counts as on it, relative to the period or to the positions of both ends.
 const ROUNDING: f64 = 1e-12;
 
 /// The state of the ends of a cam.
@@ -17,9 +17,9 @@ const ROUNDING: f64 = 1e-12;
 pub(super) struct Ends {
     /// The place at the end of the last scan.
     before: Option<(i64, f64)>,
-    /// The end reported last, or the one where it began, while the slave is near it.
+    /// The end reported last, or the one at which it began, while the slave is near it.
     told: Option<Told>,
-    /// Without periods: it has been between its first and its last row, and it has come to an end.
+    /// Without periods: it has been between its first and its last row, and it has reached an end.
     has_begun: bool,
     is_over: bool,
 }
@@ -92,7 +92,7 @@ impl Ends {
             self.passed(first, at.periods, true)
         } else if at.periods < periods {
             let last = at.periods.saturating_add(1);
-            // If it stood on that end before, the end was reached already.
+            // If it was on that end before, the end was reached already.
             let first = if before == 0.0 {
                 periods.saturating_sub(1)
             } else {
@@ -136,7 +136,7 @@ impl Ends {
     }
 }
 
-/// The end that a place is on. The place is this number of periods and this share of one after the first row.
+/// The end at a place that is this number of periods and this share of one after the first row.
 fn begun_at(periods: i64, share: f64) -> Option<Told> {
     let end = if share <= ROUNDING {
         periods

@@ -70,14 +70,14 @@ impl<P: Planner> Axis<P> {
         self.follower.on_cam.as_ref().map(|on_cam| on_cam.rung)
     }
 
-    /// Coordinates of master or slave have moved: the cam moves with them, and nothing else changes.
+    /// Coordinates of master or slave were shifted: the cam is shifted with them, and nothing else changes.
     fn rebase_cam(&mut self, view: &View<'_, P::Plan>, scan: u64) {
         let moves = self.frame.moves();
         let own = self.coordinates_moved(scan);
         let Some(on_cam) = &mut self.follower.on_cam else {
             return;
         };
-        // A move of coordinates within the motion step was not seen before it.
+        // A shift of coordinates within the motion step was not seen before it.
         let late = view.now.moved - on_cam.was.moved;
         on_cam.was.place.position += late;
         on_cam.was.at.position += late;
@@ -89,7 +89,7 @@ impl<P: Planner> Axis<P> {
         }
         let is_held = by.abs() <= FURTHEST && own.abs() <= FURTHEST;
         if !is_held && on_cam.rung != Rung::Lost {
-            // At numbers of that size the place of the cam is lost in rounding: it is fixed anew.
+            // At numbers of this size the place of the cam is lost in rounding: it is fixed again.
             on_cam.was.place = view.now.place;
             on_cam.was.at.position = view.now.at.position;
             *on_cam = OnCam {
@@ -123,7 +123,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Notes the master's next motion. Returns whether that or a limit has changed since the last scan, or whether
+    /// Notes the master's future motion. Returns whether that or a limit has changed since the last scan, or whether
     /// the way is due to be searched again.
     fn look_ahead_on_cam(&mut self, view: &View<'_, P::Plan>) -> bool {
         let limits = self.slowed(&self.parameters.limits);
@@ -181,7 +181,7 @@ impl<P: Planner> Axis<P> {
         found.map_or(Ok(()), Err)
     }
 
-    /// The limit that the cam exceeds in this scan, if the motion ahead is not known.
+    /// The limit that the cam exceeds in this scan, if the future motion is not known.
     fn beyond_on_cam_now(&self, curve: &Curve<'_>, view: &View<'_, P::Plan>) -> Option<Beyond> {
         let on_cam = self.follower.on_cam.as_ref()?;
         let at = curve.at(view.now.place, &view.now.at, on_cam.at.piece);
@@ -303,7 +303,7 @@ impl<P: Planner> Axis<P> {
         self.publish_behind(at.place, at.state, scope);
     }
 
-    /// A step along the curve, by a plan for the place of the shadow.
+    /// A step along the curve, with a plan for the place of the shadow.
     fn step_along_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let cycle = self.planner.cycle();
         let Some(step) = self.mover.step_beside() else {
@@ -356,7 +356,7 @@ impl<P: Planner> Axis<P> {
         self.publish_on_cam(&at, shadow, scope);
     }
 
-    /// Whether a master whose motion ahead is not known left the shadow this `room` beside it, and the slave keeps
+    /// Whether a master whose future motion is not known left the shadow this `room` beside it, and the slave keeps
     /// its limits at `next`.
     fn keeps_room(&self, room: &Limits, next: &Shadow, view: &View<'_, P::Plan>, scope: &Scope<'_>) -> bool {
         let (Some(on_cam), Some(at)) = (&self.follower.on_cam, self.on_curve(next.place, &next.at, scope))
@@ -500,7 +500,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Its present distance from the cam at its master's place, and whether that is too large.
+    /// Computes its present distance from the cam at its master's place, and whether that is too large.
     fn measure_on_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let here = self.place();
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);

@@ -14,7 +14,7 @@ pub struct CamLaid {
 }
 
 impl CamLaid {
-    /// The turn that `master` is in now, for [`CamLaid::begin`].
+    /// The present turn of `master`, for [`CamLaid::begin`].
     pub fn turn_of<P: Planner>(&self, master: &Axis<P>) -> i64 {
         master.place().turns
     }

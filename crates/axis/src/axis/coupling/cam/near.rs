@@ -1,6 +1,6 @@
-//! A shadow far behind a master with turns. A place relative to a point many turns away is as coarse as that
-//! distance, and so is a motion along it. Therefore the place of the shadow is renewed in its present turn, and its
-//! way is planned again from there.
+//! A shadow many turns behind its master. A place relative to a point many turns away is as coarse as that distance,
+//! and so is a motion along it. Therefore the place of the shadow is renewed in its present turn, and its way is
+//! planned again from there.
 
 use super::super::super::modulo::is_far;
 use super::super::super::{Axis, Motion};
@@ -16,7 +16,7 @@ impl Curve<'_> {
         self.law.master_turn.is_some_and(|turn| is_far(way, turn))
     }
 
-    /// A place of the master, expressed in its own turn if it was expressed from turns away.
+    /// A place of the master, expressed in its own turn if it was expressed from many turns away.
     pub(super) fn told_near(&self, place: Place) -> Place {
         match self.law.master_turn {
             Some(turn) if self.is_long(place.position) => {

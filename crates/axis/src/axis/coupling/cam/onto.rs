@@ -1,13 +1,13 @@
-//! How a slave comes onto its cam, and in step with its master. The way is searched whenever the master gets another
-//! plan, or a way has ended.
+//! How a slave gets onto its cam, and in step with its master. The way is searched each time the master gets another
+//! plan or a way has ended.
 //!
 //! | the slave is | way |
 //! | --- | --- |
 //! | on the cam at its master's place, moving as the cam needs | in sync at once, if that keeps its limits as far as is known |
-//! | on the curve elsewhere | its shadow, a master of its own, comes in step with the real one: beside it, or onto its next stretch of constant velocity, or as fast as it may |
+//! | on the curve elsewhere | its shadow, a master of its own, gets in step with the real one: beside it, or onto its next stretch of constant velocity, or as fast as possible |
 //! | on the curve, and none of these keeps its limits | off the curve, and back as below |
 //! | off the curve, master at rest | a move to the cam at the master's place |
-//! | off the curve, master moving | a move to a place of the curve further on; there it is at rest until its shadow starts, in time to be in step with the arriving master |
+//! | off the curve, master moving | a move to a place of the curve further ahead; the slave is at rest there until its shadow starts, in time to be in step with the arriving master |
 
 use super::super::super::commands::{Entry, ROUNDING, refusal};
 use super::super::super::{Axis, Motion};
@@ -18,7 +18,7 @@ use super::{Curve, OnCam, Rung, Shadow};
 use crate::{Approach, ErrorId, Event, Fate, Scope};
 use standstill_planner::{Anchor, Cam, CamLaw, Limits, Place, Plan, Planner, Setpoint};
 
-/// A velocity left beside that of a line must be at least this part of the limit.
+/// The room for a velocity relative to a line must be more than this share of the limit.
 pub(super) const LEAST: f64 = 1e-6;
 
 /// Places of the cam ahead of the master that are tried, one by one.
@@ -34,18 +34,18 @@ pub(super) struct Stretch {
     pub now: Place,
     /// The line is ahead of the master until the stretch begins.
     pub is_ahead: bool,
-    /// The master's motion ahead is not known: the line is a guess that is renewed at its end.
+    /// The master's future motion is not known: the line is an estimate that is renewed at its end.
     pub is_guess: bool,
 }
 
-/// How a shadow starts from rest: the distance that its master gains meanwhile, without a sign, and its own signed
+/// How a shadow starts from rest: the distance that its master gains until then, without a sign, and its own signed
 /// distance (both in u of the cam's master side).
 struct Ramp {
     gained: f64,
     way: f64,
 }
 
-/// A way onto the cam.
+/// A way onto the cam: a plan, and the scan in which the slave is in sync.
 pub(super) struct Way<Q> {
     pub motion: Motion<Q>,
     pub rung: Rung,
@@ -57,14 +57,14 @@ pub(super) struct Way<Q> {
     pub velocity: f64,
     /// Limits of the shadow along it.
     pub shadow: Limits,
-    /// With these limits the slave keeps its own along this way only, not at every place of the cam.
+    /// With these limits the slave keeps its own only along this way, not at every place of the cam.
     pub slows: bool,
-    /// The shadow's place is raised by this distance (u of the master): whole periods, because the master passes once
-    /// more.
+    /// The place of the shadow is increased by this distance (u of the master): whole periods, because the master
+    /// passes once more.
     pub laps: f64,
     /// It begins outside these limits.
     pub exceeds: bool,
-    /// It leads ahead of its master.
+    /// It gets ahead of its master.
     pub ahead: bool,
 }
 
@@ -72,7 +72,7 @@ pub(super) struct Way<Q> {
 pub(super) enum Choice<Q> {
     Lock,
     Take(Way<Q>),
-    /// It continues along its way.
+    /// It continues on its way.
     Stay,
     /// There is no way now. It is searched again after this number of scans.
     Wait(u64),
@@ -80,14 +80,14 @@ pub(super) enum Choice<Q> {
 }
 
 impl<P: Planner> Axis<P> {
-    /// Finds the way onto the cam, from the state at the end of the last scan. It is in sync at once only if it
-    /// `may_lock`.
+    /// Finds the way onto the cam, from the state at the end of the last scan. The slave is in sync at once only if
+    /// it `may_lock`.
     pub(super) fn decide_on_cam(&mut self, view: &View<'_, P::Plan>, may_lock: bool, scope: &mut Scope<'_>) {
         let Some(on_cam) = self.follower.on_cam else {
             return;
         };
         if on_cam.ends.is_over() {
-            // It holds its last place, whatever the master does.
+            // It holds its last place for any motion of the master.
             return self.stay_at_end(view, scope);
         }
         let Some(owner) = self.owner else { return };
@@ -168,7 +168,7 @@ impl<P: Planner> Axis<P> {
         };
         let on_curve = straight.at(cam, &without, was, &on_cam.was.at, 0).place.position;
         if camming.slave_absolute {
-            // The nearest of the turns that mean the same place.
+            // The nearest of the turns for the same position.
             if let Some(modulo) = &self.modulo {
                 let length = modulo.length;
                 let place = law.at(cam, &anchor, was, &on_cam.was.at, 0).place;
@@ -218,7 +218,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Raises the place of a shadow that is whole periods behind by these periods.
+    /// If a shadow is whole periods behind, increases its place by these periods.
     fn drop_periods(&mut self, curve: &Curve<'_>) {
         let Some(on_cam) = &self.follower.on_cam else {
             return;
@@ -236,7 +236,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Raises the place of the shadow by this distance (u of the master): whole periods.
+    /// Increases the place of the shadow by this distance (u of the master): whole periods.
     fn move_shadow(&mut self, curve: &Curve<'_>, by: f64) {
         let Some(on_cam) = &mut self.follower.on_cam else {
             return;
@@ -246,7 +246,7 @@ impl<P: Planner> Axis<P> {
             position: shadow.place.position + by,
             ..shadow.place
         });
-        // The start of its way moves, too, if it stays on that way.
+        // The start of its way is moved, too, if it stays on that way.
         if let Rung::BesideLine { start, .. } | Rung::Corner { start } = &mut on_cam.rung {
             start.position += by;
         }
@@ -297,8 +297,8 @@ impl<P: Planner> Axis<P> {
         }
         let along = self.in_step(curve, view, &shadow, &difference, &stretch);
         match along {
-            // Its limits come first: if no way along the curve keeps them, it leaves the curve and comes back onto
-            // it.
+            // The limits of the slave come first: if no way along the curve keeps them, it leaves the curve and
+            // returns to it.
             Choice::Take(way) if way.exceeds => match self.onto_curve(curve, owner, &stretch) {
                 Choice::Wait(left) => self.braking(left).map_or(Choice::Take(way), Choice::Take),
                 off => off,
@@ -460,7 +460,7 @@ impl<P: Planner> Axis<P> {
         fastest > stretch.velocity.abs() * (1.0 + LEAST)
     }
 
-    /// No shadow comes into step. On a cam with periods the slave still goes onto the curve and lags. On one without
+    /// No shadow can get in step. On a cam with periods the slave still moves onto the curve and lags. On one without
     /// periods it fails.
     fn never_in_step(
         &self,
@@ -508,7 +508,7 @@ impl<P: Planner> Axis<P> {
     /// A move to the place of the curve for a master at `to`.
     ///
     /// # Errors
-    /// The reason why the slave may not go there.
+    /// The reason why the slave may not move there.
     fn move_onto(&self, curve: &Curve<'_>, owner: &Entry, to: Place) -> Result<Way<P::Plan>, ErrorId> {
         let near = self.follower.on_cam.as_ref().map_or(0, |on_cam| on_cam.at.piece);
         let at = curve.at(to, &Setpoint::default(), near);
@@ -551,7 +551,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// Raises the place of the shadow by a period.
+    /// Increases the place of the shadow by a period.
     fn lap_shadow(&mut self, by: f64, scope: &Scope<'_>) {
         let Some(on_cam) = self.follower.on_cam else {
             return;
@@ -562,7 +562,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Takes `way` from now on.
+    /// Starts `way`.
     pub(super) fn take_way_on_cam(&mut self, way: Way<P::Plan>, scope: &mut Scope<'_>) {
         let limits = self.slowed(&self.parameters.limits);
         self.mover.take_over_from(self.limits_before(&limits));
@@ -576,7 +576,7 @@ impl<P: Planner> Axis<P> {
         self.mover.watch(may_leave);
         let mut is_told = false;
         if let Some(on_cam) = &mut self.follower.on_cam {
-            // Behind a master whose motion is not known, the same way along the curve is found many times.
+            // If the master's motion is not known, the same way along the curve is found many times.
             let is_along = |rung| {
                 matches!(
                     rung,
@@ -635,7 +635,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// There is no way now: it stays at rest, or comes to rest.
+    /// There is no way now: the slave stays at rest, or comes to rest.
     pub(super) fn wait_on_cam(&mut self, left: u64, scope: &mut Scope<'_>) {
         if !self.mover.setpoint().is_at_rest() {
             return match self.braking(left) {
@@ -650,7 +650,7 @@ impl<P: Planner> Axis<P> {
         self.mover.hold();
     }
 
-    /// The owner can't come onto its cam.
+    /// The owner can't get onto its cam.
     #[cold]
     fn give_up_cam(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
         match error {
@@ -678,8 +678,8 @@ impl<P: Planner> Axis<P> {
 }
 
 impl Curve<'_> {
-    /// The next place of a row of the table on the master's way from `x`; neither is reduced to one period. Infinite
-    /// on a cam without periods if there is none.
+    /// The position of the next row of the table for a master that moves from `x`; neither is reduced to one period.
+    /// Infinite on a cam without periods if there is none.
     fn next_row(&self, x: f64, forwards: bool) -> f64 {
         let cam = &self.cam;
         let (first, length) = (cam.head.begin, cam.head.end - cam.head.begin);

@@ -1,4 +1,4 @@
-//! The shadow: the slave's own master. It comes into step with the real master, within limits with which the slave
+//! The shadow: a master of the slave's own. It gets in step with the real master, within limits with which the slave
 //! keeps its own limits at every place of the cam.
 
 use super::super::super::commands::ROUNDING;
@@ -15,11 +15,11 @@ use standstill_planner::{DirectedLimits, Excess, Lead, Limits, MoveProfile, Plac
 /// Velocities of a shadow that are tried.
 const SPEEDS: usize = 4;
 
-/// The numbers of scans that a shadow which has to slow down looks ahead.
+/// The numbers of scans over which a shadow that has to slow down looks ahead.
 const AHEAD: [f64; 7] = [10.0, 25.0, 50.0, 100.0, 200.0, 400.0, 800.0];
 
-/// A shadow that has to slow down still gets faster, until its acceleration is 0. It is left this factor times the
-/// velocity that it gains, because the rates that a higher velocity leaves let it gain more.
+/// A shadow that has to slow down still gets faster until its acceleration is 0. It is left this factor times the
+/// velocity that it gains, because with the rates that a higher velocity leaves it gains more.
 const GAINED: f64 = 1.25;
 
 /// A part of a cam flatter than this share of its steepest part bounds a shadow as if it were that steep.
@@ -47,9 +47,9 @@ impl<P: Planner> Axis<P> {
         Some(bounded(&found))
     }
 
-    /// Velocities of a shadow that comes into step with a stretch. The lowest one leaves most of the acceleration,
-    /// the highest one least. The distance decides which is soonest in step. If the stretch is too fast, these are
-    /// lower velocities, with which the shadow falls behind.
+    /// Velocities of a shadow that gets in step with a stretch. The lowest one leaves most of the acceleration, the
+    /// highest one least. The distance decides which is in step soonest. If the stretch is too fast, these are lower
+    /// velocities, with which the shadow falls behind.
     pub(super) fn speeds_of_shadow(&self, curve: &Curve<'_>, stretch: &Stretch) -> [f64; SPEEDS] {
         let limits = self.slowed(&self.parameters.limits);
         let highest = curve.bounds().highest_velocity(&limits).min(1e12);
@@ -62,8 +62,8 @@ impl<P: Planner> Axis<P> {
 
     /// The way of the shadow that is soonest in step with its master.
     ///
-    /// A way that brings a shadow inside limits lower than its present ones exceeds them. It is taken only if there
-    /// is no other.
+    /// A way that brings a shadow into limits lower than its present ones exceeds them. It is used only if there is
+    /// no other.
     pub(super) fn in_step(
         &self,
         curve: &Curve<'_>,
@@ -118,8 +118,8 @@ impl<P: Planner> Axis<P> {
             best.as_ref()
                 .is_none_or(|way| way.exceeds || way.lock == u64::MAX)
         };
-        // The way beside the master that gets ahead of it is used only if the other ways get ahead, too, or do not
-        // lead into step.
+        // A way beside the master that gets ahead of it is used only if the other ways get ahead, too, or do not get
+        // in step.
         if is_missing(&best) || best.as_ref().is_some_and(|way| way.ahead) {
             take(&mut best, ahead);
         }
@@ -322,7 +322,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The same beside a master whose motion ahead is not known, with half of the limits that it leaves the shadow
+    /// The same beside a master whose future motion is not known, with half of the limits that it leaves the shadow
     /// now. Each step is checked before it is made. There is no such way again if the half was not enough in this
     /// step.
     fn beside_measured_master(
@@ -409,7 +409,7 @@ impl<P: Planner> Axis<P> {
         let arrives = scans.max(stretch.begin);
         let is_in_time = stretch.is_guess || arrives <= stretch.end;
         // A shadow that still moves against the stretch has a higher velocity relative to it than later, and may
-        // still keep its limits.
+        // nevertheless keep its limits.
         let exceeds = plan.excess().is_some_and(|excess| leaves(&excess, limits))
             && !self.keeps_beside_line(&shadow.at, stretch.velocity, &plan, limits);
         Some(Way {
@@ -512,7 +512,7 @@ fn beside<Q: Plan>(plan: Q, rung: Rung, difference: &Setpoint, limits: &Limits) 
 }
 
 impl Stretch {
-    /// Whether a shadow ahead of the line waits for it, without moving against the master. A shadow that already
+    /// Whether a shadow ahead of the line waits for it, and does not move against the master. A shadow that already
     /// moves against the line continues to do so. Onto a master at rest it may move in either direction.
     fn lets_come(&self, shadow: &Shadow) -> bool {
         self.velocity != 0.0 && shadow.at.velocity * self.velocity >= 0.0
@@ -524,7 +524,7 @@ impl Stretch {
     }
 
     /// The number of scans before the shadow reaches this line at which a way beside the master itself takes over.
-    /// None if the motion of the master is known. A master that moves evenly now may be on the line.
+    /// None if the motion of the master is known. A master with constant velocity now may be on the line.
     fn near<Q: Plan>(&self, view: &View<'_, Q>) -> Option<u64> {
         let now = &view.now.at;
         let is_on_line = now.velocity == self.velocity && now.acceleration == 0.0 && now.jerk == 0.0;
@@ -533,7 +533,7 @@ impl Stretch {
     }
 }
 
-/// Limits the numbers, because a cam that hardly moves leaves more than they can hold.
+/// Limits these numbers. A cam that hardly moves leaves more than they can hold.
 fn bounded(limits: &Limits) -> Limits {
     let most = |limit: f64, most: f64| if limit.is_finite() { limit.min(most) } else { limit };
     Limits {

@@ -1,4 +1,4 @@
-//! MC_CamIn with a MasterStartDistance: a start that waits for a place of the master, and a way that is in sync at
+//! MC_CamIn with a MasterStartDistance: a start that waits for a position of the master, and a way that is in sync at
 //! its sync position.
 
 use super::super::super::Axis;
@@ -24,13 +24,13 @@ impl Camming {
                 was.position + was.phase
             },
         };
-        // A cam with relative master places begins at the master's place.
+        // A cam with relative master positions begins at the master's place.
         (place, if self.master_absolute { 0.0 } else { head.begin })
     }
 }
 
 impl<P: Planner> Axis<P> {
-    /// Notes the place of the owner's cam that was fixed while it waited for its start point.
+    /// Notes the place of the owner's cam, which was fixed while it waited for its start point.
     pub(in crate::axis::coupling) fn note_start_on_cam(&mut self, laid: Option<(Place, f64)>) {
         if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.begins = laid;

@@ -1,4 +1,4 @@
-//! A scan in which nothing is new for a slave in sync: what [`steady`](super::super::steady) is for one in gear.
+//! A scan in which nothing is new for a slave in sync, like [`steady`](super::super::steady) for a slave in gear.
 
 use super::super::super::Axis;
 use super::super::view::{Kind, Source};
@@ -7,9 +7,9 @@ use crate::{Scope, ValueSource};
 use standstill_planner::{Limits, Planner, Setpoint};
 
 impl OnCam {
-    /// Whether the cam permits a next step in which nothing is new. The slave is in sync behind the set-point of its
-    /// master, the cam is not over and has no corners, the limits of the slave are these, and its coordinates have
-    /// moved this many times.
+    /// Whether the cam permits a next step in which nothing is new. The slave is in sync with the set-point of its
+    /// master, the cam is not over and has no corners, the slave has these limits, and its coordinates were shifted
+    /// this number of times.
     pub(in crate::axis::coupling) fn may_go_on(&self, limits: &Limits, moves: u32) -> bool {
         self.rung.is_locked()
             && self.camming.source == ValueSource::Set
@@ -24,8 +24,8 @@ impl OnCam {
 }
 
 impl<P: Planner> Axis<P> {
-    /// [`Axis::follow_steadily`] on a cam, behind a master that follows this `plan`: its axis, and the scans after
-    /// its start. A scan in which an end of the cam is reached also counts as new.
+    /// [`Axis::follow_steadily`] on a cam, with a master that follows this `plan`: its axis, and the scans after its
+    /// start. A scan in which an end of the cam is reached also counts as new.
     ///
     /// Cost: one evaluation of the cam.
     pub(in crate::axis::coupling) fn follow_cam_steadily(
