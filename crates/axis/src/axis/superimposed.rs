@@ -1,9 +1,8 @@
-//! A second motion on top of the owner's: MC_MoveSuperimposed adds it and MC_HaltSuperimposed ends it.
+//! A second motion on top of the owner's: MC_MoveSuperimposed adds it, MC_HaltSuperimposed ends it.
 //!
-//! The owner's set-point and the added motion are planned apart and published as their sum, so the owner
-//! keeps its time and path. The added motion must leave the sum inside the limits of the axis. It is used
-//! as commanded, or slower, or it waits until the owner's motion leaves room (docs/superimposed.md,
-//! docs/decisions/0006).
+//! The owner's set-point and the added motion are planned separately and published as their sum, so the owner keeps
+//! its time and path. The added motion must leave the sum inside the limits of the axis. It is used as commanded, or
+//! slower, or it waits until the owner's motion leaves room (docs/superimposed.md, docs/decisions/0006).
 //!
 //! Source: PLCopen Motion Control Part 1, sections MC_MoveSuperimposed and MC_HaltSuperimposed; R51, R64 to
 //! R66, S9, V14, V14a.
@@ -27,9 +26,9 @@ pub(super) enum Adds {
     Distance {
         /// As commanded (u).
         distance: f64,
-        /// The place where it took over (u).
+        /// The position at which it took over (u).
         origin: f64,
-        /// Where it ends (u).
+        /// The position at which it ends (u).
         target: f64,
     },
     /// MC_HaltSuperimposed.
@@ -49,14 +48,14 @@ pub(super) struct Added {
     /// The override holds it: it comes to rest, and continues when the velocity factor is raised.
     halting: bool,
     progress: Progress,
-    /// No block follows it: its instance was triggered anew and refused.
+    /// No block follows it: its instance was triggered again, and that command was refused.
     orphaned: bool,
 }
 
 /// The progress of a superimposed command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Progress {
-    /// It waits for room, and the one before it comes to its end.
+    /// It waits for room, and the command before it comes to its end.
     Waits,
     /// The motion added is this command's.
     Runs,
@@ -93,7 +92,7 @@ impl Added {
 pub(super) struct Layer<Plan> {
     /// Set-point of the owner alone.
     base: Setpoint,
-    /// The number of scans in which the owner's motion was even; see [`even_scans`]. Counted on an axis with a
+    /// The number of scans in which the owner's motion was even; see [`even_scans`]. Counted only on an axis with a
     /// shaper.
     even: u32,
     /// The added motion; its position counts from the start of the layer.
@@ -144,17 +143,17 @@ impl<P: Plan> Layer<P> {
         &self.motion
     }
 
-    /// Scans in which the owner's motion was even.
+    /// The number of scans in which the owner's motion was even.
     pub fn even(&self) -> u32 {
         self.even
     }
 
-    /// Notes that the owner is going to be at `base`.
+    /// Notes that the owner is at `base` after this step.
     pub fn count_even(&mut self, base: &Setpoint, coarsest: f64) {
         self.even = even_scans(self.even, &self.base, base, coarsest);
     }
 
-    /// The owner is at `base` at the end of this scan, and the added motion goes on. Returns their sum.
+    /// The owner is at `base` at the end of this scan, and the added motion continues. Returns their sum.
     pub fn step(&mut self, base: Setpoint) -> Setpoint {
         self.base = base;
         self.search.pass();
@@ -165,7 +164,7 @@ impl<P: Plan> Layer<P> {
         self.sum()
     }
 
-    /// Coordinates move by `by` (u).
+    /// Shifts the coordinates by `by` (u).
     pub fn shift(&mut self, by: f64) {
         self.base.position += by;
     }
@@ -213,8 +212,7 @@ impl<P: Plan> Layer<P> {
         end - self.added.position
     }
 
-    /// The owner's plan starts anew at `start` (u), `passed` scans later than before. Returns the sum's
-    /// position.
+    /// The owner's plan starts again at `start` (u), `passed` scans later than before. Returns the sum's position.
     pub fn bring_back(&mut self, start: f64, passed: u64) -> f64 {
         self.base.position = start;
         if self.retry != u64::MAX {
@@ -262,9 +260,8 @@ impl<P: Plan> Layer<P> {
         position + (self.added.position - self.taken) + self.left()
     }
 
-    /// The same for any part of the rest that may be added by then: the place that is farthest `forward`, or farthest
-    /// back. `is_owner` says whether `position` is the owner's place, or that of the command that takes over from it
-    /// now.
+    /// The same for any part of the rest that may be added by then: the place farthest `forward`, or farthest back.
+    /// `is_owner` says whether `position` is the owner's place, or that of the command that takes over from it now.
     pub fn farthest_above(&self, position: f64, forward: bool, is_owner: bool) -> f64 {
         let added = if is_owner {
             self.added.position - self.taken
@@ -330,9 +327,8 @@ impl<P: Planner> Axis<P> {
         Ok(command.id)
     }
 
-    /// A superimposed distance moves the owner's end, and so the end of a blended distance behind it. If
-    /// that is outside the software limits now, the owner comes to rest at its end, and the next command
-    /// is refused there.
+    /// A superimposed distance moves the owner's end, and with it the end of a blended distance behind it. If that is
+    /// now outside the software limits, the owner comes to rest at its end, and the next command is refused there.
     fn rest_before_outside(&mut self, scope: &mut Scope<'_>) {
         let blends = |owner: &Entry| owner.passage != REST;
         let (Some(owner), Some(layer)) = (self.owner.filter(blends), self.mover.layer()) else {
@@ -429,8 +425,8 @@ impl<P: Planner> Axis<P> {
         self.mover.layer().is_some_and(Layer::is_busy)
     }
 
-    /// The highest speed (u/s) that the superimposed motion can still reach. It is limited to one from which it can
-    /// stop in its distance.
+    /// The highest speed (u/s) that the superimposed motion can still reach, and from which it can stop in its
+    /// distance.
     ///
     /// Cost: one ramp or root of ramps.
     pub(super) fn superimposed_speed(&self) -> f64 {
@@ -476,17 +472,17 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The place where the owner will come to rest (u); NaN if it does not by itself.
+    /// The rest position of the owner (u); NaN if it does not come to rest by itself.
     fn base_end(&self, layer: &Layer<P::Plan>) -> f64 {
         match (self.mover.motion(), self.owner.as_ref().map(|owner| owner.work)) {
             (Motion::Run { .. }, Some(Work::Velocity { .. } | Work::Through { .. })) => f64::NAN,
-            // Halted, its plan ends elsewhere.
+            // While the override halts it, its plan ends elsewhere.
             (Motion::Run { .. }, Some(work)) if work.manner().blends => self
                 .owner
                 .as_ref()
                 .and_then(|owner| owner.end)
                 .unwrap_or(f64::NAN),
-            // Behind a master it has no end of its own.
+            // A slave has no end of its own.
             _ if self.follows() => f64::NAN,
             (Motion::Run { plan, .. }, _) => plan.at(u64::from(plan.scans())).position,
             (_, _) => layer.base.position,
@@ -511,15 +507,15 @@ impl<P: Planner> Axis<P> {
                 self.fates.cover(command.id, layer.added.position - origin);
                 fate
             }
-            // It has nothing left to do.
+            // It has nothing to do.
             Adds::Halt if !moves => Fate::Done,
             Adds::Halt => fate,
         };
         self.decide(command.id, fate);
     }
 
-    /// Superimposed command `id` waits for room, or is held up, and its instance gives another command: its motion
-    /// comes to rest. Returns whether that is the case.
+    /// The instance of superimposed command `id` gives another command. If `id` waits for room or is held up, its
+    /// motion comes to rest. Returns whether that is the case.
     pub(super) fn withdraw_superimposed(&mut self, id: CommandId) -> bool {
         let Some(layer) = self.mover.layer_mut() else {
             return false;
@@ -546,7 +542,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// Ends everything superimposed (R65): from now on there is one motion, that of the sum.
+    /// Ends the superimposed motion and its command (R65): from now on there is one motion, that of the sum.
     pub(super) fn end_superimposed(&mut self, fate: Fate) {
         if self.mover.layer().is_some() {
             self.drop_superimposed(fate);
@@ -561,7 +557,7 @@ impl<P: Planner> Axis<P> {
         self.stir();
     }
 
-    /// The motion step with something superimposed: both motions advance, their sum is published.
+    /// The motion step with a superimposed motion: both motions advance, and their sum is published.
     #[inline(never)]
     pub(super) fn advance_both(&mut self, scope: &mut Scope<'_>) {
         if matches!(self.mover.motion(), Motion::Torque { .. }) {
@@ -593,8 +589,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Under a torque nothing is added: a command that halts a superimposed motion has nothing to do, and
-    /// the drive keeps its torque.
+    /// Under a torque nothing is superimposed: MC_HaltSuperimposed has nothing to do, and the drive keeps its torque.
     #[cold]
     fn advance_torque_below(&mut self, scope: &mut Scope<'_>) {
         self.step_torque();
@@ -651,8 +646,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// When nothing is superimposed any more, a command that waits behind the owner is blended again. If nothing has
-    /// been added, there is one motion.
+    /// When the superimposed motion has ended, a command that waits behind the owner is blended again. If nothing has
+    /// been added, there is only one motion left.
     fn end_of_superimposed(&mut self, scope: &mut Scope<'_>) {
         let Some(layer) = self
             .mover
@@ -668,7 +663,7 @@ impl<P: Planner> Axis<P> {
         self.arm_owner(scope);
     }
 
-    /// A command given while only a superimposed motion moves starts beside that at once.
+    /// A command that was given while only a superimposed motion moved starts beside it at once.
     pub(super) fn start_beside(&mut self, scope: &mut Scope<'_>) {
         if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
             self.hand_over(self.mover.setpoint().position, scope);

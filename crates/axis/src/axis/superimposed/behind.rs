@@ -24,7 +24,7 @@ impl<P: Planner> Axis<P> {
         self.stir();
     }
 
-    /// Refuses a command that could not be added even to a master at rest.
+    /// Refuses a command that could not be added even if the master is at rest.
     ///
     /// # Errors
     /// The planner refuses the original command, or MC_Power bars its direction.
@@ -36,7 +36,7 @@ impl<P: Planner> Axis<P> {
         self.propose_within(layer, command, room, |_| true).map(|_| ())
     }
 
-    /// Whether something is being superimposed, and moves.
+    /// Whether there is a superimposed motion that moves.
     pub(in crate::axis) fn adds_motion(&self) -> bool {
         self.mover.layer().is_some_and(Layer::moves)
     }
@@ -63,8 +63,8 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Before the step of a slave: slows down a motion without room beside the law, and starts a command that waits
-    /// for room. `is_new` says that the master's motion differs from the known one, or a limit has changed. For lack
-    /// of room the slave loses its gear only if it `may_lose` it.
+    /// for room. `is_new` says that the master's motion differs from the known one, or that a limit has changed. The
+    /// slave loses its gear for lack of room only if it `may_lose` it.
     ///
     /// Cost: at most nine plans, each laid over the master's.
     pub(in crate::axis) fn superimpose_behind(
@@ -90,7 +90,7 @@ impl<P: Planner> Axis<P> {
         self.begin_behind(view, scope);
     }
 
-    /// Records a command that waits, once.
+    /// Records once that a command waits.
     fn tell_waiting(&mut self, scope: &mut Scope<'_>) {
         let Some(layer) = self.mover.layer_mut().filter(|layer| layer.retry == 0) else {
             return;
@@ -114,8 +114,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The motion beside the law adapts to the master's new motion: it becomes slower, or comes to rest.
-    /// If there is no room for that either, the gear is lost.
+    /// Adapts the motion beside the law to the master's new motion: it becomes slower, or comes to rest. If there is
+    /// no room for that either, the gear is lost.
     fn give_way(&mut self, view: &View<'_, P::Plan>, may_lose: bool, scope: &mut Scope<'_>) {
         let Some(layer) = self.mover.layer_mut() else {
             return;
@@ -125,7 +125,7 @@ impl<P: Planner> Axis<P> {
         let Motion::Run { plan, elapsed, .. } = &motion else {
             return;
         };
-        // If the master's motion ahead is not known, each step is checked.
+        // If the master's future motion is not known, each step is checked.
         if !self.sees_law(view)
             || view.future.kind() == Kind::Measured
             || self.fits_law(view, (plan, *elapsed), &scope.cams)
@@ -148,7 +148,7 @@ impl<P: Planner> Axis<P> {
         self.lose_gear(reason.unwrap_or(("velocity", f64::NAN, limit)), scope);
     }
 
-    /// A command that waits or was lowered begins, or goes faster, if there is room beside the law now.
+    /// Starts a command that waits, or speeds up one that was lowered, if there is room beside the law now.
     fn begin_behind(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let Some(layer) = self.mover.layer() else { return };
         let Some(command) = layer.command else { return };
@@ -322,8 +322,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The rest position of the slave once everything is added (u), if its master comes to rest as far as
-    /// is known.
+    /// The rest position of the slave once everything is added (u). `None` if its master is not known to come to
+    /// rest.
     fn end_behind(&self, view: &View<'_, P::Plan>, layer: &Layer<P::Plan>) -> Option<f64> {
         if self.is_on_cam() {
             // The end of a cam's motion is not checked.

@@ -25,7 +25,7 @@ fn min(a: f64, b: f64) -> f64 {
     if b < a { b } else { a }
 }
 
-/// The room that the owner's motion always leaves.
+/// The room that the owner's motion leaves at any time.
 pub(super) struct Room {
     pub limits: Limits,
     /// The owner's motion is endless: there will never be more room than now.
@@ -53,8 +53,8 @@ pub(super) fn slower(limits: &Limits, rate: f64) -> Limits {
     }
 }
 
-/// The limits of proposal `index`: as commanded; at most the velocity that is always free; at most all
-/// limits that are always free; then slower and slower. `None` if there is no such proposal.
+/// The limits of proposal `index`: as commanded, then with at most the velocity that is always free, then with at
+/// most all limits that are always free, then slower and slower. `None` if there is no such proposal.
 pub(super) fn limits_of(index: usize, asked: &Limits, room: &Room) -> Option<Limits> {
     const LEAST: f64 = SLOWER[SLOWER.len() - 1];
     const LEAST_2: f64 = LEAST * LEAST;
@@ -149,7 +149,7 @@ impl<P: Planner> Axis<P> {
         !blends || self.stops_beside(rest, shift, left, added())
     }
 
-    /// The same over anything that always leaves this `room`, if the motion `fits`.
+    /// The same over any motion that always leaves this `room`, if the added motion `fits`.
     pub(super) fn propose_within(
         &self,
         layer: &Layer<P::Plan>,
@@ -190,8 +190,8 @@ impl<P: Planner> Axis<P> {
                     {
                         return Err(error);
                     }
-                    // Alone it exceeds the axis limits only if it takes over from a motion for which its own limits
-                    // are too low. That motion may continue instead.
+                    // Without the owner it exceeds the axis limits only if it takes over from a motion for which its
+                    // own limits are too low. That motion may continue instead.
                     let motion = Motion::along(plan);
                     if !self.exceeds(&motion) && fits(&plan) {
                         let is_faster = u64::from(plan.scans()) < layer.scans_in_progress(command);
@@ -210,7 +210,7 @@ impl<P: Planner> Axis<P> {
         Ok(None)
     }
 
-    /// Whether MC_Power permits the direction of a distance that begins.
+    /// Checks that MC_Power permits the direction of a distance that begins.
     fn admit_way(&self, layer: &Layer<P::Plan>, command: &Added) -> Result<(), ErrorId> {
         match command.adds {
             Adds::Distance { target, .. } if !layer.moves() => {
@@ -342,8 +342,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The limits that apply to the last set-point: those of the motion in progress, of both together if
-    /// there are two, but at most those of the axis; `own` if there is no motion.
+    /// The limits that apply to the last set-point: those of the motion in progress. With a superimposed motion they
+    /// are those of both together, but at most those of the axis. `own` if there is no motion.
     pub(in crate::axis) fn limits_before(&self, own: &Limits) -> Limits {
         let base = self.limits_of_owner();
         let base = base.as_ref();
@@ -364,15 +364,15 @@ impl<P: Planner> Axis<P> {
     /// Plans a waiting command that becomes the owner, on top of which a superimposed motion may
     /// continue; `Ok(None)` if it must wait for that motion.
     ///
-    /// It starts at the real set position. If the added motion leaves room for it, it starts with the
-    /// velocity of its predecessor alone. If not, it also takes the velocity of the added motion, and the
-    /// rest of the added distance starts again from rest when there is room.
+    /// It starts at the real set position. If the added motion leaves room for it, it starts with the velocity of its
+    /// predecessor alone. If not, it also takes over the velocity of the added motion, and the rest of the added
+    /// distance starts again from rest when there is room.
     pub(in crate::axis) fn plan_next(
         &mut self,
         entry: &mut Entry,
     ) -> Result<Option<Motion<P::Plan>>, ErrorId> {
-        // MC_Home sets the position at rest. The command before it, which should bring the axis to rest,
-        // may have failed.
+        // MC_Home sets the position at rest. The command before it, which should have brought the axis to rest, may
+        // have failed.
         if matches!(entry.work, Work::Home(_)) {
             if self.is_superimposing() {
                 return Ok(None);
@@ -415,7 +415,7 @@ impl<P: Planner> Axis<P> {
         };
         let motion = self.plan_from(entry, &start, &in_force)?;
         let mut motion = self.kept_inside(entry, motion, &start, &in_force)?;
-        // A stop is never refused; it is watched on its way out.
+        // A stop is never refused. It is watched if it may leave the limits.
         let leads_somewhere = !entry.is_endless() && entry.end.is_some();
         if let (Motion::Run { plan, .. }, true) = (&motion, leads_somewhere) {
             self.allowed(plan.at(u64::from(plan.scans())).position + layer.left())?;

@@ -1,10 +1,9 @@
-//! A superimposed distance on top of an owner in motion. Of all motions that are tried, the one that ends first is
-//! taken.
+//! A superimposed distance on top of an owner in motion. Of all tried motions, the one that ends first is used.
 //!
-//! While the owner uses a limit fully, even a slow added motion cannot change in the same direction. So the added
-//! motion has to change when the owner leaves room for it. The limits for that are found by trying. Motions with some
-//! of the limits lowered start now or, from rest, at a later switch of the owner's plan. A slower motion now may even
-//! end sooner, because it continues faster at one of the next switches.
+//! While the owner uses a limit fully, even a slow added motion can't change in the same direction. So it has to
+//! change when the owner leaves room for it. The limits for that are found by trying. Motions with some of the limits
+//! lowered start now or, from rest, at a later switch of the owner's plan. A slower motion now may even end sooner,
+//! because it continues faster at one of the next switches.
 //!
 //! The trials are spread over the scans. The best result is kept until a better one is found, and each scan tries
 //! from the present state. All trials come from one fixed sequence, so the same program always finds the same motion.
@@ -37,7 +36,7 @@ const AHEAD: u64 = 3;
 /// curve.
 const SWITCHES: usize = 16;
 
-/// The simple motions: the same path at these rates ..
+/// The simple motions: the same travel at these rates ..
 const PACES: [f64; 7] = [0.875, 0.75, 0.625, 0.5, 0.375, 0.25, 0.125];
 
 /// .. and only the velocity lowered.
@@ -47,8 +46,8 @@ const VELOCITIES: [f64; 6] = [0.8, 0.6, 0.45, 0.3, 0.2, 0.1];
 const LOWERED: f64 = 0.3;
 const LOWEST: f64 = 0.1;
 
-/// The number of starts at later switches that are tried: for a motion in progress, for one at the velocity that is
-/// always free, and for any other.
+/// The number of starts at later switches that are tried: after a motion in progress, after one at the velocity that
+/// is always free, and after any other.
 const AFTER_CURRENT: u32 = 1;
 const AFTER_FREE: u32 = 4;
 const AFTER_OTHER: u32 = 1;
@@ -175,7 +174,7 @@ struct Trials<'a, P: Planner> {
     below: &'a Below<'a, P::Plan>,
     /// Scans to the next switches of the owner's plan.
     switches: ([u64; SWITCHES], usize),
-    /// The part of the limits that the owner's plan uses. It does not make room faster than with these.
+    /// The part of the limits that the owner's plan uses. It makes room no faster than with these.
     used: Limits,
     start: &'a Setpoint,
     /// The limits at the start, until those of the motion apply; none at rest.
@@ -430,7 +429,7 @@ impl<P: Planner> Trials<'_, P> {
         }
     }
 
-    /// Notes a motion that ends before the best known one, from now or, at rest, from a later switch. Returns whether
+    /// Notes a motion that ends before the best known one: from now or, at rest, from a later switch. Returns whether
     /// it fits now.
     fn see(&mut self, plan: &P::Plan, limits: &Limits) -> bool {
         let scans = u64::from(plan.scans());
@@ -457,8 +456,8 @@ impl<P: Planner> Trials<'_, P> {
         false
     }
 
-    /// Tries `count` times to continue a motion faster from a later switch of the owner's plan. `starts` is the
-    /// motion, unless it is in progress.
+    /// Tries `count` times to continue a motion faster from a later switch of the owner's plan. `starts` is that
+    /// motion, unless it is already in progress.
     fn faster_later(
         &mut self,
         (slow, elapsed): (&P::Plan, u64),

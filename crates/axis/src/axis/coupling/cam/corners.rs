@@ -21,8 +21,8 @@ use standstill_planner::{DirectedLimits, Excess, Lead, Limits, Plan, Planner, Se
 const SHARES: [f64; 4] = [0.01, 0.1, 0.3, 1.0];
 
 /// A shadow that still accelerates gets faster until its acceleration is 0, and only then comes to rest. Its limits
-/// are searched in this number of rounds. In each they leave it this factor times the velocity that it gains, because
-/// a higher velocity leaves other rates, with which it gains more.
+/// are searched in `FADING` rounds. In each they leave it `GAINED` times the velocity that it gains, because a higher
+/// velocity leaves other rates, with which it gains more.
 const FADING: u32 = 3;
 const GAINED: f64 = 1.25;
 
