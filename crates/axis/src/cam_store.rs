@@ -48,12 +48,12 @@ impl CamCurve {
 }
 
 iec_enum! {
-    /// The place where MC_CamIn puts a cam (MC_START_MODE, numbers in the standard's order). In every mode the slave
-    /// comes onto the cam within its limits.
+    /// The position at which MC_CamIn places a cam (MC_START_MODE, numbers in the standard's order). In every mode
+    /// the slave gets onto the cam within its limits.
     StartMode = "MC_START_MODE" {
         /// As it was selected.
         Absolute = "mcAbsolute", 0;
-        /// At the present place of the slave.
+        /// At the present position of the slave.
         Relative = "mcRelative", 1;
         /// As mcAbsolute.
         RampIn = "mcRampIn", 2;
@@ -100,11 +100,11 @@ pub struct CamSelection {
     pub master: AxisId,
     /// The slave.
     pub slave: AxisId,
-    /// The cam repeats: behind its last row it continues at its first.
+    /// The cam repeats: after its last row it continues at its first.
     pub periodic: bool,
-    /// Its master places are absolute, not relative to the master's place at the start.
+    /// Its master positions are absolute, not relative to the master's position at the start.
     pub master_absolute: bool,
-    /// Its slave places are absolute.
+    /// Its slave positions are absolute.
     pub slave_absolute: bool,
 }
 
@@ -124,7 +124,7 @@ enum Content {
 pub struct CamSlot {
     content: Content,
     generation: u16,
-    /// Selected anew, or no longer needed: free as soon as no axis is on it.
+    /// Selected again, or no longer needed: free as soon as no axis is on it.
     retired: bool,
     first: usize,
     count: usize,
@@ -183,7 +183,7 @@ impl<'a> Cams<'a> {
         (slot.generation == id.generation() && !slot.is_free()).then_some(slot)
     }
 
-    /// The cam of that number, even if it was selected anew since.
+    /// The cam of that number, even if it was selected again since.
     pub fn cam(&self, id: CamId) -> Option<Cam<'_>> {
         let slot = self.slot(id)?;
         let Content::Ready(head) = &slot.content else {
@@ -193,7 +193,7 @@ impl<'a> Cams<'a> {
         Some(Cam { head, pieces })
     }
 
-    /// The selection of that number; none if the cam is not complete, or was selected anew.
+    /// The selection of that number; none if the cam is not complete, or was selected again.
     pub fn selection(&self, id: CamId) -> Option<CamSelection> {
         let slot = self.slot(id).filter(|slot| !slot.retired)?;
         matches!(slot.content, Content::Ready(_)).then_some(slot.selection)

@@ -415,8 +415,8 @@ impl AxisConfig {
             .map_err(|(place, error)| ConfigError::Vibration { place, error })
     }
 
-    /// Refuses numbers that must be above 0 and are not; `homing` looks at its own, some of which mean nothing for others of
-    /// its procedures.
+    /// Refuses numbers that must be above 0 and are not. `homing` checks its own numbers, because some of them have
+    /// no meaning for other procedures.
     fn check_positive(&self) -> Result<(), ConfigError> {
         let mut wrong = Ok(());
         keys::AXIS.each(&mut |key| {
@@ -507,9 +507,9 @@ pub enum ConfigError {
     },
     /// A mode of `vibration` that can't be shaped at the sample time.
     Vibration {
-        /// Its place in the list.
+        /// Its position in the list.
         place: usize,
-        /// What is wrong with it.
+        /// The fault.
         error: PlanError,
     },
     /// `vibration` with two rates: in a mean of both directions of motion neither would be kept.
@@ -643,7 +643,7 @@ impl ConfigError {
     }
 }
 
-/// The key of what is wrong with a mode.
+/// The key for a fault of a mode.
 const fn vibration_key(place: usize, error: &PlanError) -> &'static str {
     match (error, place) {
         (

@@ -58,8 +58,8 @@ pub fn update_coupled<P: Planner>(
     check(axes, slave, command, false, scope)?.update(id, command, scope)
 }
 
-/// Checks that the slave may follow the masters of this command, and returns it. Masters out of operation are
-/// accepted if it `takes` no command.
+/// Checks that the slave may follow the masters of this command, and returns it. A master out of operation is
+/// accepted if the slave `takes` no command.
 fn check<'a, P: Planner>(
     axes: &'a mut [Axis<P>],
     slave: AxisId,
@@ -149,9 +149,9 @@ fn seen_before<P: Planner>(axes: &[Axis<P>], (master, source): Values, scan: u64
     })
 }
 
-/// Whether `upper` is among `lower`, its masters, and the masters above those. A command that waits for a place of a
-/// master counts, because its slave already moves behind the master. Masters and slaves that wait for each other
-/// would have no order.
+/// Whether `upper` is one of `lower`, its masters, and the masters above those. The master of a command that waits
+/// for a position counts, because its slave already moves after it. Masters and slaves that wait for each other would
+/// have no order.
 ///
 /// Cost: it visits all axes as many times as the longest chain has axes.
 fn is_above<P: Planner>(axes: &mut [Axis<P>], upper: AxisId, lower: AxisId) -> bool {
@@ -294,8 +294,8 @@ fn is_in_order<P: Planner>(axes: &[Axis<P>]) -> bool {
     })
 }
 
-/// Finds the order in which axes move: the number of masters above each, including those whose place a
-/// command waits for, and the order of the axes.
+/// Finds the order in which axes move, and the number of masters above each. Masters for whose position a command
+/// waits also count.
 ///
 /// Cost: it visits all axes two times as many times as the longest chain has axes. Waiting commands may
 /// close a ring, which takes one pass for each axis.
@@ -350,8 +350,8 @@ fn rank_below<P: Planner>(axes: &[Axis<P>], axis: &Axis<P>) -> u16 {
     rank.unwrap_or(0)
 }
 
-/// A command that waits behind a motion may become active in this step. If it could not follow its master then, it
-/// gets the reason before the step.
+/// A waiting command may become active in this step. If it could not follow its master then, it gets the reason
+/// before the step.
 fn bar_rings<P: Planner>(axes: &mut [Axis<P>], index: usize) {
     let Some(axis) = axes.get_mut(index).filter(|axis| axis.links().is_bound()) else {
         return;
@@ -406,7 +406,7 @@ fn goes_on<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Scope<'_>
     goes_on
 }
 
-/// The step of an axis that follows another, or may.
+/// The step of an axis that follows another one, or may follow one.
 #[inline(never)]
 fn advance_bound<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Scope<'_>) {
     if let Some(axis) = axes.get_mut(index) {
@@ -428,8 +428,8 @@ fn advance_bound<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Sco
     }
 }
 
-/// A command that waits for a place of its master takes over when the master is there, before the step of
-/// its slave.
+/// A command that waits for a position of its master takes over when the master is there, before the step of its
+/// slave.
 fn start_at_point<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Scope<'_>) {
     let Some(followed) = axes.get(index).and_then(Axis::awaited_values) else {
         return;
@@ -516,7 +516,7 @@ struct Root {
     is_actual: bool,
 }
 
-/// The axis whose plan a master follows, up the chain of those in gear.
+/// The axis whose plan a master follows, at the top of the chain of axes in gear.
 fn root<P: Planner>(axes: &[Axis<P>], (master, source): Values) -> Root {
     if source == ValueSource::Actual {
         return Root {

@@ -6,12 +6,12 @@ use standstill_planner::Limits;
 /// The procedure of MC_Home to find the reference.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Procedure {
-    /// No motion: the present place of the axis is the reference.
+    /// No motion: the present position of the axis is the reference.
     #[default]
     Direct,
     /// An edge of the home switch.
     AbsoluteSwitch,
-    /// The place where the limit switch goes off again.
+    /// The position at which the limit switch switches off again.
     LimitSwitch,
     /// The next reference pulse (index, marker) of the encoder, latched by the drive.
     ReferencePulse,
@@ -55,12 +55,12 @@ pub enum HomeDirection {
     Negative,
     /// Towards larger positions if the home switch is off, towards smaller ones if it is on.
     SwitchPositive,
-    /// The other way round.
+    /// The opposite direction.
     SwitchNegative,
 }
 
 impl HomeDirection {
-    /// Whether the last approach goes towards larger positions.
+    /// Whether the last approach moves towards larger positions.
     pub const fn is_up(self) -> bool {
         matches!(self, Self::Positive | Self::SwitchPositive)
     }
@@ -69,14 +69,14 @@ impl HomeDirection {
 /// Which edge of the home switch is the reference (MC_SWITCH_MODE).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SwitchEdge {
-    /// Where the switch goes on in the direction of the search.
+    /// The edge at which the switch turns on, in the direction of the search.
     #[default]
     Rising,
-    /// Where it goes off in the direction of the search.
+    /// The edge at which it turns off, in the direction of the search.
     Falling,
-    /// Its lower end: it goes on upwards and off downwards.
+    /// Its lower end: it turns on upwards and off downwards.
     SwitchPositive,
-    /// Its upper end: it goes on downwards and off upwards.
+    /// Its upper end: it turns on downwards and off upwards.
     SwitchNegative,
 }
 

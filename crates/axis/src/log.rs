@@ -29,7 +29,7 @@ pub enum Approach {
     Difference,
     /// To the velocity of the law in its next stretch of constant velocity.
     Stretch,
-    /// As fast as it may.
+    /// As fast as possible.
     Pace,
     /// On a cam: a move in its own coordinates to a place of the curve.
     Move,
@@ -50,7 +50,7 @@ impl Approach {
     }
 }
 
-/// What is worth recording.
+/// An event that is recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
     /// A command was refused because of this pin (empty: because of the axis state).
@@ -59,7 +59,7 @@ pub enum Event {
         pin: &'static str,
         /// The value at it.
         value: f64,
-        /// The limit it broke; NaN if there is none to name.
+        /// The violated limit; NaN if there is none.
         limit: f64,
         /// The error the block shows.
         error: ErrorId,
@@ -68,11 +68,11 @@ pub enum Event {
     PointRefused {
         /// The point, from 1.
         point: u16,
-        /// IEC name of the field, or the quantity whose limit the curve would break.
+        /// IEC name of the field, or the quantity whose limit the curve would exceed.
         what: &'static str,
         /// The value there.
         value: f64,
-        /// The limit it broke; NaN if there is none to name.
+        /// The violated limit; NaN if there is none.
         limit: f64,
         /// The error the block shows.
         error: ErrorId,
@@ -101,7 +101,7 @@ pub enum Event {
         pin: &'static str,
         /// The value without the slaves.
         value: f64,
-        /// What is used instead.
+        /// The value used instead.
         limit: f64,
     },
     /// The start state forces the plan beyond its limits by this much.
@@ -114,7 +114,7 @@ pub enum Event {
     },
     /// A plan was accepted.
     Planned {
-        /// Where it leads.
+        /// The goal of the plan.
         goal: Goal,
         /// Its scans.
         scans: u32,
@@ -131,11 +131,11 @@ pub enum Event {
     /// MC_Power bars a direction the motion needs: it brakes, and continues when the direction is
     /// permitted.
     Paused {
-        /// Which direction.
+        /// The error for this direction.
         error: ErrorId,
     },
-    /// The instance was triggered anew, and its new command was refused or given to another axis: its
-    /// earlier motion continues to its end, and no block follows it.
+    /// The instance was triggered again, and its new command was refused or given to another axis. Its earlier motion
+    /// continues to its end, and no block follows it.
     Orphaned,
     /// The axis follows a master.
     Coupled {
@@ -146,7 +146,7 @@ pub enum Event {
         /// Denominator.
         denominator: u16,
     },
-    /// The slave goes onto the law of its gear.
+    /// The slave approaches the law of its gear.
     Approaching {
         /// How.
         way: Approach,
@@ -171,9 +171,9 @@ pub enum Event {
     },
     /// The slave can't stay on the law of its gear, because the law exceeds a limit.
     GearLost {
-        /// Of what.
+        /// The quantity.
         what: &'static str,
-        /// What it asks for.
+        /// The value that the law needs.
         value: f64,
         /// The limit.
         limit: f64,
@@ -214,8 +214,8 @@ pub enum Event {
     OntoCam {
         /// How.
         way: Approach,
-        /// The place to which a move leads (u). Otherwise the velocity a shadow comes to (u/s of the
-        /// master); beside the master, the velocity to be taken off.
+        /// The end position of a move (u). Otherwise the velocity that a shadow reaches (u/s of the master); beside
+        /// the master, the velocity that has to be removed.
         value: f64,
         /// Its scans.
         scans: u32,
@@ -224,9 +224,9 @@ pub enum Event {
     InSync,
     /// The slave can't stay there, because the cam exceeds a limit.
     SyncLost {
-        /// Of what.
+        /// The quantity.
         what: &'static str,
-        /// What it asks for.
+        /// The value that the cam needs.
         value: f64,
         /// The limit.
         limit: f64,

@@ -1,9 +1,10 @@
-//! What every call of an axis is made in: the scan, who speaks, the ring that records go to, and memory that is lent.
+//! The context of every call of an axis: the scan, the instance that calls, the ring of records, and memory lent by
+//! the host.
 
 use crate::{AxisId, Cams, ErrorId, Event, InstanceId, Log, Record};
 use standstill_planner::Setpoint;
 
-/// The scan a call belongs to, the block instance that makes it, the ring its records go to, and memory that the host lends.
+/// The scan of a call, the block instance that makes it, the ring for its records, and memory lent by the host.
 #[derive(Debug)]
 pub struct Scope<'a> {
     /// The scan.
@@ -12,15 +13,16 @@ pub struct Scope<'a> {
     pub instance: InstanceId,
     /// The ring of records.
     pub log: &'a mut Log,
-    /// The cams; a store without memory (its default) where there are none.
+    /// The cams; a store without memory (the default) if there are none.
     pub cams: Cams<'a>,
-    /// Past set-points of axes with `vibration` ([`Axis::history_needed`](crate::Axis::history_needed)); empty where there are none.
+    /// Past set-points of axes with `vibration` ([`Axis::history_needed`](crate::Axis::history_needed)); empty if
+    /// there are no such axes.
     pub history: &'a mut [Setpoint],
 }
 
 impl<'a> Scope<'a> {
-    /// Scan `scan` with its ring, for calls that no instance makes: the instance number is 0 until
-    /// [`Scope::with`] sets another.
+    /// Scan `scan` with its ring, for calls that no instance makes: the instance number is 0 until [`Scope::with`]
+    /// sets another.
     pub fn new(scan: u64, log: &'a mut Log) -> Self {
         Self {
             scan,

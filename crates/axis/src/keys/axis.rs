@@ -9,7 +9,7 @@ use crate::{
 use standstill_planner::shaper::DAMPING_MAX;
 use standstill_planner::{Limits, MoveProfile, ShaperKind, VibrationMode};
 
-/// The place of a value in a list of all.
+/// The index of a value in a list of all values.
 macro_rules! place {
     ($all:expr, $value:expr) => {
         $all.iter().position(|known| *known == $value)
@@ -334,7 +334,7 @@ pub static AXIS: Object<AxisConfig> = Object::new(
     ],
 );
 
-/// The keys of the mode at a place of the list.
+/// The keys of the mode at an index of the list.
 macro_rules! mode {
     ($place:literal, $frequency:literal, $damping:literal, $shaper:literal) => {
         &[

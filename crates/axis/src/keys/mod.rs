@@ -61,7 +61,7 @@ pub enum Holds<T: 'static> {
     Bool {
         /// Its value.
         get: fn(&T) -> bool,
-        /// Gives it one.
+        /// Sets it.
         set: fn(&mut T, bool),
     },
     /// One of some words.
@@ -70,7 +70,7 @@ pub enum Holds<T: 'static> {
         words: &'static [&'static str],
         /// Its value, if it has one.
         get: fn(&T) -> Option<usize>,
-        /// Gives it one.
+        /// Sets it.
         set: fn(&mut T, usize),
     },
     /// A number.
@@ -79,7 +79,7 @@ pub enum Holds<T: 'static> {
         bounds: Bounds,
         /// Its value, if it has one.
         get: fn(&T) -> Option<f64>,
-        /// Gives it one.
+        /// Sets it.
         set: fn(&mut T, f64),
     },
     /// A whole number.
@@ -88,7 +88,7 @@ pub enum Holds<T: 'static> {
         range: (u64, u64),
         /// Its value, if it has one.
         get: fn(&T) -> Option<u64>,
-        /// Gives it one.
+        /// Sets it.
         set: fn(&mut T, u64),
     },
     /// A count of scans, which may be given as a time.
@@ -97,28 +97,28 @@ pub enum Holds<T: 'static> {
         range: (u64, u64),
         /// Its value, if it has one.
         get: fn(&T) -> Option<u64>,
-        /// Gives it one.
+        /// Sets it.
         set: fn(&mut T, u64),
     },
     /// Keys of its own.
     Object(Object<T>),
-    /// A list of at most so many objects: each place has keys of its own.
+    /// A list of objects, each with keys of its own. It has at most this number of objects.
     List(&'static [Object<T>]),
 }
 
 /// The meaning of null at a key.
 #[derive(Clone, Copy, Debug)]
 pub struct Null<T: 'static> {
-    /// Whether it stands there.
+    /// Whether the value is null.
     pub is: fn(&T) -> bool,
-    /// Puts it there.
+    /// Sets it to null.
     pub set: fn(&mut T),
 }
 
 /// A key.
 #[derive(Clone, Copy, Debug)]
 pub struct Key<T: 'static> {
-    /// The names of the objects around it and its own, such as `homing.velocity`.
+    /// Its name, after those of the objects around it, such as `homing.velocity`.
     pub path: &'static str,
     /// Its meaning, with unit and range.
     pub doc: &'static str,
@@ -126,7 +126,7 @@ pub struct Key<T: 'static> {
     pub absent: Option<&'static str>,
     /// The meaning of null, if it may be given.
     pub null: Option<Null<T>>,
-    /// What it may hold.
+    /// The values it may have.
     pub holds: Holds<T>,
 }
 
@@ -177,7 +177,7 @@ fn give<T, V>(to: &mut T, value: Option<V>, set: fn(&mut T, V)) {
 /// Some keys.
 #[derive(Clone, Copy, Debug)]
 pub struct Object<T: 'static> {
-    /// The object in messages.
+    /// The name of the object in messages.
     pub what: &'static str,
     /// Its keys, in the order in which they are read.
     pub keys: &'static [Key<T>],
