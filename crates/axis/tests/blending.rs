@@ -1,9 +1,9 @@
 //! Random chains of buffered and blended moves: the rules of every scan, for any queue.
 //!
-//! The rules are those of `docs/buffering.md`: the ends are passed in order and exceeded only by the one
-//! scan of a hand-over, nothing turns on the way, the axis limits hold across every arming, and the last
-//! command ends exactly on its target. Set-points are judged from outside, by their backward differences
-//! (B1, B2, B10, B13, B14, B15). The numbers are seeded; a failing case prints its own.
+//! The rules are those of `docs/buffering.md`. The ends are passed in order, and exceeded only by the one scan of a
+//! hand-over. Nothing turns back, the axis limits hold across every arming, and the last command ends exactly on its
+//! target. Set-points are checked independently, by their backward differences (B1, B2, B10, B13, B14, B15). The
+//! numbers are seeded; a failing case prints its own.
 
 use crate::differences::Watch;
 use standstill_axis::{
@@ -19,7 +19,7 @@ struct Move {
     target: f64,
     dynamics: Dynamics,
     mode: BufferMode,
-    /// The scan it is commanded in.
+    /// The scan in which it is commanded.
     at: u64,
 }
 
@@ -32,8 +32,8 @@ const MODES: [BufferMode; 6] = [
     BufferMode::BlendingHigh,
 ];
 
-/// Limits of order 2, 3 or 4 whose parts all take a few scans, with acceleration and deceleration apart in
-/// half of the cases.
+/// Limits of order 2, 3 or 4 that each take a few scans to reach. In half of the cases acceleration and deceleration
+/// differ.
 fn limits(random: &mut Random, cycle: f64) -> Limits {
     let order = random.below(3);
     let velocity = random.between(1.0, 100.0);
@@ -57,7 +57,7 @@ fn limits(random: &mut Random, cycle: f64) -> Limits {
     }
 }
 
-/// Two to six moves, mostly onwards, some back, some of no length, of a few scans' way up to a hundred.
+/// Two to six moves, mostly in the same direction, some back, some of distance 0, over a few scans up to a hundred.
 fn chain(random: &mut Random, limits: &Limits, cycle: f64) -> Vec<Move> {
     let way = limits.velocity * cycle;
     let mut target = 0.0;
@@ -113,7 +113,7 @@ fn chain(random: &mut Random, limits: &Limits, cycle: f64) -> Vec<Move> {
         .collect()
 }
 
-/// One chain; the error names what is broken.
+/// One chain; the error names the violated rule.
 fn judge(seed: u64) -> Result<Seen, String> {
     let mut random = Random(seed);
     let cycle = 1e-3;
@@ -171,7 +171,8 @@ fn judge(seed: u64) -> Result<Seen, String> {
             }
             let beyond = direction * (point.position - to);
             let ended = axis.fate(ids[owner]) == Fate::Done;
-            // At a hand-over in motion the set-point is up to one scan past the end, at the speed before or after it.
+            // At a hand-over in motion the set-point is up to one scan past the end, at the velocity before or after
+            // it.
             let fastest = past.velocity.abs().max(point.velocity.abs());
             let allowed = if ended { fastest * cycle } else { 0.0 };
             if beyond > allowed * (1.0 + 1e-9) + 1e-12 * watch.largest {
@@ -235,7 +236,7 @@ fn chains_are_passed_in_order_within_the_limits() {
     many(0..cases(10_000));
 }
 
-/// Short moves behind faster ones: their ramps are rounding beside the positions.
+/// Short moves after faster ones: their ramps are as small as the rounding of the positions.
 #[test]
 fn moves_of_a_scan_or_two_behind_a_faster_one_are_passed() {
     for seed in [17_832, 367_575, 419_444, 694_750, 753_432, 820_520] {

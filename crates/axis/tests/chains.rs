@@ -1,9 +1,10 @@
-//! Chains of blended moves that lead on the same way within the same limits: one motion (B2, B14, B15).
+//! Chains of blended moves in the same direction within the same limits: one motion (B2, B14, B15).
 //!
-//! What holds of them: nothing takes more scans than the one move that leads as far, and one at most fewer; each end is handed over
-//! in the scan that passes it, with the velocity all ask for wherever one move has it there; no limit of the axis is left, whatever
-//! is commanded, changed or taken away when; nothing is later than with buffered moves. Set-points are judged from outside, by their
-//! backward differences. The numbers are seeded; a failing case prints its own.
+//! The rules: no chain takes more scans than the one move over the same distance, and at most one less. Each end is
+//! handed over in the scan that passes it, with the velocity that all ask for if the one move has that velocity
+//! there. No limit of the axis is exceeded, for any command, change or withdrawal at any time. Nothing is later than
+//! with buffered moves. Set-points are checked independently, by their backward differences. The numbers are seeded;
+//! a failing case prints its own.
 //!
 //! `cargo test -p standstill-axis --test all chains:: -- --nocapture` prints the tables of `docs/buffering.md`.
 
@@ -38,7 +39,8 @@ fn limits(order: u32) -> Limits {
     }
 }
 
-/// Limits of order 2, 3 or 4 whose parts all take a few scans, with acceleration and deceleration apart in half of the cases.
+/// Limits of order 2, 3 or 4 that each take a few scans to reach. In half of the cases acceleration and deceleration
+/// differ.
 pub fn drawn_limits(random: &mut Random) -> Limits {
     let order = 2 + random.below(3);
     let velocity = random.between(1.0, 100.0);
@@ -63,17 +65,17 @@ pub fn drawn_limits(random: &mut Random) -> Limits {
     }
 }
 
-/// An axis that began at rest at 0, its clock and the moves it was told.
+/// An axis that began at rest at 0, its clock and its moves.
 pub struct Rig {
     pub axis: Axis,
     pub log: Log,
     pub scan: u64,
     pub watch: Watch,
-    /// Of each move: its number, where it leads, and when it was done.
+    /// For each move its number, its target, and the scan in which it was done.
     pub moves: Vec<(CommandId, f64, Option<u64>)>,
-    /// The velocity of the last set-point of each.
+    /// The velocity of the last set-point of each move.
     pub speeds: Vec<f64>,
-    /// Moves whose ends come round, and those in the first turn.
+    /// Moves on a modulo axis, with their ends in the first turn.
     pub turning: Vec<(CommandId, f64)>,
 }
 
@@ -137,7 +139,7 @@ impl Rig {
         id
     }
 
-    /// One scan, within the limits of the axis; where it is then.
+    /// One scan within the limits of the axis; returns the position after it.
     pub fn advance(&mut self) -> f64 {
         let scope = &mut Scope::new(self.scan, &mut self.log);
         steps::advance(slice::from_mut(&mut self.axis), scope);
@@ -147,7 +149,7 @@ impl Rig {
         position
     }
 
-    /// The same, in which each end is handed over in the scan that passes it.
+    /// The same, with a check that each end is handed over in the scan that passes it.
     pub fn step(&mut self) {
         let before = self.axis.setpoint().position;
         self.advance();
@@ -174,7 +176,7 @@ impl Rig {
         }
     }
 
-    /// Velocities times `velocity` from now on.
+    /// Sets the velocity factor of the override to `velocity`.
     pub fn set_override(&mut self, velocity: f64) {
         let factors = Factors {
             velocity,
@@ -184,7 +186,7 @@ impl Rig {
         self.axis.set_override(factors, scope).expect("good factors");
     }
 
-    /// Scans until it stands.
+    /// Scans until the axis is at rest.
     pub fn run(&mut self) -> u64 {
         while self.axis.state() != AxisState::Standstill {
             assert!(self.scan < LONGEST, "does not end");
@@ -200,7 +202,7 @@ impl Rig {
     }
 }
 
-/// Scans of moves to these places, all commanded at once.
+/// Scans of moves to these positions, all commanded at once.
 fn chain(limits: Limits, ends: &[f64], mode: BufferMode) -> u64 {
     let mut rig = Rig::new(limits);
     for end in ends {
@@ -229,7 +231,7 @@ fn a_chain_takes_the_scans_of_one_move() {
     }
 }
 
-/// Ways of a few scans up to some hundred, onwards or all back.
+/// Distances of some scans up to some hundred, all forwards or all back.
 fn drawn_ends(random: &mut Random, limits: &Limits) -> Vec<f64> {
     let scan = limits.velocity * CYCLE;
     let side = if random.below(2) == 0 { 1.0 } else { -1.0 };
@@ -262,7 +264,7 @@ fn random_chains_take_the_scans_of_one_move() {
     }
 }
 
-/// How far the axis goes until it has its full speed, and from there to rest.
+/// The distance of the axis until it has its full velocity, and from there to rest.
 fn ways_of_ramps(limits: Limits) -> (f64, f64) {
     let mut rig = Rig::new(limits);
     let dynamics = Dynamics {
@@ -306,7 +308,7 @@ fn ends_are_passed_at_full_speed_where_there_is_room_for_it() {
         rig.run();
         let last = ends[ends.len() - 1].abs();
         for (end, speed) in ends.iter().zip(&rig.speeds) {
-            // The set-point is up to a scan past it.
+            // The set-point is up to a scan past the end.
             if end.abs() >= up && last - end.abs() >= down + limits.velocity * CYCLE {
                 at_full_speed += 1;
                 let full = limits.velocity * (1.0 - 1e-9);
@@ -317,10 +319,10 @@ fn ends_are_passed_at_full_speed_where_there_is_room_for_it() {
     assert!(at_full_speed > cases(500), "only {at_full_speed}");
 }
 
-/// When each of the moves is commanded.
+/// The scans in which the moves are commanded.
 type Arrivals = Vec<u64>;
 
-/// A chain whose moves are commanded one after the other, with something done to it in each scan.
+/// A chain whose moves are commanded one after the other, with a disturbance in each scan.
 fn chain_in_time(
     limits: Limits,
     moves: &[(f64, BufferMode)],
@@ -387,8 +389,8 @@ fn an_override_on_the_way_keeps_order_and_limits() {
     }
 }
 
-/// Halted by the override where ever it is, a chain goes on from there, not back to an end that the halt has passed. Only a halt that begins in the last
-/// brake ends where nothing is left to go.
+/// Halted by the override anywhere, a chain continues from there, not back to an end that the halt has passed. Only
+/// after a halt that begins on the last ramp down is nothing left to move.
 ///
 /// Covers: B17
 #[test]
@@ -453,7 +455,7 @@ fn ends_closer_than_a_scan_are_passed_one_by_one() {
     }
 }
 
-/// The axis that is told a chain of these ways, relative or absolute, on a modulo axis of this length.
+/// An axis with a chain of these distances, relative or absolute, on a modulo axis of this length.
 fn round(limits: Limits, length: f64, ways: &[f64], relative: bool, mode: BufferMode) -> Rig {
     let mut rig = Rig::of(AxisConfig {
         modulo: Some(length),
@@ -498,7 +500,7 @@ fn a_modulo_axis_goes_round_as_one_motion() {
         let ends = drawn_ends(&mut random, &limits);
         let longest = ends.iter().zip([0.0].iter().chain(&ends));
         let ways: Vec<f64> = longest.map(|(end, from)| end - from).collect();
-        // All of a turn is further than one of the ways leads.
+        // A whole turn is longer than any of the distances.
         let most = ways.iter().fold(0.0_f64, |most, way| most.max(way.abs()));
         let length = most * random.between(1.1, 3.0);
         let relative = random.below(2) == 0;
@@ -567,7 +569,7 @@ fn a_successor_taken_away_leaves_no_limit() {
             let scope = &mut Scope::new(rig.scan, &mut rig.log);
             rig.axis.replaced(id, true, None, scope);
             rig.moves.remove(taken);
-            // An end the axis is too fast for is passed twice.
+            // An end that the axis passes too fast is passed twice.
             let mut watch = rig.watch;
             let (mut axis, mut log) = (rig.axis, rig.log);
             let mut scan = rig.scan;
@@ -712,7 +714,8 @@ pub fn drawn_dynamics(random: &mut Random, limits: &Limits) -> Dynamics {
     }
 }
 
-/// Buffered moves are passed at rest, and so is an end that is told too late to be passed at speed: nothing is ever later.
+/// Buffered moves are passed at rest. So is an end that is blended too late to be passed in motion. Nothing is ever
+/// later.
 #[test]
 fn with_other_dynamics_a_chain_is_no_later_than_buffered() {
     let mut ratios = Vec::new();

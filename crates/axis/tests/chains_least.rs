@@ -1,14 +1,16 @@
-//! The scans of blended chains, compared with the least.
+//! The scans of blended chains, compared with the least number.
 //!
-//! `chains_least.txt` holds 300 random chains of two to four moves, queued at once on an axis at rest, at orders 3 and 4: short and long
-//! ways, the same dynamics and others, onwards and back. The first word of a line is the least total, the second the scans of each
-//! move in it: the smallest total found for which the linear programme over the snaps (at order 3 the jerks) of all scans has a
-//! solution. In it each end is passed in its scan, not before, with at most the speed its blending mode asks for, where the next move
-//! leads back without velocity and exactly there; every move keeps its limits at every scan end, and goes its way only. Faster than its own
-//! velocity a move is only where the speed at an end is, no faster than that speed, and within the least-time ramp between the speed
-//! asked for and its own (B3, B4): a ramp up to that speed may end at any time in the scan that passes the end, one down from it begins
-//! with the set-point of that scan, where the next move takes over. The search takes scans off one move, or gives some to another, as
-//! long as the programme has a solution. It was made with SciPy's HiGHS, with no part of this project.
+//! `chains_least.txt` holds 300 random chains of two to four moves, queued at once on an axis at rest, at orders 3
+//! and 4: short and long distances, equal and different dynamics, in the same direction and back. The first word of a
+//! line is the least total. The second is the scans of each move in it. This is the smallest total found for which
+//! the linear program over the snaps (at order 3 the jerks) of all scans has a solution. In that solution each end is
+//! passed in its scan, not before, with at most the velocity of its blending mode. If the next move reverses, the
+//! velocity is 0 exactly at the end. Every move keeps its limits at every scan end, and moves only in its direction.
+//! A move is faster than its own velocity only if the velocity at an end is higher: no faster than that, and within
+//! the least-time ramp between that velocity and its own (B3, B4). A ramp up to that velocity may end at any time in
+//! the scan that passes the end. A ramp down begins with the set-point of that scan, at which the next move takes
+//! over. The search takes scans from one move, or gives some to another, as long as the program has a solution. It
+//! was made with SciPy's HiGHS, with no part of this project.
 
 use crate::chains::{CYCLE, Rig};
 use standstill_axis::{AxisState, BufferMode, Dynamics, Limits};
@@ -74,7 +76,7 @@ impl Case {
         Self { limits, moves, least }
     }
 
-    /// Scans until the last is done; on the way each end is passed in order and no limit left.
+    /// Scans until the last move is done. Each end is passed in order, and no limit is exceeded.
     fn scans(&self) -> u64 {
         let mut rig = Rig::new(self.limits);
         for next in &self.moves {
@@ -88,14 +90,14 @@ fn numbers<'a>(words: &mut impl Iterator<Item = &'a str>) -> [f64; 5] {
     [(); 5].map(|()| words.next().unwrap().parse().unwrap())
 }
 
-/// Where the moves of a chain lead, as seen from the ones before them.
+/// The kind of a chain, by the direction and dynamics of its moves relative to the ones before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
-    /// On, with the same dynamics.
+    /// In the same direction, with the same dynamics.
     Same,
-    /// Back at one end at least, else with the same dynamics.
+    /// Reversed at one end at least, otherwise with the same dynamics.
     Turned,
-    /// On, with other dynamics.
+    /// In the same direction, with other dynamics.
     Other,
     /// Both.
     TurnedOther,
@@ -125,7 +127,7 @@ fn a_blended_chain_takes_nearly_the_least_scans() {
     let mut worst = BTreeMap::new();
     for case in cases() {
         let (scans, least) = (case.scans(), case.least);
-        // A plan that switches inside scans may need fewer than the programme on the grid.
+        // A plan that switches within a scan may need fewer scans than the program on the grid.
         assert!(scans + 2 >= least, "{scans} scans, the least are {least}");
         let more = scans.saturating_sub(least);
         let bar = (0.03 * least as f64).max(2.0);
@@ -151,7 +153,8 @@ fn ramps(plan: impl FnOnce()) -> u64 {
     solved() - before
 }
 
-/// Whatever is looked ahead for at once, when a move is told or in a scan, costs at most eight times the dearest move from rest.
+/// All that is planned ahead at once, when a move is commanded or in a scan, costs at most eight times the most
+/// expensive move from rest.
 #[test]
 fn looking_ahead_costs_at_most_eight_single_plans() {
     let (mut single, mut looks) = (0, Vec::new());

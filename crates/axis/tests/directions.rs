@@ -1,5 +1,5 @@
-//! Directions barred at random, under moves at random: in a barred direction an axis does nothing but brake, and
-//! what was paused comes to its end when it may.
+//! Directions barred at random, under random moves. In a barred direction an axis only brakes, and a paused command
+//! comes to its end once it is permitted.
 
 use crate::draw;
 use standstill_axis::{
@@ -81,7 +81,7 @@ impl Case {
         }
     }
 
-    /// Whether `error` is one a barred command may show.
+    /// Whether `error` is one that a barred command may show.
     fn is_fair(&self, error: ErrorId) -> bool {
         match error {
             ErrorId::PositiveBarred => !self.permitted.positive,
@@ -91,7 +91,7 @@ impl Case {
         }
     }
 
-    /// How far braking at once still leads up and down (u).
+    /// The distances that an immediate stop still travels up and down (u).
     fn braking(&self) -> [f64; 2] {
         let config = self.axis.config();
         let limits = Limits {
@@ -106,7 +106,7 @@ impl Case {
         [up, down]
     }
 
-    /// What the axis recorded last.
+    /// The last records of the axis.
     fn story(&self) -> String {
         let last = self.log.total().saturating_sub(12);
         self.log.since(last).fold(String::new(), |story, record| {
@@ -188,7 +188,7 @@ fn in_a_barred_direction_an_axis_only_brakes() {
     let mut paused = 0;
     for seed in 0..cases(CASES) {
         let mut case = Case::new(seed);
-        // Each direction was barred in the scan before, and braking would not have led that way.
+        // For each direction: it was barred in the scan before, and an immediate stop would not have moved in it.
         let mut over = [false; 2];
         for _ in 0..RESTLESS {
             case.disturb(false);

@@ -1,6 +1,6 @@
 //! The last check (ErrorID 904): an error of the planner moves nothing further than the limits allow.
 //!
-//! The planner here is the product's own, but one set-point of its plans is put elsewhere.
+//! The planner here is the product's own, but one set-point of its plans is wrong.
 
 use crate::double::{Faulty, Wrong};
 use standstill_axis::{
@@ -19,7 +19,7 @@ const LIMITS: Limits = Limits {
 
 const CYCLE: f64 = 0.001;
 
-/// Runs a plan that is wrong at scan 150 until the axis stands: the set-points, the axis and what was recorded.
+/// Runs a plan that is wrong at scan 150 until the axis is at rest. Returns the set-points, the axis and the records.
 fn run(wrong: Wrong) -> (Vec<Setpoint>, Axis<Faulty>, Log) {
     run_at(30.0, wrong)
 }
@@ -50,7 +50,7 @@ fn run_at(velocity: f64, wrong: Wrong) -> (Vec<Setpoint>, Axis<Faulty>, Log) {
     (published, axis, log)
 }
 
-/// Whether two set-points in a row are a scan apart at most.
+/// Whether two set-points in a row are at most a scan apart.
 fn is_step(pair: &[Setpoint]) -> bool {
     let near = |a: f64, b: f64, rate: f64| (a - b).abs() <= rate * CYCLE * (1.0 + 1e-8);
     let [one, two] = pair else { return true };
@@ -75,7 +75,7 @@ fn a_step_of_position_velocity_or_acceleration_is_never_published() {
             (AxisState::ErrorStop, ErrorId::SetpointStep),
             "{wrong:?}"
         );
-        // The stop begins with the last good state and is a ramp, not a halt in one scan.
+        // The stop begins at the last good state and is a ramp, not a halt in one scan.
         let stopped = published
             .iter()
             .rposition(|state| !state.is_at_rest())

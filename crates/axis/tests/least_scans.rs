@@ -1,9 +1,9 @@
-//! MC_Stop and MC_Halt against the least number of scans that any sequence of snaps needs, by linear
+//! MC_Stop and MC_Halt compared with the least number of scans that any sequence of snaps needs, by linear
 //! programming.
 //!
-//! The cases are those of the planner (`crates/planner/tests/data`), each the state of a move in
-//! progress. No command brings an axis into exactly such a state, so a test planner does; the product's
-//! own planner plans the stop.
+//! The cases are those of the planner (`crates/planner/tests/data`). Each is the state of a move in progress. No
+//! command brings an axis into exactly such a state, so a test planner does. The stop is planned by the product's own
+//! planner.
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Direction, Dynamics, Excess, Fate, Limits, Log,
@@ -14,7 +14,7 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::slice;
 
-/// Puts an axis into `state` with the first ramp, step by step as the axis lets a plan move it; from then on it is
+/// Puts an axis into `state` with its first ramp, in steps that the axis accepts from a plan. After that it is
 /// [`Standard`].
 #[derive(Clone, Debug)]
 struct Placing {
@@ -25,7 +25,7 @@ struct Placing {
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::large_enum_variant, reason = "a plan is copied, so it is not boxed")]
 enum Placed {
-    /// In equal steps from rest at its position to a state, in so many scans.
+    /// In equal steps from rest at its position to a state, in this number of scans.
     At(Setpoint, u64),
     Then(StandardPlan),
 }
@@ -159,12 +159,12 @@ impl Planner for Placing {
     }
 }
 
-/// A state under way, and the least scans from there.
+/// A state in motion, and the least number of scans from there.
 struct Case {
     cycle: f64,
     limits: Limits,
     start: Setpoint,
-    /// Where the ramp leads (u/s).
+    /// The velocity at the end of the ramp (u/s).
     goal: f64,
     least: i64,
 }
@@ -233,8 +233,8 @@ impl Case {
         }
     }
 
-    /// How many scans more than the least `command` takes, which ends with the velocity of the case. Every set-point
-    /// keeps the limits, and a stop keeps its direction.
+    /// The number of scans above the least that `command` takes, which ends with the velocity of the case. Every
+    /// set-point keeps the limits, and a stop keeps its direction.
     fn above(&self, command: Command) -> i64 {
         let mut log = Log::default();
         let mut axis = self.axis(&mut log);
@@ -273,7 +273,7 @@ impl Case {
     }
 }
 
-/// Most scans above the least of all `cases`, for the commands that `make` says.
+/// The largest number of scans above the least in all `cases`, for the commands that `make` returns.
 fn most_above(text: &str, make: impl Fn(&Case) -> Vec<Command>) -> i64 {
     let mut surplus = BTreeMap::new();
     let cases = cases(text);

@@ -1,8 +1,8 @@
-//! Measured masters: the values that a slave of actual values sees; no report of the master's drive takes
-//! it beyond its limits.
+//! Measured masters: the values that a slave of actual values sees. No report of the master's drive takes the slave
+//! beyond its limits.
 //!
-//! The judge knows neither filter nor planner: it takes differences of published positions, and sums of its own over what was
-//! told.
+//! The check uses neither filter nor planner. It takes differences of published positions, and sums of its own over
+//! the reported positions.
 
 use crate::draw;
 use standstill_axis::{
@@ -14,7 +14,7 @@ use standstill_testkit::{Random, cases};
 
 const CYCLE: f64 = 0.001;
 
-/// Increments of a unit.
+/// Increments per unit.
 const UNIT: f64 = 1000.0;
 
 /// A master that counts increments, and its slave.
@@ -79,7 +79,7 @@ impl Bench {
         couple(&mut self.axes, AxisId::new(1), &Request::aborting(command), scope).map(|_| ())
     }
 
-    /// Before the blocks: the master's drive tells so many increments, or nothing.
+    /// Before the blocks: the master's drive reports these increments, or nothing.
     fn latch(&mut self, increments: Option<i64>) {
         let told = |position, comms| DriveFeedback {
             enabled: true,
@@ -119,7 +119,7 @@ impl Bench {
     }
 }
 
-/// Backward differences of orders 1 to 4 over the limits, less what positions resolve: the largest quotient.
+/// The largest ratio of backward differences of orders 1 to 4 to the limits, less the resolution of positions.
 fn most(published: &[f64], limits: &Limits, farthest: f64) -> f64 {
     let mut differences = published.to_vec();
     let rate = limits.acceleration.max(limits.deceleration);
@@ -138,7 +138,7 @@ fn most(published: &[f64], limits: &Limits, farthest: f64) -> f64 {
     worst
 }
 
-/// Four averages of the last positions, each a plain sum, as places at the ends of scans.
+/// Four averages of the last positions, each a plain sum, as positions at the ends of scans.
 fn averaged(told: &[i64], length: usize) -> Vec<f64> {
     let mut values: Vec<i128> = told.iter().map(|told| i128::from(*told)).collect();
     for _ in 0..4 {
@@ -179,7 +179,7 @@ fn a_slave_in_gear_is_on_the_averages_of_what_was_told() {
         bench.couple((1, 1), None).expect("taken");
         for _ in 0..2000 {
             let last = told.last().copied().unwrap_or(0);
-            // Never so slow that it counts as standing.
+            // Never so slow that it counts as at rest.
             told.push(last + 5 + i64::try_from(random.below(200)).expect("small"));
         }
         let expected = averaged(&told, length as usize);
@@ -204,10 +204,10 @@ fn noise_of_an_increment_stays_below_the_bounds_in_closed_form() {
         let mut place = 0;
         bench.scan(0);
         bench.couple((1, 1), None).expect("taken");
-        // At a steady pace, so that all but the noise is the velocity; the first scans are its start.
+        // At a constant velocity, so that the rest is noise. The first scans are the start.
         for scan in 0..6000 {
             place += 100;
-            // The worst there could be now and then: whole averages one way, then the other.
+            // Now and then the worst noise possible: a whole average in one direction, then one in the other.
             let noise = if scan % 1000 < 500 {
                 i64::try_from(random.below(3)).expect("small") - 1
             } else {
@@ -254,7 +254,7 @@ fn a_master_at_rest_that_trembles_by_an_increment_moves_nothing() {
                 assert!(bench.slave().is_in_gear());
                 assert_eq!(bench.slave().setpoint().position, 0.0);
             }
-            // Further than that it follows.
+            // It follows larger changes.
             for _ in 0..600 {
                 bench.scan(rest + 2);
             }
@@ -265,7 +265,7 @@ fn a_master_at_rest_that_trembles_by_an_increment_moves_nothing() {
     }
 }
 
-/// What a drive may tell: motions, noise, standing, jumps of any size.
+/// The possible reports of a drive: motions, noise, rest, jumps of any size.
 fn nonsense(random: &mut Random, scans: usize) -> Vec<i64> {
     let whole = |value: f64| value as i64;
     let mut told = Vec::new();

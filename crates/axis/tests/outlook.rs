@@ -6,7 +6,7 @@ use standstill_axis::{
 };
 use std::slice;
 
-/// An axis at rest that keeps 100 u/s and 1000 u/s^2.
+/// An axis at rest with limits of 100 u/s and 1000 u/s^2.
 fn axis() -> Axis {
     let config = AxisConfig {
         start: StartState::Standstill,
@@ -32,7 +32,7 @@ fn tried_in(axis: &Axis) -> u32 {
     axis.outlook().superimposed.map_or(0, |beside| beside.tried_in)
 }
 
-/// Sets the axis in motion with `acceleration` up to 50 u/s, and after ten scans adds 200 u at `faster`.
+/// Starts the axis with `acceleration` up to 50 u/s, and after ten scans adds 200 u at `faster`.
 fn moving(acceleration: f64, faster: f64) -> (Axis, Log) {
     let (mut axis, mut log) = (axis(), Log::default());
     let command = Command::MoveVelocity {
@@ -55,7 +55,7 @@ fn moving(acceleration: f64, faster: f64) -> (Axis, Log) {
 
 #[test]
 fn what_was_lowered_is_tried_again_until_that_is_in_vain_and_before_the_owner_has_its_velocity() {
-    // 50 u/s at 100 u/s^2: 50 scans, of which 10 have passed. 60 u/s more is more than there will be.
+    // 50 u/s at 100 u/s^2 takes 50 scans, of which 10 have passed. Room for 60 u/s more never exists.
     let (mut axis, mut log) = moving(100.0, 60.0);
     let mut tried_in_vain = 0;
     for left in (1..=40).rev() {
@@ -75,7 +75,8 @@ fn what_was_lowered_is_tried_again_until_that_is_in_vain_and_before_the_owner_ha
 
 #[test]
 fn what_waits_for_room_is_tried_again_then_too() {
-    // All of the acceleration is the owner's until it has its velocity, in scan 50 / 10 = 5; then there is room.
+    // The owner needs all of the acceleration until it has its velocity, in scan 50 / 10 = 5. After that there is
+    // room.
     let (mut axis, mut log) = (axis(), Log::default());
     let command = Command::MoveVelocity {
         dynamics: at(90.0, 0.0),

@@ -1,7 +1,8 @@
-//! An axis whose load swings beside one that is the same but for that: the same commands in the same scans.
+//! An axis with a load that swings, beside an equal one without: the same commands in the same scans.
 //!
-//! The plain axis shows the motion, so the shaped one has to publish the mean of its past, judged here from the weights of the
-//! shapers alone, whatever takes over when; keep every limit; and be done when the last of it has come out.
+//! The plain axis shows the motion. The shaped one has to publish the mean of its past, which is computed here from
+//! the weights of the shapers alone, for any take-over at any time. It has to keep every limit, and to be done when
+//! the last of the motion has come out of the shaper.
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, CommandId, ConfigError, Direction, DriveFeedback,
@@ -27,7 +28,7 @@ fn mode(frequency: f64, damping: f64, shaper: ShaperKind) -> VibrationMode {
     }
 }
 
-/// A shaped axis, the plain one, and what is held against both.
+/// A shaped axis, the plain one, and the data for the checks of both.
 struct Twins {
     axes: [Axis; 2],
     drives: [IdealDrive; 2],
@@ -35,10 +36,10 @@ struct Twins {
     log: Log,
     scan: u64,
     shapers: Shapers,
-    /// Set-points of the plain axis, from the rest before the first scan on.
+    /// Set-points of the plain axis, beginning with the rest before the first scan.
     plain: Vec<Setpoint>,
     track: Track,
-    /// Both move alike; not once something superimposed finds other room under an owner that takes longer.
+    /// Both move alike. They do not if a superimposed motion finds other room under an owner that takes longer.
     alike: bool,
 }
 
@@ -51,7 +52,7 @@ impl Twins {
         let mut axes = [(0, config), (1, plain)].map(|(id, config)| {
             Axis::new(AxisId::new(id), config, Standard::new(CYCLE)).expect("a good configuration")
         });
-        // Not at the beginning, to see that it keeps to its part.
+        // Not at the beginning of the memory, to check that it uses only its part.
         axes[0].set_history(7);
         let drive = || IdealDrive::new(DrivePosition::Units(config.position), 0, Some(0), true);
         Self {
@@ -90,7 +91,7 @@ impl Twins {
         self.axes[0].setpoint()
     }
 
-    /// By how much the shaped set-point is off the mean of the plain ones.
+    /// The difference of the shaped set-point from the mean of the plain ones.
     fn off(&self) -> Setpoint {
         let newest = self.plain.len() as u64 - 1;
         let at = |scan: u64| self.plain[scan as usize];
@@ -129,7 +130,7 @@ impl Twins {
         setpoint
     }
 
-    /// Goes on until `done` says so.
+    /// Steps until `done` is true.
     fn until(&mut self, mut done: impl FnMut(&Self) -> bool) {
         for _ in 0..LONGEST {
             if done(self) {
@@ -144,7 +145,7 @@ impl Twins {
         self.shapers.delay().into()
     }
 
-    /// Is in a row of scans in which all was as it should be.
+    /// Steps until command `id` has ended.
     fn finish(&mut self, id: CommandId) {
         self.until(|twins| !matches!(twins.axes[0].fate(id), Fate::Active { .. } | Fate::Waiting));
     }
@@ -205,7 +206,7 @@ fn config(limits: Limits, vibration: [Option<VibrationMode>; 2]) -> AxisConfig {
     }
 }
 
-/// Some command at random, from whatever state.
+/// A random command from any state.
 fn stir(twins: &mut Twins, random: &mut Random, limits: &Limits) -> [CommandId; 2] {
     let dynamics = dynamics(random, limits);
     let here = twins.axes[1].setpoint().position;
@@ -235,8 +236,8 @@ fn stir(twins: &mut Twins, random: &mut Random, limits: &Limits) -> [CommandId; 
     })
 }
 
-/// Moves, endless motions and halts take over from each other at random; the last move ends on its target, as
-/// much later as the shapers take.
+/// Moves, endless motions and halts take over from each other at random. The last move ends on its target, later by
+/// the delay of the shapers.
 ///
 /// Covers: VB1, VB4, VB5
 #[test]
@@ -278,7 +279,7 @@ fn whatever_takes_over_the_rest_of_it_comes_out_first() {
     }
 }
 
-/// With superimposed moves at random: every limit holds for the sum, and both ways are gone to the bit.
+/// With superimposed moves at random: every limit holds for the sum, and both distances are exact to the bit.
 ///
 /// Covers: VB4, VB11
 #[test]
@@ -324,7 +325,7 @@ fn a_superimposed_move_is_shaped_with_what_it_is_on() {
     }
 }
 
-/// As much later as the shaper takes.
+/// Later by the delay of the shaper.
 ///
 /// Covers: VB6
 #[test]
@@ -346,7 +347,7 @@ fn a_velocity_is_reached_when_it_is_published() {
     }
 }
 
-/// MC_SetPosition and turns: what positions are called changes nothing of how the axis goes.
+/// MC_SetPosition and turns: shifts of the coordinates do not change the motion.
 ///
 /// Covers: VB10
 #[test]
@@ -399,7 +400,8 @@ fn coordinates_may_move_while_something_is_in_the_shaper() {
     }
 }
 
-/// Switched off, or stopped by a fault: power stays on until nothing is left in the shaper, although the motion already rests.
+/// Switched off, or stopped by a fault: power stays on until the shaper holds nothing, although the motion is already
+/// at rest.
 ///
 /// Covers: VB9
 #[test]
@@ -446,7 +448,7 @@ fn power_stays_on_until_nothing_is_left() {
     }
 }
 
-/// A pass-through of `each` to what takes no scope.
+/// Lets `each` call a function that takes no scope.
 trait InScope {
     fn clear_cause_in(&mut self, scope: &mut Scope<'_>);
 }
@@ -490,14 +492,14 @@ fn modes_are_read_and_written_by_number() {
     ] {
         assert_eq!(write(&mut twins, number, value), Err(error), "{number} {value}");
     }
-    // As it was written it shapes.
+    // It shapes with the written values.
     twins.shapers = Shapers::new(&[Some(mode(6.0, 0.1, ShaperKind::Period)), None], CYCLE).expect("shapers");
     let [id, _] = stir(&mut twins, &mut Random(5), &limits);
     twins.judged_step();
     assert_eq!(write(&mut twins, 1002, 12.0), Err(ErrorId::InMotion));
     twins.finish(id);
     assert!(write(&mut twins, 1002, 12.0).is_ok());
-    // An axis without modes has none to write.
+    // An axis without modes has no such parameter to write.
     let scope = &mut Scope::new(twins.scan, &mut twins.log);
     let value = ParameterValue::Real(12.0);
     let error = twins.axes[1].write_parameter(1002, value, ExecutionMode::Immediately.into(), scope);

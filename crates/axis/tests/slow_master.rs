@@ -1,12 +1,11 @@
 //! Slaves with `on_limit` `slow_master` at random (G51): for any command to their master, all stay in
 //! gear and no axis leaves its limits.
 //!
-//! A master has one to three slaves, some behind each other, with limits, orders and ratios of their own.
-//! From the scan after the last one came into gear the master gets all kinds of planned motion: moves of
-//! every kind in every buffer mode, an override, superimposed motions, halts and stops, a direction
-//! barred and permitted, power off; slaves are given shifts. Left out are the motions without a plan
-//! within the bound of the slaves (docs/coupling.md): faults of the master, a profile or torque in
-//! progress, homing by the drive, and limits of a slave that are written.
+//! A master has one to three slaves, some of them in a chain, with limits, orders and ratios of their own. From the
+//! scan after the last one is in gear the master gets all kinds of planned motion: moves of every kind in every
+//! buffer mode, an override, superimposed motions, halts and stops, a direction barred and permitted, power off.
+//! Slaves get shifts. Left out are the motions without a plan within the bound of the slaves (docs/coupling.md):
+//! faults of the master, a profile or torque in progress, homing by the drive, and writes to the limits of a slave.
 //!
 //! `SLOW_MASTER_CASES` runs more of them.
 
@@ -23,7 +22,7 @@ const CASES: u64 = 1500;
 const SCANS: u64 = 600;
 const MASTER: AxisId = AxisId::new(0);
 
-/// Who follows whom; the first axis is the master.
+/// The master of each slave; the first axis is the top master.
 const TREES: [&[usize]; 5] = [&[0], &[0, 0], &[0, 1], &[0, 1, 0], &[0, 1, 2]];
 
 fn axis(number: u16, limits: Limits) -> Axis {
@@ -51,7 +50,7 @@ impl Seen {
         let bounds = [limits.velocity, acceleration, limits.jerk, limits.snap];
         let derivatives = [now.velocity, now.acceleration, now.jerk, now.snap];
         let mut differences = self.0;
-        // How far f64 positions resolve a difference of each order.
+        // The resolution of f64 positions in a difference of each order.
         let mut grain = 4.0 * f64::EPSILON * self.0.iter().fold(1.0, |most: f64, p| most.max(p.abs()));
         for (order, (bound, derivative)) in bounds.iter().zip(derivatives).enumerate() {
             assert!(
@@ -176,7 +175,7 @@ impl Case {
         }
     }
 
-    /// Something for the master, or a shift for a slave. What the state of an axis refuses changes nothing.
+    /// A command for the master, or a shift for a slave. A command that the state of an axis refuses changes nothing.
     fn act(&mut self) {
         const MODES: [BufferMode; 6] = [
             BufferMode::Aborting,
@@ -302,7 +301,8 @@ fn slaves_stay_in_gear_whatever_their_master_is_told() {
     }
 }
 
-/// A bound that comes while the master comes down to another one, or turns back (found among 40,000 seeds).
+/// A bound that comes into force while the master slows down to another one, or turns back (found among 40,000
+/// seeds).
 #[test]
 fn a_bound_that_comes_late_is_kept() {
     for seed in [10_425, 13_353, 15_360, 17_574, 19_180, 25_347, 30_520] {
@@ -310,7 +310,7 @@ fn a_bound_that_comes_late_is_kept() {
     }
 }
 
-/// The bound is what the slave can follow, and the master has all of it.
+/// The bound is what the slave can follow, and the master can use all of it.
 #[test]
 fn a_master_uses_all_that_its_slave_leaves() {
     for seed in 0..cases(200) {

@@ -1,8 +1,8 @@
 //! Random superimposed motions: the sum keeps the limits of the axis, the motion under it is unchanged,
 //! and both targets are reached to the bit.
 //!
-//! Every case runs two axes with the same commands; one of them is also given superimposed ones, at random
-//! times, in both directions, halted or given again on the way.
+//! Every case runs two axes with the same commands. One of them also gets superimposed commands, at random times, in
+//! both directions, halted or replaced while they run.
 
 use crate::differences::Seen;
 use crate::draw;
@@ -59,7 +59,7 @@ impl Case {
         }
     }
 
-    /// The same command to both axes.
+    /// Gives the same command to both axes.
     fn command(&mut self, request: &Request) -> (CommandId, CommandId) {
         let with = self
             .with
@@ -109,8 +109,8 @@ impl Case {
     }
 }
 
-/// One superimposed motion on one command: the command's own set-points and its end are the same to the bit,
-/// and the axis ends on target plus distance.
+/// One superimposed motion on one command. The command's own set-points and its end are the same to the bit, and the
+/// axis ends at its target plus the distance.
 fn one_on_one(seed: u64) {
     let mut case = Case::new(seed);
     let (base, target) = case.base();
@@ -121,7 +121,7 @@ fn one_on_one(seed: u64) {
     for scan in 0..MOST_SCANS {
         case.scan = scan;
         if scan == at {
-            // Beside a move that is over by now there is nothing to compare.
+            // If the move is over by now, there is nothing to compare.
             added = Some(case.superimpose());
         }
         assert_eq!(
@@ -150,14 +150,14 @@ fn one_on_one(seed: u64) {
             match target {
                 Some(target) => {
                     assert_eq!(case.with.state(), AxisState::Standstill, "seed {seed}");
-                    // A move that was over took its distance from where it stood: the same sum.
+                    // A move that was over counted its distance from its rest position: the sum is the same.
                     assert_eq!(now.position, target + distance, "seed {seed}");
                 }
                 None => assert_eq!(now.velocity, twin.velocity, "seed {seed}"),
             }
             return;
         }
-        // An endless motion at the velocity limit never leaves room, or next to none.
+        // An endless motion at the velocity limit never leaves room, or hardly any.
         if target.is_none() && scan > 20_000 {
             assert!(twin.velocity.abs() > 0.99 * case.limits.velocity, "seed {seed}");
             return;
@@ -170,8 +170,8 @@ fn one_on_one(seed: u64) {
     panic!("seed {seed}: {:?}", case.with.outlook());
 }
 
-/// Anything on anything: more superimposed motions, halts, and buffered moves under them. The sum keeps the
-/// limits, nothing fails, and everything comes to an end.
+/// Any command on any motion: more superimposed motions, halts, and buffered moves under them. The sum keeps the
+/// limits, nothing fails, and every motion ends.
 fn many_on_many(seed: u64) {
     let mut case = Case::new(seed);
     let mut seen = Seen::new(CYCLE);

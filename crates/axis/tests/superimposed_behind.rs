@@ -1,9 +1,8 @@
-//! Random superimposed motions on slaves: the sum keeps the limits of the slave, the law under it is
-//! unchanged, and in the end the slave is displaced by the added distance.
+//! Random superimposed motions on slaves. The sum keeps the limits of the slave, the law under it is unchanged, and
+//! in the end the slave is shifted by the added distance.
 //!
-//! Every case runs a master, a slave that is also given superimposed commands, and an equal slave that is
-//! not. The master gets new targets at random times, so the added motion has to wait, to slow down, or to
-//! end the gear.
+//! Every case runs a master, a slave that also gets superimposed commands, and an equal slave that does not. The
+//! master gets new targets at random times, so the added motion has to wait, to slow down, or to end the gear.
 //!
 //! Covers: G66.
 
@@ -17,7 +16,7 @@ use standstill_testkit::{Random, cases};
 
 const CYCLE: f64 = 0.01;
 const CASES: u64 = 5000;
-/// From this scan on nothing new is asked for.
+/// From this scan on there are no new commands.
 const ASKED: u64 = 400;
 /// A case that takes longer is a motion that never ends.
 const MOST_SCANS: u64 = 40_000;
@@ -30,14 +29,14 @@ struct Case {
     seed: u64,
     random: Random,
     axes: [Axis; 3],
-    /// Of the master, and of the slave and its twin.
+    /// Limits of the master, and of the slave and its twin.
     limits: [Limits; 2],
     ratio: (i16, u16),
     log: Log,
     scan: u64,
 }
 
-/// A slave can do what its master can, times the ratio and times `room`.
+/// Limits of a slave: those of its master, times the ratio and times `room`.
 fn able(limits: &Limits, ratio: f64, room: f64) -> Limits {
     let by = ratio * room;
     Limits {
@@ -145,7 +144,7 @@ impl Case {
             .map_or(0.0, |coupled| coupled.superimposed)
     }
 
-    /// How far the slave is from its twin beside what was added, and what rounding makes of that at most.
+    /// The distance of the slave from its twin plus the added distance, and the largest rounding error of it.
     fn off(&self) -> (f64, f64) {
         let [master, slave, twin] = [MASTER, SLAVE, TWIN].map(|axis| self.axes[axis].setpoint().position);
         let added = self.superimposed();
@@ -154,7 +153,7 @@ impl Case {
     }
 }
 
-/// Anything on a slave whose master does anything.
+/// Any superimposed command on a slave, for any motion of its master.
 fn play(seed: u64) {
     let mut case = Case::new(seed);
     case.couple(SLAVE);
@@ -181,7 +180,7 @@ fn play(seed: u64) {
         seen.made_of(size * case.axes[MASTER].setpoint().position);
         seen.check(&case.axes[SLAVE].setpoint(), &case.limits[1], &what);
         assert_eq!(case.axes[SLAVE].state(), AxisState::SynchronizedMotion, "{what}");
-        // One that was out of gear comes back onto the same law.
+        // A slave that was out of gear returns to the same law.
         if case.axes[SLAVE].is_in_gear() && case.axes[TWIN].is_in_gear() {
             let (off, resolved) = case.off();
             assert!(off <= resolved, "{what}: {off:e}");

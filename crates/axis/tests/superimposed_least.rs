@@ -1,9 +1,10 @@
-//! The time until a superimposed distance has been added, compared with the least number of scans.
+//! The time until a superimposed distance is added, compared with the least number of scans.
 //!
-//! `superimposed_least.txt` holds 400 random cases: an axis of order 4 moves from rest, and at some scan MC_MoveSuperimposed is
-//! given. The last number of a line is the least count of scans in which the distance can be added: the smallest for which the
-//! linear programme over the snaps of all scans has a solution, where the sum keeps the limits of the axis at every scan end and
-//! what is added its own velocity. It was found with SciPy's HiGHS, with no part of this project.
+//! `superimposed_least.txt` holds 400 random cases: an axis of order 4 moves from rest, and MC_MoveSuperimposed is
+//! given in some scan. The last number of a line is the least number of scans in which the distance can be added: the
+//! smallest for which the linear program over the snaps of all scans has a solution. In that solution the sum keeps
+//! the limits of the axis at every scan end, and the added motion keeps its own velocity. It was found with SciPy's
+//! HiGHS, with no part of this project.
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, Command, Direction, Dynamics, Fate, Limits, Log, Raw, Request, Scope, Standard,
@@ -104,7 +105,7 @@ fn run(case: &Case, adds: bool) -> Vec<f64> {
     velocities
 }
 
-/// Scans from the call of MC_MoveSuperimposed to its Done. What is added keeps its velocity.
+/// Scans from the call of MC_MoveSuperimposed to its Done. The added motion must keep its velocity.
 fn scans(case: &Case) -> u64 {
     let (both, owner) = (run(case, true), run(case, false));
     for (both, owner) in both.iter().zip(&owner) {
@@ -123,7 +124,7 @@ fn a_superimposed_distance_is_added_nearly_as_soon_as_can_be() {
     let mut ratios: Vec<f64> = cases()
         .map(|case| {
             let (scans, least) = (scans(&case), case.least);
-            // A plan that switches inside a scan may need one less than the programme on the grid.
+            // A plan that switches within a scan may need one scan less than the program on the grid.
             assert!(scans + 1 >= least, "{scans} scans, the least are {least}");
             scans as f64 / least as f64
         })
@@ -135,7 +136,7 @@ fn a_superimposed_distance_is_added_nearly_as_soon_as_can_be() {
         "of {}: median {median:.3}, 95 % {most:.3}, worst {worst:.3}",
         ratios.len()
     );
-    // Where only the switches of the owner were waited for: 1.043, 1.625 and 1.96; with a table of paces 1.025, 1.26 and 1.72.
+    // Searched only at the owner's switches: 1.043, 1.625 and 1.96. With a table of rates: 1.025, 1.26 and 1.72.
     assert!(
         median <= 1.02 && most <= 1.1 && worst <= 1.3,
         "{median} {most} {worst}"

@@ -46,7 +46,7 @@ fn limits(random: &mut Random) -> Limits {
     }
 }
 
-/// An axis under way, its records and what its set-points are held against.
+/// An axis in motion, its records, and the checks of its set-points.
 struct Rig {
     axis: Axis,
     log: Log,
@@ -54,7 +54,7 @@ struct Rig {
     records: u64,
     track: Track,
     limits: Limits,
-    /// Of the case.
+    /// The number of the case.
     number: u64,
     /// Stops recorded to turn back since the last command.
     turns_back: bool,
@@ -119,7 +119,7 @@ impl Rig {
         setpoint
     }
 
-    /// Dynamic values of a command's own, each between a twentieth of the axis limit and all of it.
+    /// Dynamic values of a command, each between a twentieth of the axis limit and all of it.
     fn dynamics(&self, random: &mut Random) -> Dynamics {
         let mut part = |limit: f64| {
             if limit.is_finite() && !random.one_in(4) {
@@ -144,13 +144,13 @@ impl Rig {
         }
     }
 
-    /// A place some scans' way off.
+    /// A position some scans away.
     fn place(&self, random: &mut Random) -> f64 {
         let way = self.limits.velocity * CYCLE * random.log_between(0.5, 300.0);
         self.axis.setpoint().position + random.signed(way)
     }
 
-    /// Some motion with limits of its own, left after some of its scans.
+    /// A motion with limits of its own, followed for some of its scans.
     fn stir(&mut self, random: &mut Random) {
         let dynamics = self.dynamics(random);
         if random.one_in(2) {
@@ -178,9 +178,9 @@ impl Rig {
     }
 }
 
-/// Streams and numbers of what has failed once.
+/// Streams and numbers of cases that failed before.
 const HARD: [(u64, u64); 1] = [
-    // A root that leaves 4e-10 of the way: spread evenly over the plan it is a step in the velocity.
+    // A root that leaves 4e-10 of the distance: spread evenly over the plan it is a step in the velocity.
     (2, 58_423),
 ];
 
@@ -253,7 +253,7 @@ fn stops_keep_their_direction_and_every_limit() {
     assert!(straight > 10 * turned);
 }
 
-/// Whatever was going on, a move with its own limits is taken and ends exactly on its target.
+/// For any motion in progress, a move with its own limits is accepted and ends exactly at its target.
 ///
 /// Covers: B6, R25
 #[test]
@@ -289,7 +289,7 @@ fn every_move_is_taken_and_lands_exactly() {
     assert!(raised > 0);
 }
 
-/// MC_MoveVelocity comes to its velocity within every limit.
+/// MC_MoveVelocity reaches its velocity within every limit.
 ///
 /// Covers: R39
 #[test]

@@ -1,8 +1,9 @@
-//! Chains of blended moves that lead back and forth: they turn at their ends.
+//! Chains of blended moves in alternating directions: they turn at their ends.
 //!
-//! What holds of them, whatever is commanded, changed or taken away when: no limit of the axis is left, nothing is later than with
-//! buffered moves, the axis is on each end exactly, in a scan, without velocity, and never beyond it. Set-points are judged from
-//! outside, by their backward differences. The numbers are seeded; a failing case prints its own.
+//! The rules, for any command, change or withdrawal at any time: no limit of the axis is exceeded, and nothing is
+//! later than with buffered moves. The axis is on each end exactly, in a scan, with velocity 0, and never beyond it.
+//! Set-points are checked independently, by their backward differences. The numbers are seeded; a failing case prints
+//! its own.
 
 use crate::chains::{BLENDING, CYCLE, LONGEST, Rig, drawn_dynamics, drawn_limits};
 use standstill_axis::{
@@ -15,11 +16,11 @@ struct Move {
     end: f64,
     dynamics: Dynamics,
     mode: BufferMode,
-    /// The scan it is commanded in.
+    /// The scan in which it is commanded.
     at: u64,
 }
 
-/// Two to six moves; each second one leads back in the mean. Half of the chains have the dynamics of the axis.
+/// Two to six moves; on average every second one reverses. Half of the chains have the dynamics of the axis.
 fn moves(random: &mut Random, limits: &Limits, longest_wait: u64) -> Vec<Move> {
     let scan = limits.velocity * CYCLE;
     let is_same = random.below(2) == 0;
@@ -50,7 +51,7 @@ fn moves(random: &mut Random, limits: &Limits, longest_wait: u64) -> Vec<Move> {
         .collect()
 }
 
-/// The range of all ends, with the begin.
+/// The range of all ends and the start.
 fn range(moves: &[Move]) -> (f64, f64) {
     let ends = moves.iter().map(|next| next.end);
     ends.fold((0.0, 0.0), |(low, high): (f64, f64), end| {
@@ -58,7 +59,7 @@ fn range(moves: &[Move]) -> (f64, f64) {
     })
 }
 
-/// The moves, told in time, blended or buffered; `disturb` does something in each scan.
+/// Runs the moves, commanded in time, blended or buffered; `disturb` acts in each scan.
 fn told(limits: Limits, moves: &[Move], is_blended: bool, disturb: impl FnMut(&mut Rig)) -> Rig {
     told_to(AxisConfig::new(limits), moves, is_blended, disturb)
 }
@@ -151,7 +152,8 @@ fn overrides_leave_the_turns_where_they_are() {
         let mut random = Random(seed);
         let limits = drawn_limits(&mut random);
         let mut moves = moves(&mut random, &limits, 1);
-        // Where the override is lowered too late for the speed at an end, that is passed faster, and may be a scan late.
+        // If the override is lowered too late for the velocity at an end, the axis passes that end faster, and may be
+        // a scan late.
         for number in 1..moves.len() {
             let way = (moves[number].end - moves[number - 1].end).abs();
             let side = if number % 2 == 0 { 1.0 } else { -1.0 };
@@ -167,7 +169,8 @@ fn overrides_leave_the_turns_where_they_are() {
     }
 }
 
-/// However late it is lowered: what it is too late for goes on as planned, and never beyond the last turn.
+/// The override may be lowered at any time: an end for which that is too late is passed as planned, and the axis is
+/// never beyond the last turn.
 ///
 /// Covers: B13, B17
 #[test]
@@ -199,7 +202,7 @@ fn an_override_in_a_chain_that_turns_leads_beyond_no_turn() {
     }
 }
 
-/// Where the software limits are a little or far behind the ends, at any time something stops the axis.
+/// The software limits are a short or a long distance beyond the ends, and the axis is stopped at any time.
 #[test]
 fn a_stop_before_a_turn_stays_inside_the_software_limits() {
     for seed in 0..cases(2_000) {
@@ -269,7 +272,7 @@ fn a_turn_whose_command_is_taken_away_goes_no_further() {
     }
 }
 
-/// The differences of the sum, whatever waits for what.
+/// Checks the differences of the sum, for any order of waiting.
 #[test]
 fn what_is_superimposed_at_a_turn_keeps_the_limits() {
     for seed in 0..cases(2_000) {

@@ -73,7 +73,7 @@ fn a_turn_is_a_fraction_of_increments() {
     assert_eq!(turning(f64::MIN_POSITIVE, 0.0, None), Ok(()));
 }
 
-/// A configuration with everything that has a magnitude.
+/// A configuration with a value for every magnitude.
 fn full() -> AxisConfig {
     AxisConfig {
         defaults: Defaults {
@@ -154,7 +154,7 @@ fn the_largest_factor_is_a_number_from_1_on() {
     }
 }
 
-/// A command of each kind, with values of its own from `base` on.
+/// A command of each kind, with values of its own that start at `base`.
 fn commands(base: f64) -> [Command; 10] {
     let dynamics = Dynamics {
         velocity: base,
@@ -212,7 +212,7 @@ fn commands_are_the_same_if_kind_and_values_are() {
     }
     let home = |position| Command::Home { position };
     assert!(home(1.0).is_same(&home(1.0)) && !home(1.0).is_same(&home(-1.0)));
-    // To the bit: NaN is itself, and the zeros are two.
+    // Compared to the bit: NaN is equal to itself, and the two zeros differ.
     assert!(home(f64::NAN).is_same(&home(f64::NAN)));
     assert!(!home(0.0).is_same(&home(-0.0)));
 }

@@ -1,12 +1,12 @@
-//! Overrides and ContinuousUpdate at random: whatever changes in whatever scan, the limits of the axis hold, nothing
-//! ends in ErrorStop, every command ends, and the last target is met to the bit.
+//! Overrides and ContinuousUpdate at random. For any change in any scan the limits of the axis hold, nothing ends in
+//! ErrorStop, every command ends, and the last target is met to the bit.
 //!
 //! Every case runs one axis through random commands (aborting, buffered, blended, superimposed, endless, halts). In
-//! random scans the override takes new factors, 0 among them, and commands that run or wait take new values. At the
-//! end one move is left alone with its changes, and must end where the newest of them says.
+//! random scans the override gets new factors, 0 among them, and running or waiting commands get new values. At the
+//! end one move runs alone with such changes, and must end as the newest values require.
 //!
-//! Set-points are held against the limits of the axis by the rules of `standstill-soak`. A take-over that cannot stay
-//! inside a limit says so in a record; that may happen in one case of a thousand. Without a record it never happens.
+//! Set-points are checked against the limits of the axis by the rules of `standstill-soak`. A take-over that can't
+//! stay inside a limit is recorded; that may happen in one case of a thousand. Without a record it never happens.
 
 use crate::draw;
 use standstill_axis::{
@@ -31,13 +31,13 @@ struct Case {
     commands: Vec<(CommandId, Command)>,
     added: Option<CommandId>,
     changes: u64,
-    /// Records looked at.
+    /// The number of records read.
     told: u64,
-    /// The axis has told that a take-over could not stay inside its limits.
+    /// The axis has recorded that a take-over could not stay inside its limits.
     unavoidable: bool,
-    /// It did not.
+    /// A limit was exceeded.
     exceeded: bool,
-    /// It did not, and had not told.
+    /// A limit was exceeded without a record.
     silent: Option<String>,
 }
 
@@ -123,7 +123,7 @@ impl Case {
         all[self.random.below(5) as usize].into()
     }
 
-    /// Values for a command of kind `kind`.
+    /// Random values for a command of kind `kind`.
     fn values(&mut self, kind: u64) -> Command {
         let dynamics = draw::dynamics(&mut self.random, &self.axis.config().limits);
         let distance = self.random.between(-120.0, 120.0);
@@ -190,7 +190,7 @@ impl Case {
         }
     }
 
-    /// One of the values of `command`, or all of them, taken from others.
+    /// `command` with one of its values, or all of them, taken from another.
     fn changed(&mut self, command: Command) -> Command {
         let kind = match command {
             Command::MoveAbsolute { .. } => 0,
@@ -301,7 +301,7 @@ impl Case {
         self.end();
     }
 
-    /// One aborting move, with changes, alone to its end.
+    /// One aborting move with changes, until it ends.
     fn end(&mut self) {
         let kind = self.random.below(2);
         let mut command = self.values(kind);
@@ -353,7 +353,7 @@ impl Case {
             _ => unreachable!(),
         }
         for (id, _) in &self.commands {
-            // Those of long ago are forgotten.
+            // The axis no longer remembers fates from long ago.
             let fate = self.axis.fate(*id);
             assert!(
                 !matches!(fate, Fate::Waiting | Fate::Active { .. }),

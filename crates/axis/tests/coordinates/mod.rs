@@ -1,4 +1,4 @@
-//! Coordinates of axes: turns of modulo axes, and places that change their names.
+//! Coordinates of axes: turns of modulo axes, and shifts.
 
 mod modulo_moves;
 mod rig;

@@ -1,6 +1,5 @@
-//! Random moves on modulo axes against the rule for Direction, stated here once more without looking at how the
-//! axis does it: what the whole way is, that nothing turns back that must not, and that the target is met to
-//! the bit.
+//! Random moves on modulo axes against the rule for Direction, which is stated here independently of the axis: the
+//! length of the whole travel, no reversal that is not permitted, and the target met to the bit.
 
 use super::rig::{CYCLE, Random, Rig};
 use standstill_axis::{
@@ -53,7 +52,7 @@ fn random_config(random: &mut Random) -> AxisConfig {
     }
 }
 
-/// 360 u a turn, and 2^23 * 7 / 3 increments; no jerk limit.
+/// A turn of 360 u, and of 2^23 * 7 / 3 increments; no jerk limit.
 fn gear(limit: f64, invert: bool, offset: f64) -> AxisConfig {
     let limits = Limits {
         velocity: limit,
@@ -70,10 +69,10 @@ fn gear(limit: f64, invert: bool, offset: f64) -> AxisConfig {
     }
 }
 
-/// Units to an increment of that gear.
+/// Units per increment of that gear.
 const INCREMENT: f64 = 1080.0 / (8_388_608.0 * 7.0);
 
-/// The table: the way to go if the target is `ahead`, from 0 to a turn, and a stop takes the way `stop`.
+/// The table: the travel if the target is `ahead`, from 0 to a turn, and a stop travels `stop`.
 fn expected(direction: Direction, ahead: f64, length: f64, forward: bool, stop: f64, slack: f64) -> f64 {
     match direction {
         Direction::Unset | Direction::ShortestWay if ahead <= length / 2.0 => ahead,
@@ -118,7 +117,7 @@ fn random_moves_follow_the_table() {
         let config = random_config(&mut random);
         let length = config.modulo.unwrap();
         let mut rig = Rig::new(config);
-        // Moving one way or the other, or at rest after it, or at rest from the beginning.
+        // In motion in either direction, at rest after it, or at rest from the beginning.
         let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
         let mut forward = true;
         let start = random.below(4);
@@ -170,7 +169,7 @@ fn random_moves_follow_the_table() {
         }
         let slack = 1e-8 * (length + stop.abs());
         let way = expected(direction, ahead, length, forward, stop, slack);
-        // Outside its limits a command may stop with the larger ones of the motion before, so within less.
+        // Beyond its limits a command may stop with the higher ones of the motion before, in a shorter distance.
         let outside = here.velocity.abs() > dynamics.velocity
             || here.acceleration.abs() > dynamics.acceleration.min(dynamics.deceleration)
             || (dynamics.jerk > 0.0 && here.jerk.abs() > dynamics.jerk);
@@ -225,8 +224,8 @@ fn distances_beyond_a_turn_are_gone_in_full() {
     }
 }
 
-/// Increments go on steadily whatever the turn, and the feedback is the set-point of the scan before to within
-/// an increment.
+/// Increments continue steadily in any turn, and the feedback is the set-point of the scan before, to within an
+/// increment.
 #[test]
 fn increments_never_jump() {
     for invert in [false, true] {
@@ -303,8 +302,8 @@ fn a_thousand_million_turns_out_every_increment_is_right() {
     }
 }
 
-/// An axis wakes up 10^9 turns out, runs and turns back: the increments are those at home, shifted, and the
-/// positions have the same bits.
+/// An axis starts 10^9 turns away, runs and reverses: the increments are those near 0, shifted, and the positions
+/// have the same bits.
 #[test]
 fn an_axis_a_thousand_million_turns_out_moves_as_one_at_home() {
     let config = AxisConfig {
@@ -354,7 +353,7 @@ fn an_axis_a_thousand_million_turns_out_moves_as_one_at_home() {
     assert!(run(0) == run(far), "the same increments, the same bits");
 }
 
-/// So many turns that an increment would show if one were lost in a hundred turns.
+/// Enough turns that a lost increment would show if it were lost in a hundred turns.
 #[test]
 fn many_turns_end_on_the_increment_of_the_position() {
     let mut rig = Rig::new(gear(72_000.0, false, 0.0));
@@ -376,7 +375,7 @@ fn many_turns_end_on_the_increment_of_the_position() {
     let increments = rig.step();
     let turns = (rig.way / 360.0).round() as i64;
     assert!(turns > 99_000, "{turns}");
-    // 120 are a third of a turn, so thirds of increments are whole there.
+    // 120 u are a third of a turn, where increments are whole.
     let thirds = turns * 8_388_608 * 7 + 8_388_608 * 7 / 3;
     assert!((3 * increments - thirds).abs() <= 2, "{increments} {thirds}");
 }
@@ -413,7 +412,7 @@ fn buffered_moves_find_their_way_from_where_they_start() {
             },
         )
         .unwrap();
-    // From 0, where it is given, the way would be 100; from 300 on it is 160.
+    // From 0, where it is commanded, the travel would be 100; from 300 it is 160.
     assert_eq!(rig.run(id), Fate::Done);
     assert!((rig.way - 460.0).abs() < 1e-9, "{}", rig.way);
 }

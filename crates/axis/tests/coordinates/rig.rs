@@ -17,7 +17,7 @@ pub struct Rig {
     pub log: Log,
     pub scan: u64,
     turn: f64,
-    /// Way of the published positions since the start, on a modulo axis the shorter way round in each scan (u).
+    /// Travel of the published positions since the start (u), on a modulo axis the shorter distance in each scan.
     pub way: f64,
     /// Least and largest velocity published (u/s).
     pub least: f64,
@@ -57,7 +57,7 @@ impl Rig {
             .unwrap()
     }
 
-    /// One scan; returns the increments the drive told, 0 if it speaks units.
+    /// One scan; returns the increments that the drive reported, 0 if it uses units.
     pub fn step(&mut self) -> i64 {
         let feedback = self.drive.read(0);
         self.axis
@@ -88,13 +88,13 @@ impl Rig {
         }
     }
 
-    /// Way and velocities count from here.
+    /// Travel and velocities count from here.
     pub fn forget(&mut self) {
         let velocity = self.axis.setpoint().velocity;
         (self.way, self.least, self.most) = (0.0, velocity, velocity);
     }
 
-    /// Steps until the command has ended, and tells how.
+    /// Steps until the command has ended, and returns its fate.
     pub fn run(&mut self, id: CommandId) -> Fate {
         for _ in 0..200_000 {
             if !matches!(self.axis.fate(id), Fate::Active { .. } | Fate::Waiting) {

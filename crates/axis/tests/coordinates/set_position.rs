@@ -1,4 +1,4 @@
-//! Coordinates that move under random motions: increments go on as if nothing had happened, and velocities too.
+//! Shifts of the coordinates under random motions. Increments and velocities continue as without a shift.
 
 use super::rig::{CYCLE, Random, Rig};
 use standstill_axis::{
@@ -101,7 +101,7 @@ fn increments_and_velocity_have_no_step() {
     }
 }
 
-/// A new name by MC_Home leaves increments as they are.
+/// MC_Home with a new position leaves increments unchanged.
 #[test]
 fn homing_leaves_increments_alone() {
     let mut rig = Rig::new(AxisConfig {

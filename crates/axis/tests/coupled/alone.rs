@@ -1,4 +1,4 @@
-//! Axes that follow none, beside axes that do.
+//! Axes that follow no master, together with axes that do.
 
 use super::rig::Rig;
 use standstill_axis::{
@@ -8,7 +8,7 @@ use standstill_testkit::Random;
 
 const CYCLE: f64 = 0.001;
 
-/// Axes that are commanded at random.
+/// The number of axes that are commanded at random.
 const ALONE: usize = 3;
 
 fn config(modulo: Option<f64>) -> AxisConfig {
@@ -50,7 +50,7 @@ fn some_motion(random: &mut Random) -> Command {
     }
 }
 
-/// A motion step without couplings takes another way than one in which some axis follows another.
+/// A motion step without couplings runs other code than one in which an axis follows another.
 ///
 /// Covers: G4
 #[test]
@@ -68,7 +68,7 @@ fn they_move_as_they_do_alone_to_the_bit() {
                 other.command(axis, command).is_ok()
             );
         }
-        // The others couple, move and let go.
+        // The other axes couple, move and uncouple.
         if random.one_in(200) {
             let master = ALONE + random.place(3);
             let slave = ALONE + (master - ALONE + 1) % 3;

@@ -1,6 +1,6 @@
 //! Sums of products without rounding, and the law of a gear compared with them.
 
-/// Bits of a limb; the rest of its 64 takes carries.
+/// Bits of a limb; the rest of its 64 bits takes carries.
 const BITS: usize = 32;
 
 /// Limbs from 2^-1074 to above the largest number times 2^40.
@@ -35,7 +35,7 @@ impl Sum {
         }
     }
 
-    /// -1, 0 or 1.
+    /// The sign: -1, 0 or 1.
     fn sign(&self) -> i64 {
         let (mut carry, mut any) = (0, 0);
         for limb in self.0 {
@@ -51,20 +51,20 @@ impl Sum {
     }
 }
 
-/// Where a master and its slave are, as published.
+/// The positions of a master and its slave, as published.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
     /// Whole turns of the master.
     pub turns: i64,
     /// Position of the master (u).
     pub master: f64,
-    /// By how much it is seen ahead (u).
+    /// The distance by which the slave sees it ahead (u).
     pub phase: f64,
     /// Position of the slave (u).
     pub slave: f64,
 }
 
-/// A gear, and the turns (u) of axes that have them.
+/// A gear, and the turns (u) of its modulo axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Law {
     pub numerator: i32,
@@ -79,13 +79,14 @@ impl Law {
         let (up, down) = (i64::from(self.numerator), i64::from(self.denominator));
         let turns = row.turns - anchor.turns;
         let length = self.master_turn.unwrap_or(0.0);
-        // About where the law is, to find the turn of the slave.
+        // The approximate place of the law, to find the turn of the slave.
         let way = (row.master - anchor.master) + turns as f64 * length + (row.phase - anchor.phase);
         let about = anchor.slave + f64::from(self.numerator) * way / f64::from(self.denominator);
         let further = self
             .slave_turn
             .map_or(0, |length| ((about - row.slave) / length).round() as i64);
-        // Twice `down` times what is from `bound`, the middle between two numbers (twice it), to the exact place.
+        // Twice `down` times the distance from `bound`, the middle between two numbers (times two), to the exact
+        // place.
         let from = |(low, high): (f64, f64)| {
             let mut sum = Sum::new();
             sum.add(2 * down, anchor.slave);
@@ -104,12 +105,12 @@ impl Law {
             let (below, above) = (from((value.next_down(), value)), from((value, value.next_up())));
             (below > 0 && above < 0) || (is_even && below >= 0 && above <= 0)
         };
-        // What rounds to a whole turn is 0 of the next.
+        // A value that rounds to a whole turn is 0 of the next one.
         let is_turn = |length: f64| {
             row.slave == 0.0 && from((length.next_down(), length)) >= 0 && from((length, length)) < 0
         };
         let others = self.slave_turn.is_some_and(|length| {
-            // Below 0 by less than what the turn resolves: it has been counted as the turn before.
+            // Below 0 by less than the resolution of a turn: it was counted as the turn before.
             let lower = (length - length.next_down()) / 2.0;
             is_turn(length) || (row.slave == 0.0 && from((-lower, -lower)) >= 0 && from((0.0, 0.0)) < 0)
         });
@@ -132,7 +133,7 @@ fn a_law_is_rounded_once_and_no_neighbour_is_it() {
         slave,
     };
     let anchor = row(0.0, 0.0);
-    // 3/7 and 3e-300/7 by one division each, which rounds once; 3 times these is exact.
+    // 3/7 and 3e-300/7 by one division each, which rounds once; three times these is exact.
     // 1, 2^-900 and 2^900.
     for exponent in [1023, 123, 1923] {
         let scale = f64::from_bits(exponent << 52);
@@ -141,7 +142,7 @@ fn a_law_is_rounded_once_and_no_neighbour_is_it() {
         assert!(!law.holds(&anchor, &row(scale, exact.next_up())));
         assert!(!law.holds(&anchor, &row(scale, exact.next_down())));
     }
-    // In the middle of two numbers it is the even one.
+    // In the middle between two numbers it is the even one.
     let half = Law {
         numerator: 1,
         denominator: 2,
@@ -173,7 +174,7 @@ fn turns_of_both_are_counted() {
     assert!(law.holds(&anchor, &row(7_000_000, 0.2)));
     assert!(!law.holds(&anchor, &row(7_000_000, 0.2_f64.next_up())));
     assert!(!law.holds(&anchor, &row(7_000_001, 0.2)));
-    // A slave that comes a little short of a turn is at 0.
+    // A slave a little before a turn is at 0.
     let law = Law {
         numerator: 1,
         denominator: 1,

@@ -1,4 +1,4 @@
-//! What must hold of published positions: differences within the limits, and locked rows on the law to the bit.
+//! The rules for published positions: differences within the limits, and rows in gear on the law to the bit.
 
 use super::exact::{Law, Row};
 use super::rig::Rig;
@@ -9,23 +9,23 @@ use standstill_axis::{
 /// By how much a limit may be exceeded, relative to it.
 const RELATIVE: f64 = 1e-9;
 
-/// What an instant of a plan resolves, relative to the time since the axis set off.
+/// The resolution of an instant of a plan, relative to the time since the start of the motion.
 const TICK: f64 = 2.0 * f64::EPSILON;
 
 const NAMES: [&str; 4] = ["velocity", "acceleration", "jerk", "snap"];
 
-/// What one axis published lately.
+/// The last published positions of one axis.
 pub struct Track {
     bounds: [f64; 4],
     cycle: f64,
     turn: Option<f64>,
-    /// Whole turns, as the published positions come round.
+    /// Whole turns, counted from the published positions.
     pub turns: i64,
     position: f64,
-    /// Ways from scan to scan, newest first.
+    /// Distances from scan to scan, newest first.
     ways: [f64; 4],
     known: usize,
-    /// The largest number a position of it is made of (u).
+    /// The largest number from which a position is computed (u).
     pub largest: f64,
     /// The longest time of a motion (s).
     pub time: f64,
@@ -49,14 +49,14 @@ impl Track {
             position,
             ways: [0.0; 4],
             known: 4,
-            // An endless motion is brought back when it is two turns away.
+            // An endless motion is moved back when it is two turns away.
             largest: position.abs().max(3.0 * turn.unwrap_or(0.0)),
             time: 0.0,
         }
     }
 
-    /// Takes the set-point of a scan. The most of what it and the differences are over a limit, relative to the limit, beyond
-    /// what positions resolve; and an error if that is more than allowed.
+    /// Takes the set-point of a scan. Returns the largest excess of the set-point and the differences over a limit,
+    /// relative to the limit, less the resolution of positions; an error if that is more than allowed.
     pub fn take(&mut self, axis: &Axis) -> Result<f64, String> {
         let setpoint = axis.setpoint();
         self.time = if setpoint.is_at_rest() {
@@ -74,13 +74,14 @@ impl Track {
         self.ways.rotate_right(1);
         self.ways[0] = way;
         self.known = 4.min(self.known + 1);
-        // A way onto the law is made of the place of the law; where the axis comes round it is planned anew every two turns.
+        // A way onto the law is computed from the place of the law. On a modulo axis it is planned anew every two
+        // turns.
         let deviation = match self.turn {
             Some(turn) => axis.deviation().abs().min(2.0 * turn),
             None => axis.deviation().abs(),
         };
         self.largest = self.largest.max(setpoint.position.abs() + deviation);
-        // Rounding of a position, and of the instant it belongs to.
+        // Rounding of a position, and of its instant.
         let mut resolved = (self.largest.next_up() - self.largest) + TICK * self.time * self.bounds[0];
         let mut differences = self.ways;
         let mut worst = 0.0_f64;
@@ -115,40 +116,41 @@ impl Track {
     }
 }
 
-/// Where an axis is: turns and position, and by how much it sees its master ahead.
+/// The place of an axis: turns and position, and the distance by which it sees its master ahead.
 #[derive(Clone, Copy)]
 pub struct Where(i64, f64, f64);
 
-/// Where all axes are.
+/// The places of all axes.
 pub fn places(axes: &[Axis], tracks: &[Track]) -> Vec<Where> {
     let place =
         |(axis, track): (&Axis, &Track)| Where(track.turns, axis.setpoint().position, axis.phases()[0]);
     axes.iter().zip(tracks).map(place).collect()
 }
 
-/// The law of a slave as its rows show it.
+/// The law of a slave, found from its rows.
 #[derive(Default)]
 pub struct Locked {
     /// Master, ratio, and the command that owns the slave.
     of: Option<(AxisId, i32, u16, Option<CommandId>)>,
-    /// The places MC_GearInPos was given.
+    /// The sync positions of MC_GearInPos.
     given: Option<(f64, f64)>,
-    /// Rows the law may lie through.
+    /// Rows that may be on the law.
     anchors: Vec<Row>,
     was_locked: bool,
-    /// Rows looked at.
+    /// The number of checked rows.
     pub rows: u64,
 }
 
 impl Locked {
-    /// A command took over, other than the same gear once more: what it leads to is another law.
+    /// A command took over, other than the same gear again: it leads to another law.
     pub fn begin_anew(&mut self) {
         self.was_locked = false;
         self.of = None;
     }
 
-    /// Holds the row of axis `index` after a scan against its law: where all axes were `before` it and are `now`. `given` are the
-    /// places of MC_GearInPos; the slave `came_into_gear` in this scan, and may have lost it again in it.
+    /// Checks the row of axis `index` after a scan against its law. The places of all axes were `before` the scan,
+    /// and are `now` after it. `given` are the sync positions of MC_GearInPos. The slave `came_into_gear` in this
+    /// scan, and may have lost it again in it.
     pub fn take(
         &mut self,
         index: usize,
@@ -182,7 +184,8 @@ impl Locked {
         let is_locked = axis.is_in_gear();
         let same_gear =
             |other: &(AxisId, i32, u16, _)| (other.0, other.1, other.2) == (master, numerator, denominator);
-        // MC_GearIn once more with the same gear while in gear is the same law; any other command makes a new one.
+        // The same gear commanded again with MC_GearIn while in gear is the same law; any other command makes a new
+        // one.
         let is_same = given.is_none() && self.given.is_none() && self.of.as_ref().is_some_and(same_gear);
         let goes_on = self.of == of || (is_same && self.was_locked);
         if !goes_on {
@@ -192,7 +195,8 @@ impl Locked {
         self.given = given;
         self.was_locked = is_locked;
         if !is_locked {
-            // Where it was in gear for no row, it was so where it was before, and comes back onto that law.
+            // If it came into gear but has no row in gear, the law goes through its place before, and it returns to
+            // that law.
             if came_into_gear && given.is_none() && self.anchors.is_empty() {
                 self.anchors.push(before);
             }
@@ -201,7 +205,7 @@ impl Locked {
         self.rows += 1;
         if self.anchors.is_empty() {
             self.anchors = match given {
-                // In which turn of the master the sync point lies is what the slave has chosen.
+                // The slave has chosen the turn of the master in which the sync point is.
                 Some((at, slave)) => (-200..=200)
                     .map(|turns| Row {
                         turns: if law.master_turn.is_some() {
@@ -214,7 +218,7 @@ impl Locked {
                         slave,
                     })
                     .collect(),
-                // On the law from this row on, or, where it was on it as it was coupled, from the one before.
+                // On the law from this row on. If it was on the law when it was coupled, from the row before.
                 None => vec![before, row],
             };
         }
@@ -271,7 +275,7 @@ fn the_same_gear_twice_in_one_scan_is_the_same_law() {
     }
 }
 
-/// A way back onto the law of many turns makes the places of the slave no coarser than one of a few.
+/// A way of many turns back onto the law makes the places of the slave no coarser than a way of a few turns.
 ///
 /// Covers: G45, G48
 #[test]
@@ -313,7 +317,7 @@ fn however_far_behind_a_slave_comes_back_within_its_limits() {
         loop {
             rig.step();
             scans += 1;
-            // However long it takes.
+            // It may take any time.
             track.time = 0.0;
             assert_eq!(
                 track.take(&rig.axes[1]).err(),

@@ -1,8 +1,8 @@
-//! How soon a slave is on its law, beside the least number of scans by linear programming.
+//! How soon a slave is on its law, compared with the least number of scans by linear programming.
 //!
-//! `lock_times.py` draws the cases and solves them; `lock_times.json` has both. `least` is the number of the first set-point on
-//! the law, counted from 1 in the scan of the command, for the best sequence of snaps held for a scan each; a plan that switches
-//! between scans may need one fewer.
+//! `lock_times.py` draws the cases and solves them; `lock_times.json` holds both. `least` is the number of the first
+//! set-point on the law, counted from 1 in the scan of the command, for the best sequence of snaps that are each held
+//! for a scan. A plan that switches between scans may need one less.
 
 use super::rig::Rig;
 use serde_json::{Value, json};
@@ -14,16 +14,16 @@ const SLAVE: usize = 1;
 /// A case that takes longer never ends.
 const MOST_SCANS: u64 = 20_000;
 
-/// Scans of the law that are written for the linear programme.
+/// Scans of the law that are written for the linear program.
 const WRITTEN: usize = 400;
 
 struct Case(Value);
 
-/// What came of a case.
+/// The result of a case.
 struct Run {
     /// The slave in the scan before the command.
     start: Setpoint,
-    /// From then on, the law: its place from the start of the slave, velocity, acceleration, jerk.
+    /// The law from that scan on: its position from the start of the slave, velocity, acceleration, jerk.
     law: Vec<[f64; 4]>,
     /// Scans until the slave was on it.
     took: u64,
@@ -53,7 +53,7 @@ impl Case {
         }
     }
 
-    /// The case through the axes.
+    /// Runs the case on the axes.
     fn run(&self) -> Run {
         let cycle = self.number("cycle");
         let configs = ["master", "slave"].map(|key| AxisConfig {
@@ -63,7 +63,7 @@ impl Case {
         let mut rig = Rig::new(&configs, cycle);
         let ratio = (self.number("numerator") as i16, self.count("denominator") as u16);
         let factor = f64::from(ratio.0) / f64::from(ratio.1);
-        // Each axis is given its velocity so many scans before the slave is coupled.
+        // Each axis gets its velocity this number of scans before the slave is coupled.
         let leads = [("master", MASTER), ("slave", SLAVE)].map(|(key, axis)| {
             let lead = self.count(&format!("{key}_lead"));
             (axis, self.number(&format!("{key}_velocity")), lead)
@@ -95,7 +95,7 @@ impl Case {
         });
         let gear = rig.gear(MASTER, ratio, sync, dynamics);
         rig.command(SLAVE, gear).expect("taken");
-        // A master that is told to move in this scan has not when the slave is coupled.
+        // A master that is commanded in this scan has not moved yet when the slave is coupled.
         if leads[0].2 == 0 && leads[0].1 != 0.0 {
             rig.command(MASTER, to_velocity(leads[0].1)).expect("taken");
         }
@@ -179,8 +179,8 @@ fn a_slave_is_on_its_law_within_a_scan_of_the_least() {
     assert!(middle.0 <= 1.1, "median {middle:?}");
 }
 
-/// For `lock_times.py`: runs the cases of the file STANDSTILL_CASES and writes what came of them beside it, `.runs` behind its
-/// name.
+/// For `lock_times.py`: runs the cases of the file STANDSTILL_CASES and writes the results to a file of the same name
+/// with `.runs` at its end.
 #[test]
 #[ignore = "writes a file for lock_times.py"]
 fn runs_for_the_linear_programme() {

@@ -1,5 +1,5 @@
-//! Axes behind masters, through the real axes in the real order: how soon a slave is on its law, and random programs judged by
-//! arithmetic of their own.
+//! Slaves in gear, through the real axes in the real order: how soon a slave is on its law, and random programs
+//! checked by independent arithmetic.
 
 mod alone;
 mod exact;

@@ -1,5 +1,5 @@
-//! Random masters, limits, ratios and re-commands: no slave without a plan, none beyond a limit, and in
-//! gear all on the law to the bit.
+//! Random masters, limits, ratios and repeated commands. Every slave always has a plan, none exceeds a limit, and in
+//! gear all are on the law to the bit.
 //!
 //! 1000 episodes in a plain run, 10^6 with `STANDSTILL_SOAK=1000000`; `STANDSTILL_FIRST` is the number of the first.
 
@@ -12,27 +12,28 @@ use standstill_axis::{
 use standstill_testkit::{Random, cases};
 use std::fmt::Write as _;
 
-/// What was seen.
+/// Results of episodes.
 #[derive(Default)]
 struct Seen {
     scans: u64,
     commands: u64,
     refused: u64,
-    /// Times a slave came into gear, and rows in it.
+    /// The number of times that a slave came into gear, and of rows in gear.
     locks: u64,
     rows: u64,
-    /// The most over a limit beyond what positions resolve, relative to it.
+    /// The largest excess over a limit, relative to it, beyond the resolution of positions.
     over: f64,
 }
 
-/// One episode: what is done, and what has been seen of it.
+/// One episode: its axes, and the checks.
 struct Episode {
     random: Random,
     cycle: f64,
     rig: Rig,
     tracks: Vec<Track>,
     locked: Vec<Locked>,
-    /// The sync point of the command that owns each axis, if it is MC_GearInPos, and of one that waits for its start.
+    /// The sync point of the command that owns each axis, if it is MC_GearInPos, and of a command that waits for its
+    /// start.
     sync: Vec<Vec<(CommandId, (f64, f64))>>,
     given: Vec<(usize, CommandId)>,
     said: String,
@@ -183,15 +184,15 @@ impl Episode {
         }
     }
 
-    /// Something for a slave.
+    /// A command for a slave.
     fn coupled(&mut self, axis: usize) -> (Command, Option<(f64, f64)>) {
         let axes = self.rig.axes.len();
-        // Mostly the axis before it, so that there are chains.
+        // Usually the axis before it, so that there are chains.
         let master = match self.random.one_in(4) {
             true => self.random.place(axes),
             false => (axis + axes - 1) % axes,
         };
-        // Often the ratio there is, or one that the limits of both suit.
+        // Often the present ratio, or one that suits the limits of both.
         let ratio = match self.rig.axes[axis].gears()[0] {
             Some((_, numerator, denominator)) if self.random.one_in(3) => (numerator as i16, denominator),
             _ => self.ratio(),
@@ -218,7 +219,7 @@ impl Episode {
         }
     }
 
-    /// Something random is commanded.
+    /// Gives a random command.
     fn act(&mut self) {
         let axis = self.random.place(self.rig.axes.len());
         let is_slave = self.rig.axes[axis].gears()[0].is_some();
@@ -231,7 +232,7 @@ impl Episode {
         if self.random.one_in(20) {
             return self.set_override(axis);
         }
-        // Axis 0 is mostly nobody's slave.
+        // Axis 0 is usually no slave.
         let follows = if axis == 0 {
             self.random.one_in(12)
         } else {
@@ -271,7 +272,7 @@ impl Episode {
         self.rig.axes[axis].active_command() == Some(id)
     }
 
-    /// Positions on the way to a target are made of it, too, and rounded as it is.
+    /// Positions on the way to a target are computed from it, too, and rounded like it.
     fn leads(&mut self, axis: usize, command: &Command) {
         let target = match command {
             Command::MoveAbsolute { position, .. } => *position,
@@ -355,7 +356,7 @@ impl Episode {
         }
     }
 
-    /// A motion step, and what must be so after it.
+    /// A motion step, and the checks after it.
     fn step(&mut self) -> Result<(), String> {
         let was_in_gear: Vec<bool> = self.rig.axes.iter().map(|axis| axis.is_in_gear()).collect();
         let before = places(&self.rig.axes, &self.tracks);
@@ -371,7 +372,7 @@ impl Episode {
         for index in 0..self.rig.axes.len() {
             let axis = &self.rig.axes[index];
             if let Some((master, numerator, denominator)) = axis.gears()[0] {
-                // Roundings of the master come through the gear.
+                // Rounding of the master passes through the gear.
                 let ratio = f64::from(numerator.unsigned_abs()) / f64::from(denominator);
                 let (largest, time) = (
                     self.tracks[master.index()].largest,
@@ -441,9 +442,9 @@ fn number(name: &str) -> Option<u64> {
     std::env::var(name).ok()?.parse().ok()
 }
 
-/// Episodes that failed once, of the first 10^6: a plan onto a line far away, whose positions were coarser than those the slave
-/// publishes; a gear that is lost in the scan in which it was reached, whose law begins there all the same; and a slave of a slave
-/// whose master came to another ratio within one scan.
+/// Episodes of the first 10^6 that failed before: a plan onto a line far away, with coarser positions than those that
+/// the slave publishes; a gear that is lost in the scan in which it was reached, whose law begins there nevertheless;
+/// and a slave of a slave whose master changed to another ratio within one scan.
 ///
 /// Covers: G45
 #[test]

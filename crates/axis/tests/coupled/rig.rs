@@ -26,7 +26,7 @@ impl Rig {
         }
     }
 
-    /// Gives a command in the scan to come.
+    /// Gives a command in the next scan.
     pub fn command(&mut self, axis: usize, command: Command) -> Result<CommandId, ErrorId> {
         let scope = &mut Scope::new(self.scan, &mut self.log);
         let id = self.axes[axis].id();
@@ -56,7 +56,7 @@ impl Rig {
         }
     }
 
-    /// The motion step of a scan, and what drives that follow at once tell at the begin of the next one.
+    /// The motion step of a scan, and the reports of drives that follow at once at the beginning of the next one.
     pub fn step(&mut self) {
         steps::advance(&mut self.axes, &mut Scope::new(self.scan, &mut self.log));
         self.scan += 1;

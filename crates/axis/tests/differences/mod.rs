@@ -1,17 +1,17 @@
-//! Published set-points, and what the differences of their positions say, held against limits.
+//! Published set-points and the differences of their positions, checked against limits.
 
 use standstill_axis::{Limits, Setpoint};
 
-/// The last published positions, newest first, and what they say of the derivatives.
+/// The last published positions, newest first, for the derivatives.
 pub struct Seen {
     positions: [f64; 5],
     cycle: f64,
-    /// The largest position that entered one of them (u).
+    /// The largest position that was used in one of them (u).
     coarsest: f64,
 }
 
 impl Seen {
-    /// An axis that stands at 0.
+    /// An axis at rest at 0.
     pub fn new(cycle: f64) -> Self {
         Self {
             positions: [0.0; 5],
@@ -20,12 +20,12 @@ impl Seen {
         }
     }
 
-    /// A position (u) that the next ones are made of.
+    /// A position (u) from which the next ones are computed.
     pub fn made_of(&mut self, position: f64) {
         self.coarsest = self.coarsest.max(position.abs());
     }
 
-    /// The next set-point: it and the differences of positions are within `limits`.
+    /// Checks that the next set-point and the differences of positions are within `limits`.
     pub fn check(&mut self, now: &Setpoint, limits: &Limits, what: &str) {
         self.positions.rotate_right(1);
         self.positions[0] = now.position;
@@ -33,7 +33,7 @@ impl Seen {
         let bounds = [limits.velocity, acceleration, limits.jerk, limits.snap];
         let derivatives = [now.velocity, now.acceleration, now.jerk, now.snap];
         let mut differences = self.positions;
-        // How far f64 positions resolve a difference of each order.
+        // The resolution of f64 positions in a difference of each order.
         let mut grain = 4.0
             * f64::EPSILON
             * self
@@ -60,7 +60,7 @@ impl Seen {
     }
 }
 
-/// The last five positions, newest first, and what may be expected of their differences.
+/// The last five positions, newest first, and the bounds of their differences.
 pub struct Watch {
     positions: [f64; 5],
     cycle: f64,
@@ -70,7 +70,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// An axis of these limits that stands at 0.
+    /// An axis with these limits, at rest at 0.
     pub fn new(cycle: f64, limits: Limits) -> Self {
         Self {
             positions: [0.0; 5],
@@ -80,7 +80,7 @@ impl Watch {
         }
     }
 
-    /// The next position; the error names the difference that is beyond its limit.
+    /// Takes the next position; the error names the difference that is beyond its limit.
     pub fn see(&mut self, position: f64) -> Result<(), String> {
         self.positions.rotate_right(1);
         self.positions[0] = position;

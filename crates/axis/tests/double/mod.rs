@@ -1,14 +1,14 @@
-//! The product's planner with one wrong set-point in its plans.
+//! The product's planner with one wrong set-point in each plan.
 
 use standstill_axis::{
     Excess, Limits, MoveProfile, Passage, Plan, PlanError, Planner, ProfileFault, ProfileKind, ProfilePoint,
     Setpoint, Standard, StandardPlan,
 };
 
-/// The scan of a plan that is wrong.
+/// The scan with the wrong set-point.
 const SCAN: u64 = 150;
 
-/// What is added to that set-point.
+/// The value that is added to that set-point.
 #[derive(Clone, Copy, Debug)]
 pub enum Wrong {
     /// To its position (u).
@@ -17,7 +17,7 @@ pub enum Wrong {
     Velocity(f64),
     /// To its acceleration (u/s^2).
     Acceleration(f64),
-    /// To its position, and to every one of the plans made after the first (u).
+    /// To its position, and to that of all plans after the first (u).
     Always(f64),
     /// To its position, and to the first one of a stop (u).
     Begin(f64),

@@ -3,7 +3,7 @@
 use standstill_axis::{Dynamics, Limits};
 use standstill_testkit::Random;
 
-/// One of the axis limits: all of it, most of it, or some of it.
+/// A share of an axis limit: all of it, most of it, or some of it.
 fn share(random: &mut Random, limit: f64) -> f64 {
     match random.below(3) {
         0 => 0.0,
@@ -33,7 +33,7 @@ pub fn dynamics(random: &mut Random, limits: &Limits) -> Dynamics {
     }
 }
 
-/// Limits of order 2, 3 or 4; in a third of the cases deceleration and acceleration are apart.
+/// Limits of order 2, 3 or 4; in a third of the cases deceleration and acceleration differ.
 pub fn limits(random: &mut Random) -> Limits {
     let order = random.below(3);
     let acceleration = random.between(200.0, 2000.0);

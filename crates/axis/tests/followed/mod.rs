@@ -2,7 +2,7 @@
 
 use standstill_axis::{Axis, Comms, DriveFeedback, DriveRequest, DriveSignals, Log, Scope};
 
-/// What they tell at the begin of a scan.
+/// The reports of the drives at the beginning of a scan.
 pub fn follow_drives(axes: &mut [Axis], scan: u64, log: &mut Log) {
     for axis in axes {
         let command = axis.drive_command();

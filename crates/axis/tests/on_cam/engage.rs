@@ -1,4 +1,4 @@
-//! How a slave comes onto its cam, and what it does where it can't follow.
+//! How a slave gets onto its cam, and what it does if it can't follow.
 
 use super::rig::{L1, MASTER, RELATIVE, Rig, SLAVE, WIDE, config, row, up_and_back};
 use standstill_axis::{
@@ -13,7 +13,7 @@ const ABSOLUTE: CamSelection = CamSelection {
     ..RELATIVE
 };
 
-/// Where the cam of the table is for a master there.
+/// The slave's position on the cam of the table for a master there.
 fn table(master: f64) -> f64 {
     let x = master.rem_euclid(360.0);
     let u = if x < 180.0 { x / 180.0 } else { (360.0 - x) / 180.0 };
@@ -36,7 +36,7 @@ fn onto_a_master_at_rest_it_moves_and_is_in_sync() {
     }
     assert!((rig.at() - table(60.0)).abs() < 1e-12);
     assert_eq!(rig.slave().fate(id), Fate::Active { reached: true });
-    // As long as MC_MoveAbsolute takes, whose scans are the least.
+    // It takes as long as MC_MoveAbsolute, which needs the fewest scans.
     let mut other = Rig::new(config(L1, 0.0, None), config(WIDE, -20.0, None));
     let moved = other.command(
         SLAVE,
@@ -63,7 +63,7 @@ fn onto_a_master_at_rest_it_moves_and_is_in_sync() {
     rig.keeps_limits().unwrap();
 }
 
-/// The slave waits on the curve ahead of its master, and sets off so as to be in step with it.
+/// The slave waits on the curve ahead of its master, and starts so as to be in step with it.
 ///
 /// Covers: G77, G78
 #[test]
@@ -151,7 +151,7 @@ fn just_below_the_highest_velocity_it_is_in_sync_and_just_above_it_lags() {
             with(360.0, 20.0, 0.5, 0.0),
         ]
     };
-    // What goes on straight for ever has a velocity alone.
+    // A cam that is straight without end needs only velocity.
     let straight = vec![
         row(0.0, 0.0, CamShape::Line),
         row(180.0, 60.0, CamShape::Line),
@@ -241,7 +241,7 @@ fn a_master_too_fast_is_followed_on_the_curve_and_caught_up_with() {
     assert!(rig.events().iter().any(lost));
     assert!(!rig.slave().is_in_gear());
     let highest = rig.highest(cam);
-    // Whatever its velocity, no more is left to its other derivatives than all of the slave's limits where the cam is steepest.
+    // At any velocity, its other derivatives have at most the limits of the slave at the steepest part of the cam.
     let steepest = 100.0 / 180.0 * 2.1875;
     let most = [narrow.acceleration, narrow.jerk, narrow.snap].map(|limit| 1.001 * limit / steepest);
     let mut last = None;
@@ -254,7 +254,7 @@ fn a_master_too_fast_is_followed_on_the_curve_and_caught_up_with() {
         let master = rig.axes[MASTER].setpoint().position;
         let shadow = rig.slave().coupled().unwrap().shadow.unwrap();
         assert!((rig.at() - table(shadow)).abs() < 1e-9, "{scan}");
-        // Never ahead, but that it is called by the period that the master is in next.
+        // It is never ahead, except that its position may be in the next period of the master.
         assert!(shadow <= master + 360.0, "{scan}: {shadow} {master}");
         if let Some(last) = last {
             let way: f64 = shadow - last;
@@ -270,7 +270,7 @@ fn a_master_too_fast_is_followed_on_the_curve_and_caught_up_with() {
                 (a - 2.0 * b + c) / 1e-9,
                 (a - 3.0 * b + 3.0 * c - d) / 1e-12,
             ];
-            // Before it lagged it was where its master was.
+            // Before it lagged it was at the place of its master.
             let keeps = told.iter().zip(most).all(|(found, most)| found.abs() <= most);
             assert!(lagging < 5 || keeps, "{scan}: {told:?} {most:?}");
         }
@@ -468,7 +468,7 @@ fn what_is_superimposed_moves_the_cam_on() {
     );
 }
 
-/// A plan whose switches lie between scans is held against the cam piece by piece all the same.
+/// A plan with switches between scans is nevertheless checked against the cam piece by piece.
 #[test]
 fn a_stop_from_speed_is_followed() {
     let mut rig = Rig::new(config(L1, 0.0, None), config(WIDE, 0.0, None));
@@ -495,7 +495,7 @@ fn a_stop_from_speed_is_followed() {
     rig.keeps_limits().unwrap();
 }
 
-/// A line of its master far away makes the places of a shadow no coarser than they are.
+/// A line of its master far away does not make the places of a shadow coarser.
 ///
 /// Covers: G45
 #[test]
@@ -515,7 +515,7 @@ fn a_slave_near_0_keeps_its_limits_behind_a_master_far_away() {
         snap: 1e5,
     };
     let mut rig = Rig::new(config(fast, 0.0, None), config(slow, 0.0, None));
-    // As steep everywhere, so that its shadow takes all of a limit.
+    // Equally steep everywhere, so that its shadow uses all of a limit.
     let rows = [row(0.0, 0.0, CamShape::Line), row(360.0, 100.0, CamShape::Line)];
     let cam = rig.select(&rows, RELATIVE);
     let cam_in = rig.cam_in(cam);
@@ -528,8 +528,8 @@ fn a_slave_near_0_keeps_its_limits_behind_a_master_far_away() {
     assert_eq!(rig.keeps_limits(), Ok(()));
 }
 
-/// A way back of many turns makes the places of a shadow no coarser than one of a few: behind a master that came to rest so many
-/// periods ahead, that went on slowly, and that was too fast to be followed.
+/// A way back of many turns makes the places of a shadow no coarser than one of a few turns. The master came to rest
+/// many periods ahead, or went on slowly there, or was too fast to follow.
 ///
 /// Covers: G45, G48, G78
 #[test]
@@ -548,7 +548,7 @@ fn however_far_behind_a_slave_comes_back_within_its_limits() {
         jerk: 1e4,
         snap: 1e5,
     };
-    // As steep everywhere, so that its shadow takes all of a limit.
+    // Equally steep everywhere, so that its shadow uses all of a limit.
     let rows = [row(0.0, 0.0, CamShape::Line), row(360.0, 360.0, CamShape::Line)];
     for periods in [50.0, 510.0, 5000.0] {
         let way = periods * 360.0;
@@ -596,7 +596,8 @@ fn however_far_behind_a_slave_comes_back_within_its_limits() {
     }
 }
 
-/// A shift of many turns is told by a number as coarse as it is large: that is no snap of its slave, which stays in sync.
+/// A number for a shift of many turns is as coarse as it is large. This causes no snap of the slave, which stays in
+/// sync.
 ///
 /// Covers: G60
 #[test]

@@ -1,8 +1,9 @@
-//! Random cams, masters and limits, judged by arithmetic of their own: the limits of the slave hold in every scan, a slave on the curve
-//! is on it, in sync it is at its master's place, and what can come into step comes into step.
+//! Random cams, masters and limits, checked by independent arithmetic. The limits of the slave hold in every scan, a
+//! slave on the curve is on it, and in sync it is at its master's place. A slave that can get in step does.
 //!
-//! `CAM_EPISODES=100000 cargo test -p standstill-axis --test all --release on_cam::random` plays as many as it says, from
-//! `CAM_FIRST` on. With `CAM_LOOK` set it prints cam, limits and events of each, and stops at the first snap over its limit.
+//! `CAM_EPISODES=100000 cargo test -p standstill-axis --test all --release on_cam::random` plays this number of
+//! episodes, from `CAM_FIRST` on. With `CAM_LOOK` set it prints cam, limits and events of each, and stops at the
+//! first snap above its limit.
 
 use super::rig::{L1, MASTER, RELATIVE, Rig, WIDE, config, row};
 use standstill_axis::{AxisState, BufferMode, CamRow, CamSelection, Command, Dynamics, Limits, Raw};
@@ -10,7 +11,7 @@ use standstill_planner::CamShape;
 use standstill_planner::turns::split;
 use standstill_testkit::{Random, cases};
 
-/// What was seen in all episodes.
+/// The results of all episodes.
 #[derive(Debug, Default)]
 struct Tally {
     episodes: u32,
@@ -23,11 +24,11 @@ struct Tally {
     waited: u32,
     shifted: u64,
     moved_on: u64,
-    /// The most of a difference over its limit, relative to it, of each order.
+    /// The largest excess of a difference over its limit, relative to it, for each order.
     over: [f64; 4],
 }
 
-/// The cam by the judge's own arithmetic: the polynomial through both rows of a stretch, by divided differences.
+/// The cam by independent arithmetic: the polynomial through both rows of a stretch, by divided differences.
 struct Judge {
     rows: Vec<CamRow>,
     periodic: bool,
@@ -72,7 +73,7 @@ fn limits(random: &mut Random, velocity: f64, order: u64) -> Limits {
     }
 }
 
-/// As of [`rows`], with straight pieces and jerks that step.
+/// Like [`rows`], with straight pieces and jerks that step.
 fn rows_with_corners(random: &mut Random, order: u64) -> Vec<CamRow> {
     let mut rows = rows(random, order);
     for row in &mut rows {
@@ -96,7 +97,7 @@ fn rows(random: &mut Random, order: u64) -> Vec<CamRow> {
         rows.push(row(master, random.between(-50.0, 50.0), shape));
     }
     if random.below(3) > 0 {
-        // Most cams come back to where they began.
+        // Most cams return to their beginning.
         let last = rows.len() - 1;
         rows[last].slave = first;
     }
@@ -106,25 +107,25 @@ fn rows(random: &mut Random, order: u64) -> Vec<CamRow> {
 struct Episode {
     rig: Rig,
     judge: Judge,
-    /// Where the cam lies: place of the master at the cam's 0, and of the slave.
+    /// The place of the cam: positions of the master and of the slave at the cam's 0.
     offsets: Option<(f64, f64)>,
     scalings: (f64, f64),
-    /// Lengths of turns, where both axes come round, and the turn that the shadow is in.
+    /// Lengths of turns, if both are modulo axes, and the turn of the shadow.
     turns: Option<(f64, f64)>,
     turn: f64,
     seed: u64,
 }
 
 impl Episode {
-    /// Where the cam is for a master at `place`.
+    /// The position of the cam for a master at `place`.
     fn curve(&self, place: f64) -> Option<f64> {
         let (master, slave) = self.offsets?;
         let x = (place - master) / self.scalings.0;
         Some(slave + self.scalings.1 * self.judge.at(x))
     }
 
-    /// How far a slave that is `at` this place is off the curve for a master at `shadow`, in the turn that the shadow is in. Whole
-    /// periods may be dropped, so it may be in any turn by now.
+    /// The distance of a slave that is `at` this place from the curve for a master at `shadow`, in the turn of the
+    /// shadow. Whole periods may be dropped, so it may be in any turn by now.
     fn off_curve(&mut self, at: f64, shadow: f64) -> f64 {
         let off = |turn: f64| {
             let master = self.turns.map_or(0.0, |(length, _)| turn * length);
@@ -193,13 +194,13 @@ fn dynamics(velocity: f64) -> Dynamics {
     }
 }
 
-/// What is between master and slave, or on top of the slave, at random.
+/// A random shift between master and slave, or a random superimposed motion.
 fn adds(rig: &mut Rig, random: &mut Random, velocity: f64) {
     let scope = &mut standstill_axis::Scope::new(rig.scan, &mut rig.log);
     let dynamics = dynamics(velocity * random.log(0.01, 2.0));
     let master = rig.axes[MASTER].id();
     let slave = &mut rig.axes[super::rig::SLAVE];
-    // What is refused changes nothing.
+    // A refused command changes nothing.
     match random.below(3) {
         0 => {
             let request = standstill_axis::PhaseShift {
@@ -221,8 +222,8 @@ fn adds(rig: &mut Rig, random: &mut Random, velocity: f64) {
     }
 }
 
-/// An episode; with `more` something is added, the start waits or the master is slowed down. Where drives do not tell, every motion step
-/// takes the long way. Returns the digest of all that the slave showed.
+/// An episode. With `more` a distance is added, the start waits or the master is slowed down. If drives do not
+/// report, every motion step is a full one. Returns the digest of all that the slave published.
 fn play(seed: u64, master_order: u64, more: bool, drives_tell: bool, tally: &mut Tally) -> u64 {
     let kind = Kind {
         more,
@@ -236,13 +237,13 @@ fn play(seed: u64, master_order: u64, more: bool, drives_tell: bool, tally: &mut
 struct Kind {
     more: bool,
     drives_tell: bool,
-    /// On cams that stop their slaves.
+    /// The cams stop their slaves.
     corners: bool,
-    /// Both axes come round.
+    /// Both are modulo axes.
     round: bool,
 }
 
-/// The same of other kinds.
+/// The same for other kinds.
 fn play_on(seed: u64, master_order: u64, kind: Kind, tally: &mut Tally) -> u64 {
     let Kind {
         more,
@@ -398,7 +399,7 @@ fn play_on(seed: u64, master_order: u64, kind: Kind, tally: &mut Tally) -> u64 {
             continue;
         }
         if !episode.rig.slave().is_on_a_cam() {
-            // 219: without periods there is not always a way.
+            // Error 219: without periods there is not always a way.
             gave_up = true;
             break;
         }
@@ -406,7 +407,7 @@ fn play_on(seed: u64, master_order: u64, kind: Kind, tally: &mut Tally) -> u64 {
     }
     if !gave_up && episode.rig.slave().is_on_a_cam() {
         tally.ends += u64::from(episode.rig.slave().cam_ends());
-        // A master at rest is come into step with, but for cams that leave hardly any acceleration.
+        // The slave gets in step with a master at rest, except on cams that leave hardly any acceleration.
         episode.rig.command(
             MASTER,
             Command::Halt {
@@ -467,7 +468,7 @@ fn play_on(seed: u64, master_order: u64, kind: Kind, tally: &mut Tally) -> u64 {
     rig.digest
 }
 
-/// Where nothing is new for a slave in sync its step is a short one: each bit is that of the long one.
+/// If nothing is new for a slave in sync its step is a short one. Each bit is that of the full step.
 #[test]
 fn the_short_way_shows_the_bits_of_the_long_one() {
     let mut tally = Tally::default();
@@ -478,7 +479,7 @@ fn the_short_way_shows_the_bits_of_the_long_one() {
     assert!(tally.in_sync > 0 && tally.ends > 0);
 }
 
-/// The same where both axes come round, there and back.
+/// The same on modulo axes, in both directions.
 #[test]
 fn the_short_way_round_shows_the_bits_of_the_long_one() {
     let digests = [true, false].map(|drives_tell| {
@@ -513,7 +514,7 @@ fn random_episodes_keep_limits_and_curve() {
         play(seed, 4, false, true, &mut tally);
         play(seed, 4, true, true, &mut tally);
         if seed % 4 == 0 {
-            // Behind masters that change at once what the slave may not.
+            // With masters that change derivatives at once which the slave may not.
             play(seed, 2 + (seed / 4) % 2, seed % 8 == 0, true, &mut tally);
         }
     }
@@ -522,7 +523,7 @@ fn random_episodes_keep_limits_and_curve() {
     assert!(tally.in_sync > 0 && tally.lagging > 0 && tally.off_curve > 0 && tally.ends > 0);
 }
 
-/// Limits and curve hold on cams with corners, too: a slave that may not jump there comes to rest at each of them.
+/// Limits and curve hold on cams with corners, too. A slave that may not jump there comes to rest at each of them.
 ///
 /// Covers: G71
 #[test]
@@ -547,7 +548,7 @@ fn random_cams_with_corners_keep_limits_and_curve() {
     assert!(tally.in_sync > 0 && tally.lagging > 0 && tally.ends > 0);
 }
 
-/// The same where both axes come round.
+/// The same on modulo axes.
 ///
 /// Covers: G45, G69, G78
 #[test]
@@ -568,20 +569,20 @@ fn random_axes_that_come_round_keep_limits_and_curve() {
     assert!(tally.in_sync > 0 && tally.lagging > 0 && tally.ends > 0);
 }
 
-/// Found among 60,000: sync lost in states that need care, and cams that begin on an end.
+/// Found among 60,000 seeds: sync lost in states that must be checked in full, and cams that begin on an end.
 #[test]
 fn episodes_that_went_wrong_once() {
     let mut tally = Tally::default();
-    // A pulse of snap that begins and ends within one scan, beside what is superimposed.
+    // A pulse of snap that begins and ends within one scan, with a superimposed motion.
     play(301_480, 4, true, true, &mut tally);
     for seed in [
-        // A shadow that went past the end on its way back.
+        // A shadow that passed the end on its way back.
         320_030, 2070, 4966, 9145, 13_434, 19_179, 19_182, 21_168, 24_170, 28_268, 33_511, 38_094, 39_547,
         42_775, 46_225, 57_411, 68_487,
     ] {
         play(seed, 4, false, true, &mut tally);
     }
-    // An end that is a corner: the slave was there but for rounding before it was at rest.
+    // An end that is a corner: the slave was there, except for rounding, before it was at rest.
     let corners = Kind {
         more: true,
         drives_tell: true,

@@ -1,4 +1,4 @@
-//! A master, its slave, and the cams they know; scan by scan.
+//! A master, its slave, and their cams, scan by scan.
 
 use crate::followed::follow_drives;
 use standstill_axis::{
@@ -39,11 +39,11 @@ pub struct Rig {
     /// Differences of published positions of the slave, newest first, and the largest of each order.
     positions: [f64; 5],
     pub peaks: [f64; 4],
-    /// The largest number its positions were made of.
+    /// The largest number from which its positions were computed.
     pub largest: f64,
-    /// Drives tell that nothing is pending; else every motion step takes the long way.
+    /// Drives report that nothing is pending; otherwise every motion step is a full one.
     pub drives_tell: bool,
-    /// Of all bits that the slave showed so far.
+    /// The digest of all bits that the slave published so far.
     pub digest: u64,
     told: u64,
 }
@@ -75,7 +75,7 @@ pub fn up_and_back() -> Vec<CamRow> {
     ]
 }
 
-/// Periodic, and counted from where both are.
+/// Periodic, and relative to the present positions of both axes.
 pub const RELATIVE: CamSelection = CamSelection {
     master: AxisId::NONE,
     slave: AxisId::NONE,
@@ -191,12 +191,12 @@ impl Rig {
         );
     }
 
-    /// What drives that follow at once tell at the begin of a scan.
+    /// The reports of drives that follow at once, at the beginning of a scan.
     fn follow_drives(&mut self) {
         follow_drives(&mut self.axes, self.scan, &mut self.log);
     }
 
-    /// The motion step of a scan, and the begin of the next one.
+    /// The motion step of a scan, and the beginning of the next one.
     pub fn step(&mut self) {
         let scope = &mut Scope {
             cams: Cams::new(&mut self.slots, &mut self.pieces),
@@ -263,7 +263,7 @@ impl Rig {
         }
     }
 
-    /// Whether the slave kept its limits so far, but for rounding of its positions.
+    /// Whether the slave has kept its limits so far, except for rounding of its positions.
     pub fn keeps_limits(&self) -> Result<(), String> {
         let limits = self.slave().config().limits;
         let bounds = [limits.velocity, limits.acceleration, limits.jerk, limits.snap];
@@ -286,7 +286,7 @@ impl Rig {
         Ok(())
     }
 
-    /// What was recorded since the last look.
+    /// The records since the last call.
     pub fn events(&mut self) -> Vec<Event> {
         let events = self.log.since(self.told).map(|record| record.event).collect();
         self.told = self.log.total();

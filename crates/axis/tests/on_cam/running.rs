@@ -1,4 +1,4 @@
-//! In sync: places, periods, ends, and what follows.
+//! In sync: places, periods, ends, and the commands after the cam.
 
 use super::rig::{L1, MASTER, RELATIVE, Rig, SLAVE, WIDE, config, row, up_and_back};
 use standstill_axis::{AxisState, BufferMode, CamRow, CamSelection, Command, Dynamics, Fate, Limits};
@@ -103,11 +103,11 @@ fn a_period_that_is_no_part_of_the_turn_stays_exact() {
     rig.command(MASTER, stop());
     rig.steps(2000);
     assert!(rig.axes[MASTER].setpoint().is_at_rest());
-    // The master has gone some 27,000 periods, and the slave is where the exact rest of its way says.
+    // The master has passed some 27,000 periods, and the slave is at the exact rest of its travel.
     let ends = rig.slave().cam_ends();
     assert!(ends > 27_000, "{ends}");
     let master = rig.axes[MASTER].setpoint().position;
-    // Whole numbers first: of millions of periods the rest is told exactly.
+    // Whole numbers first: with millions of periods the rest is still exact.
     let gone = i64::from(ends) * 360;
     let turns = [gone / 1000, gone / 1000 + 1];
     let rest = turns.map(|turns| (turns * 1000 - gone) as f64 + master);
@@ -156,7 +156,7 @@ fn without_periods_it_ends_once_and_holds() {
     assert_eq!((rig.at(), rig.slave().cam_ends()), (37.0, 1));
     assert!(rig.slave().is_in_gear());
     assert_eq!(rig.slave().state(), AxisState::SynchronizedMotion);
-    // What waits starts at once from the held place.
+    // The waiting command starts at once from the held place.
     let request = standstill_axis::Request {
         buffer_mode: BufferMode::Buffered.into(),
         ..standstill_axis::Request::aborting(Command::MoveRelative {
@@ -178,7 +178,7 @@ fn without_periods_it_ends_once_and_holds() {
 #[test]
 fn a_cam_behind_a_cam_that_meets_it_stays_in_sync() {
     let mut rig = Rig::new(config(L1, 0.0, None), config(WIDE, 0.0, None));
-    // Both go on from period to period with the same slope.
+    // Both cams continue from period to period with the same slope.
     let with_slope = |master, slave, slope| CamRow {
         slope,
         ..row(master, slave, CamShape::Poly7)
@@ -202,7 +202,7 @@ fn a_cam_behind_a_cam_that_meets_it_stays_in_sync() {
     let mut switched = None;
     for n in 0..2500 {
         rig.step();
-        // Its velocity is not that of the cam at first.
+        // At first its velocity is not that of the cam.
         if n > 700 {
             assert!(rig.slave().is_in_gear(), "{n}");
         }
