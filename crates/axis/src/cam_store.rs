@@ -1,7 +1,7 @@
 //! The selected cams: a fixed number of slots and pieces, in memory that the owner of the axes sets up.
 //!
-//! A selection copies its table. A cam that is selected anew gets another slot. The old one stays until
-//! no axis is on it, so a cam never changes under a moving slave.
+//! A selection copies its table. A cam that is selected again gets another slot. The old one stays until no axis is
+//! on it, so a cam never changes under a moving slave.
 
 use crate::{AxisId, IecEnum, command::iec_enum};
 use standstill_planner::{Cam, CamBuild, CamFault, CamHead, CamPiece, CamRow, CamShape};

@@ -152,7 +152,7 @@ impl BufferMode {
         !matches!(self, Self::Aborting | Self::Buffered)
     }
 
-    /// The speed it asks for between two commands with these speeds.
+    /// The velocity of this mode between two commands with these velocities.
     pub(crate) const fn speed_between(self, previous: f64, next: f64) -> f64 {
         match self {
             Self::Aborting | Self::Buffered => 0.0,
@@ -172,7 +172,7 @@ iec_enum! {
         Unset = "mcDirectionUnset", 0;
         /// Towards larger positions.
         Positive = "mcPositiveDirection", 1;
-        /// The shorter of the two ways round a modulo axis.
+        /// The direction with the shorter distance on a modulo axis.
         ShortestWay = "mcShortestWay", 2;
         /// Towards smaller positions.
         Negative = "mcNegativeDirection", 3;
@@ -184,7 +184,7 @@ iec_enum! {
 iec_enum! {
     /// Which values of an axis are meant (MC_SOURCE, numbers in the standard's order).
     ValueSource = "MC_SOURCE" {
-        /// What the inputs of the active command ask for.
+        /// The values at the pins of the active command.
         Commanded = "mcCommandedValue", 0;
         /// The newest set-point.
         Set = "mcSetValue", 1;
@@ -573,7 +573,7 @@ impl Command {
 /// A command and its buffer mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
-    /// What to do.
+    /// The command.
     pub command: Command,
     /// Its buffer mode.
     pub buffer_mode: Raw<BufferMode>,

@@ -75,7 +75,7 @@ pub enum ModuloTargets {
 /// The effect of a rising edge of Execute while the instance is Busy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EdgeWhileBusy {
-    /// It starts the command anew, with the values at the pins.
+    /// It starts the command again, with the values at the pins.
     #[default]
     Restart,
     /// No effect: the instance continues its command.
@@ -405,7 +405,7 @@ impl AxisConfig {
         self.check_profile()
     }
 
-    /// Checks what depends on the sample time (s).
+    /// Checks the values that depend on the sample time (s).
     ///
     /// # Errors
     /// [`ConfigError::Vibration`] names the first mode that is not usable.
@@ -554,7 +554,7 @@ pub enum ConfigError {
     },
     /// An average of actual values is longer than [`ACTUAL_FILTER_MAX`].
     ActualFilter {
-        /// Scans asked for.
+        /// The configured number of scans.
         value: u32,
     },
     /// The filter is off for an axis that counts increments and has a snap limit, which a single
@@ -565,7 +565,7 @@ pub enum ConfigError {
     },
     /// The queue is longer than [`QUEUE_MAX`].
     Queue {
-        /// Places asked for.
+        /// The configured number of places.
         value: usize,
     },
     /// The largest override factor is below 1 or not finite.
@@ -575,7 +575,7 @@ pub enum ConfigError {
     },
     /// The profile cannot keep a limit of the axis.
     Profile {
-        /// The profile asked for.
+        /// The configured profile.
         profile: MoveProfile,
         /// The configuration key of the limit.
         key: &'static str,

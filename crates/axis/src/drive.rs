@@ -185,7 +185,7 @@ pub struct DriveReport {
     pub marker: ProbeReport,
     /// Homing by itself.
     pub homing: DriveHoming,
-    /// What it has.
+    /// The equipment of the drive.
     pub equipment: Equipment,
 }
 

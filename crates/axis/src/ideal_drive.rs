@@ -118,14 +118,14 @@ impl IdealDrive {
         }
     }
 
-    /// Calls the newest commanded position `name`, and shifts the delayed positions by the same amount.
+    /// Sets the newest commanded position to `name`, and shifts the delayed positions by the same amount.
     fn rename(&mut self, name: f64) {
         let Some(&DrivePosition::Units(newest)) = self.line.get(self.head) else {
             return;
         };
         for place in &mut self.line {
             if let DrivePosition::Units(old) = place {
-                // A position that already arrived gets the name exactly, without the rounding of a shift.
+                // A position that already arrived gets this value exactly, without the rounding of a shift.
                 *old = if *old == newest {
                     name
                 } else {
@@ -281,7 +281,7 @@ mod tests {
         for place in [1.0, 3.0, 7.0] {
             drive.write(0, &command(DriveRequest::Enable, place));
         }
-        // 7 was commanded last and is called 100: the delayed positions keep their distance.
+        // 7 was commanded last and becomes 100: the delayed positions keep their distance.
         drive.write(
             0,
             &DriveCommand {

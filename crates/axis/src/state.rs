@@ -189,11 +189,11 @@ const fn in_any_motion(event: AxisEvent) -> Result<AxisState, Refused> {
 /// One arrow of the state diagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Arrow {
-    /// Where it starts.
+    /// The state in which it starts.
     pub from: AxisState,
-    /// What it stands for.
+    /// The event that it stands for.
     pub on: AxisEvent,
-    /// Where it ends.
+    /// The state in which it ends.
     pub to: AxisState,
     /// The note of the diagram, or the purpose of the arrow.
     pub note: &'static str,

@@ -19,8 +19,8 @@ impl<P: Planner> Axis<P> {
     /// of ramps, for each waiting command, and the owner's plan with a blended end.
     ///
     /// # Errors
-    /// The [`ErrorId`] the block shows; the refusal is recorded with pin, value and limit. [`ErrorId::AxisUnknown`] for a
-    /// command that follows a master.
+    /// The [`ErrorId`] the block shows; the refusal is recorded with pin, value and limit. [`ErrorId::AxisUnknown`]
+    /// for a command that follows a master.
     pub fn command(&mut self, request: &Request, scope: &mut Scope<'_>) -> Result<CommandId, ErrorId> {
         if request.command.follows() {
             return Err(self.refuse("Master", f64::NAN, f64::NAN, ErrorId::AxisUnknown, scope));

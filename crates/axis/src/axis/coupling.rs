@@ -12,7 +12,7 @@
 //! | [`view`] | the values of its master that a slave may use |
 //! | [`follow`] | the motion step of a slave |
 //! | [`needs`] | the share of the limits that a step between two set-points needs |
-//! | [`approach`] | the rungs: how a slave comes onto the law |
+//! | [`approach`] | the rungs: how a slave gets onto the law |
 //! | [`bound`] | the part of its limits that slaves leave to their master |
 //! | [`cam`] | the same on a cam, in a folder of its own |
 //! | [`links`] | the place of an axis among masters and slaves |
@@ -60,7 +60,7 @@ pub(crate) type Values = (AxisId, ValueSource);
 /// The largest position (u) of sync points and cams; beyond it numbers are too coarse.
 const FURTHEST: f64 = 1e15;
 
-/// How a slave that is not in gear comes into gear.
+/// How a slave that is not in gear gets into gear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Rung {
     /// The next motion step decides.
@@ -380,7 +380,7 @@ impl<P: Planner> Axis<P> {
         coupling.gearing.legs().map(|leg| leg.map(ratio))
     }
 
-    /// Whether the master went out of operation. The slave is then at rest until a block couples it anew.
+    /// Whether the master went out of operation. The slave is then at rest until a block couples it again.
     pub fn has_lost_master(&self) -> bool {
         matches!(self.rung(), Some(Rung::Lost)) || self.has_lost_master_on_cam()
     }

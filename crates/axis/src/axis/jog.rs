@@ -41,7 +41,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The software limit (u) where a jog must stop, if the jog goes towards it.
+    /// The software limit (u) at which a jog must stop, if the jog moves towards it.
     fn jog_ends_at(&self, forward: bool, distance: f64) -> Option<f64> {
         if self.config.jog_at_limit == JogAtLimit::Error {
             return None;

@@ -51,7 +51,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The reason why a motion that goes up or down is barred, if it is.
+    /// The reason why a motion up or down is barred, if it is.
     pub(super) fn bars(&self, up: bool, down: bool) -> Option<ErrorId> {
         let by_power = self.power.permitted().bars(up, down);
         by_power.or_else(|| {

@@ -1,4 +1,4 @@
-//! One axis: its data, and what other code may ask.
+//! One axis: its data, and the values that other code may read.
 //!
 //! `Axis` decides. Values and arithmetic are in parts of their own with private fields:
 //!
@@ -20,7 +20,7 @@
 //! | file | subject |
 //! | --- | --- |
 //! | [`accept`], [`queued`], [`update`], [`retrigger`] | commands: taken or refused, administrative ones that wait, new values, replaced ones |
-//! | [`dynamics`], [`factors`], [`parameters`] | limits from pins, the override, what can be written by number |
+//! | [`dynamics`], [`factors`], [`parameters`] | limits from pins, the override, parameters by number |
 //! | [`step`], [`replan`], [`blend`], [`run`], [`turn`], [`inside`], [`guard`] | the motion step and hand-over, changes of the owner's motion while it runs, the velocity at its end, chains as one motion, turns between commands, take-overs within the limits, no step of the set-point |
 //! | [`superimposed`] | a second motion on top |
 //! | [`coupling`] | slaves |
@@ -151,7 +151,7 @@ pub struct Outlook {
     pub tripped: bool,
     /// It was not confirmed in time.
     pub unconfirmed: bool,
-    /// Scans since power was asked for, if that has a time-out.
+    /// Scans since power was requested, if there is a time-out.
     pub power_waited: u64,
     /// The axis error.
     pub error: ErrorId,
@@ -165,11 +165,11 @@ pub struct Outlook {
     pub homing: [u64; 5],
     /// The last motion was in positive direction.
     pub forward: bool,
-    /// What is superimposed.
+    /// The superimposed motion.
     pub superimposed: Option<Beside>,
     /// The override, as bits.
     pub factors: [u64; 3],
-    /// What the application can write by number, as bits.
+    /// The parameters that the application can write by number, as bits.
     pub parameters: [u64; 16],
     /// Scans in a row the axis has been inside the in-position window, at the end of a move.
     pub inside_for: u32,
@@ -188,7 +188,7 @@ pub struct Beside {
     /// Scans of the owner's plan until a command that waits or was lowered is tried again; the largest
     /// number if it waits for the next plan.
     pub tried_in: u32,
-    /// What has been found for such a command, and where the search for more goes on, as bits.
+    /// The results of the search for such a command, and where it continues, as bits.
     pub found: [u64; 9],
     /// Position and velocity of the owner's own set-point, as bits.
     pub base: (u64, u64),

@@ -39,7 +39,7 @@ pub struct ProfileRow {
 /// MC_PositionProfile and similar: values at the pins and in the table, unchecked.
 #[derive(Clone, Copy, Debug)]
 pub struct Profile<'a> {
-    /// What the values are.
+    /// The kind of the values.
     pub kind: ProfileKind,
     /// The table; a profile uses at most [`PROFILE_POINTS`] of its rows.
     pub rows: &'a [ProfileRow],

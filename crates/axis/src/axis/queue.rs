@@ -34,7 +34,7 @@ impl Queue {
         Some(first)
     }
 
-    /// Takes command `id` out, from wherever it stands; `false` if it is not there.
+    /// Removes command `id` from any position; `false` if it is not there.
     pub fn remove(&mut self, id: CommandId) -> bool {
         let Some(place) = self.iter().position(|entry| entry.id == id) else {
             return false;

@@ -133,8 +133,8 @@ impl<P: Planner> Axis<P> {
     ///   position.
     ///
     /// # Errors
-    /// [`ErrorId::SourceInvalid`] if the number names no source, those of [`Axis::fresh_position`] if actual values are
-    /// asked for.
+    /// [`ErrorId::SourceInvalid`] if the number names no source, those of [`Axis::fresh_position`] if actual values
+    /// are requested.
     pub fn motion_state(&self, source: Raw<ValueSource>) -> Result<MotionState, ErrorId> {
         match source.get().ok_or(ErrorId::SourceInvalid)? {
             ValueSource::Commanded => Ok(MotionState {

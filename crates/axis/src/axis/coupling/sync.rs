@@ -372,7 +372,7 @@ impl<P: Planner> Axis<P> {
         self.note_masters([was, Seen::default()]);
     }
 
-    /// Checks that a gear that starts now is in sync in time. Returns whether it goes back for that.
+    /// Checks that a gear that starts now is in sync in time. Returns whether it moves back for that.
     fn gear_starts(
         &mut self,
         entry: &Entry,
