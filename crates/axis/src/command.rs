@@ -363,7 +363,7 @@ pub enum Command {
         /// Position of the reference (u).
         position: f64,
     },
-    /// MC_GearIn and MC_GearInPos: follows a master. Give this command through [`couple`](crate::couple),
+    /// MC_GearIn and MC_GearInPos: follows a master. Give this command through [`couple`](crate::couple()),
     /// which sees both axes.
     GearIn {
         /// The master, and how it is followed.
@@ -376,7 +376,7 @@ pub enum Command {
         dynamics: Dynamics,
     },
     /// MC_CombineAxes: follows the sum or the difference of two masters, each after its gear ratio. Give it
-    /// through [`couple`](crate::couple).
+    /// through [`couple`](crate::couple()).
     CombineAxes {
         /// The masters, and how each is followed.
         masters: [Followed; 2],
@@ -385,7 +385,7 @@ pub enum Command {
     },
     /// MC_GearOut: no longer follows its master; keeps the velocity.
     GearOut,
-    /// MC_CamIn: follows a master on a cam. Give it through [`couple`](crate::couple).
+    /// MC_CamIn: follows a master on a cam. Give it through [`couple`](crate::couple()).
     CamIn(CamIn),
     /// MC_CamOut: leaves its cam and keeps the velocity.
     CamOut,

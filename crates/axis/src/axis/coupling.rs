@@ -1,7 +1,7 @@
 //! Slaves with one master or two: MC_GearIn, MC_CombineAxes and MC_GearOut on the slave's side.
 //!
 //! In gear the set-point *is* the law, a function of the master's place in the same scan
-//! ([`Gear`](standstill_planner::Gear)). InGear is that state; positions are not compared. A slave that is not in
+//! ([`Gear`]). InGear is that state; positions are not compared. A slave that is not in
 //! gear yet, or could not keep up, moves on plans of its own within its limits, in one of three ways (rungs): beside
 //! the moving law, onto the law's next stretch of constant velocity, or as fast as possible. A command plans nothing
 //! when it is accepted. The plan is made in the motion step, after that of the master, so that everything commanded

@@ -1,4 +1,4 @@
-//! The position of an axis in the chains of masters and slaves. [`couple`](crate::couple) finds it from all axes.
+//! The position of an axis in the chains of masters and slaves. [`couple`](crate::couple()) finds it from all axes.
 
 /// The position of an axis, and whether it follows a master or has slaves. Fields that every scan reads come first.
 #[derive(Clone, Copy, Debug, Default)]
