@@ -1,6 +1,6 @@
 //! A gear of 3/7 between two axes with turns of 360, scan after scan: every place of the slave against integers.
 //!
-//! The master moves 1.8 in a scan, so a turn takes 200 scans. 500,000 scans in a plain run, 10^7 in `.ci/run`, more
+//! The master moves 1.8 in a scan, so a turn takes 200 scans. 200,000 scans in a plain run, 10^7 in `.ci/run`, more
 //! with `STANDSTILL_SOAK=1000000000`.
 
 use standstill_planner::{Anchor, Gear, Place};

@@ -1,5 +1,5 @@
-//! Many random moves: 10,000 in a plain test run. `STANDSTILL_SOAK=1000000` runs more and prints the most work of
-//! one.
+//! Many random moves: 2,000 in a plain test run, 10,000 in `.ci/run`. `STANDSTILL_SOAK=1000000` runs more and prints
+//! the most work of one.
 
 use crate::grid_support::{Move, Random, limits, servo};
 use standstill_planner::grid::Work;
@@ -9,7 +9,7 @@ fn rounds() -> u64 {
     std::env::var("STANDSTILL_SOAK")
         .ok()
         .and_then(|count| count.parse().ok())
-        .unwrap_or(10_000)
+        .unwrap_or(standstill_testkit::whole_or(10_000, 2_000))
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Many random moves with unequal rates. 500 in a plain test run, 10,000 in `.ci/run`; `STANDSTILL_SOAK=1000000` runs more
+//! Many random moves with unequal rates. 200 in a plain test run, 10,000 in `.ci/run`; `STANDSTILL_SOAK=1000000` runs more
 //! and prints the largest work of one.
 
 use crate::grid_support::{Move, Random, servo};

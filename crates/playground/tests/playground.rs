@@ -77,7 +77,8 @@ const NO_BLOCKS: &str = r#", "blocks": []"#;
 #[test]
 fn digests_are_those_of_the_command_line_and_links_hold_them() {
     for folder in ["gallery", "tutorial", "include", "guests", "structured_text"] {
-        for path in suite::find(&scan_tests(folder)).expect("a folder") {
+        let paths = suite::find(&scan_tests(folder)).expect("a folder");
+        for path in paths.into_iter().step_by(standstill_testkit::stride()) {
             let expected = suite::run_file(&path, &[], &Allowed::default(), |_| {}).expect("a run");
             let project = project(&path);
             let told = ran(&project);

@@ -97,7 +97,7 @@ fn every_scan_of_the_runtime_at_three_sevenths_is_the_exact_place_rounded_once()
     let scans = std::env::var("STANDSTILL_SOAK")
         .ok()
         .and_then(|scans| scans.parse().ok())
-        .unwrap_or(1_000_000_i64);
+        .unwrap_or(standstill_testkit::whole_or(1_000_000_i64, 200_000));
     let mut machine = Machine::new();
     for _ in [MASTER, SLAVE] {
         let config = AxisConfig {

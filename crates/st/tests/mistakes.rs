@@ -1076,7 +1076,7 @@ fn at_most_fifty_are_kept_and_the_others_counted() {
 /// Covers: ST5
 #[test]
 fn what_is_nested_too_deep_or_too_large_is_told_at_once() {
-    let deep = 100_000;
+    let (deep, many) = standstill_testkit::whole_or((100_000, 10_000), (10_000, 1_000));
     let program = |body: String| {
         format!("PROGRAM P VAR x : INT; b : BOOL; a : ARRAY [0..1] OF INT; END_VAR {body} END_PROGRAM")
     };
@@ -1094,12 +1094,12 @@ fn what_is_nested_too_deep_or_too_large_is_told_at_once() {
         format!("TYPE T : {}", "STRUCT a : ".repeat(deep)),
         format!("VAR_GLOBAL x : INT := {}1; END_VAR", "[".repeat(deep)),
         "(*".repeat(deep),
-        (0..10_000)
+        (0..many)
             .map(|n| format!("TYPE T{n} : T{}; END_TYPE ", n + 1))
             .collect(),
         format!(
             "VAR_GLOBAL CONSTANT {} END_VAR",
-            (0..10_000)
+            (0..many)
                 .map(|n| format!("c{n} : INT := c{}; ", n + 1))
                 .collect::<String>()
         ),
@@ -1129,12 +1129,12 @@ fn what_is_nested_too_deep_or_too_large_is_told_at_once() {
 /// Long rows are no depth: they are compiled, in a time that grows with their length.
 #[test]
 fn long_rows_are_compiled() {
-    let terms = 20_000;
+    let terms = standstill_testkit::whole_or(20_000, 4_000);
     let sum = vec!["x"; terms].join(" + ");
     let branches: String = (0..terms)
         .map(|n| format!("ELSIF x = {} THEN x := {}; ", n % 30_000, n % 100))
         .collect();
-    let labels: String = (0..5000)
+    let labels: String = (0..terms / 4)
         .map(|n| format!("{}: x := {}; ", n * 6, n % 100))
         .collect();
     let text = format!(
@@ -1269,7 +1269,7 @@ fn no_soup_of_tokens_and_no_cut_program_leads_to_a_panic() {
           CASE e OF a: e := b; b: w.3 := TRUE; END_CASE; g.q[i] := LREAL_TO_INT(g.p ** 2.0);
           REPEAT i := i - 1; UNTIL i < 0 END_REPEAT; END_PROGRAM";
     let words: Vec<&str> = whole.split_inclusive([' ', ';', '(', ')', '.', ':']).collect();
-    for seed in 1..=3000_u64 {
+    for seed in 1..=standstill_testkit::cases(3000) {
         let mut random = Random(seed);
         let text = if seed % 2 == 0 {
             let count = random.place(120);
@@ -1302,7 +1302,7 @@ fn no_soup_of_tokens_and_no_cut_program_leads_to_a_panic() {
     assert!(common::compile(whole).is_ok());
 }
 
-/// Twice the text takes about twice the time: a thousand lines and ten thousand are compared generously, because other
+/// Twice the text takes about twice the time: a number of lines and ten times as many are compared generously, because other
 /// work runs beside this.
 #[test]
 fn time_grows_with_the_text_and_not_with_its_square() {
@@ -1322,7 +1322,8 @@ fn time_grows_with_the_text_and_not_with_its_square() {
         });
         best.min().unwrap().as_secs_f64()
     };
-    let (short, long) = (time(2000), time(20_000));
+    let lines = standstill_testkit::whole_or(2000, 500);
+    let (short, long) = (time(lines), time(10 * lines));
     assert!(long < short * 60.0, "{short} {long}");
 }
 

@@ -12,20 +12,26 @@ pub fn searches() -> bool {
     std::env::var_os("STANDSTILL_SEARCH").is_some()
 }
 
-/// How many of `whole` cases a long random search tries: all of them if it [searches]; else a twentieth, to keep
-/// `cargo test` short.
+/// The size of a long test: `whole` if it [searches]; else `short`, to keep `cargo test` short.
+#[cfg(not(target_os = "none"))]
+#[must_use]
+pub fn whole_or<T>(whole: T, short: T) -> T {
+    if searches() { whole } else { short }
+}
+
+/// How many of `whole` cases a long random search tries: all of them if it [searches]; else a fiftieth.
 #[cfg(not(target_os = "none"))]
 #[must_use]
 pub fn cases(whole: u64) -> u64 {
-    if searches() { whole } else { whole.div_ceil(20) }
+    whole_or(whole, whole.div_ceil(50))
 }
 
-/// The step with which a search goes through a long list: 1 if it [searches]; else 11, a prime, so that no column
+/// The step with which a search goes through a long list: 1 if it [searches]; else 23, a prime, so that no column
 /// of a table is left out.
 #[cfg(not(target_os = "none"))]
 #[must_use]
 pub fn stride() -> usize {
-    if searches() { 1 } else { 11 }
+    whole_or(1, 23)
 }
 
 /// splitmix64 (Steele, Lea, Flood 2014): a counter and a mixing function. The seed is the first value of

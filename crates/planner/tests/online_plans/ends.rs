@@ -472,7 +472,7 @@ fn extreme_numbers_are_planned_or_refused() {
     ];
     let mut random = Random(103);
     let (mut planned, mut refused) = (0, 0);
-    for _ in 0..4000 {
+    for _ in 0..standstill_testkit::whole_or(4000, 800) {
         // Most numbers of a case are ordinary ones.
         let mut value = || {
             if random.one_in(8) {

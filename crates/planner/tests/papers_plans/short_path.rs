@@ -173,7 +173,8 @@ fn from_rest_to_rest_it_is_the_s_curve() {
 fn type_5_meets_its_closed_form() {
     let mut random = Random(0xB005);
     let mut seen = 0;
-    for _ in 0..20_000 {
+    let count = standstill_testkit::whole_or(20_000, 2_000);
+    for _ in 0..count {
         let mut case = Case::random(&mut random);
         case.limits.deceleration = case.limits.acceleration;
         let Ok(plan) = case.plan(Paper) else { continue };
@@ -187,7 +188,7 @@ fn type_5_meets_its_closed_form() {
         let peak = ((a * a * a * a - 2.0 * j * square).sqrt() - a * a) / (2.0 * j);
         assert!((plan.peak_velocity() - peak).abs() <= 1e-11 * peak);
     }
-    assert!(seen > 100, "{seen}");
+    assert!(seen > count / 200, "{seen}");
 }
 
 /// Neither the duration nor the peak jumps where the types meet.

@@ -51,8 +51,9 @@ STANDSTILL_ASSERT(dump, sizeof(standstill_dump) == 32);
 #endif
 "#;
 
+/// The folder of the C library.
 fn crate_folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).to_owned()
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../capi")
 }
 
 /// The sources, with the names of functions as cbindgen reads them: it does not evaluate macros in attributes.
@@ -164,7 +165,7 @@ fn the_header_is_fresh() {
         let found = fs::read_to_string(&path).unwrap_or_default();
         assert!(
             found == expected,
-            "crates/{file} is stale: run `STANDSTILL_HEADER=write cargo test -p standstill-capi --test header`"
+            "crates/{file} is stale: run `STANDSTILL_HEADER=write cargo test -p standstill-peers header`"
         );
     }
 }
