@@ -1,6 +1,7 @@
 //! The invariants of grid plans, over the reference vectors and seeded random moves.
 
 use crate::grid_support::{Digest, Move, Random, limits, power, servo, vector_move, vectors};
+use crate::ramp_plans::support::scaled_limits;
 use standstill_planner::grid::Euler;
 use standstill_planner::{GridPlan, Limits, Method, Order, Setpoint};
 
@@ -427,23 +428,10 @@ fn scaling_by_powers_of_two_changes_no_box() {
         };
         let length = power(2.0, random.below(41)) / power(2.0, 20);
         let time = power(2.0, random.below(21)) / power(2.0, 10);
-        let scaled = |degree: u64, value: f64| value * length / power(time, degree);
-        let Limits {
-            velocity,
-            acceleration,
-            jerk,
-            snap,
-            ..
-        } = request.limits;
         let other = Move {
             start: 0.0,
             target: request.target * length,
-            limits: limits(
-                scaled(1, velocity),
-                scaled(2, acceleration),
-                scaled(3, jerk),
-                scaled(4, snap),
-            ),
+            limits: scaled_limits(&request.limits, (length, time)),
             cycle: request.cycle * time,
         };
         for method in METHODS {
@@ -471,15 +459,7 @@ fn a_mirrored_move_is_the_exact_negative() {
             assert_eq!(one.boxes(), two.boxes());
             let n = u64::from(one.scans());
             for k in (0..=n + 1).step_by((n as usize / 100).max(1)) {
-                let (there, back) = (one.at(k), two.at(k));
-                let negated = Setpoint {
-                    position: -back.position,
-                    velocity: -back.velocity,
-                    acceleration: -back.acceleration,
-                    jerk: -back.jerk,
-                    snap: -back.snap,
-                };
-                assert_eq!(there, negated, "{request:?} at {k}");
+                assert_eq!(one.at(k), two.at(k).times(-1.0), "{request:?} at {k}");
             }
         }
     }

@@ -1,6 +1,7 @@
 //! The invariants of plans whose acceleration and deceleration differ, over seeded random moves.
 
 use crate::grid_support::{Digest, Move, Random, power, servo};
+use crate::ramp_plans::support::scaled_limits;
 use standstill_planner::grid::Family;
 use standstill_planner::{Field, Limits, Method, OnlinePlan, Order, PlanError, Setpoint, UnequalPlan};
 
@@ -228,15 +229,7 @@ fn a_mirrored_move_is_the_exact_negative_and_swapped_rates_take_as_long() {
             let n = u64::from(one.scans());
             assert_eq!(n, u64::from(two.scans()));
             for k in (0..=n + 1).step_by((n as usize / 100).max(1)) {
-                let (there, back) = (one.at(k), two.at(k));
-                let negated = Setpoint {
-                    position: -back.position,
-                    velocity: -back.velocity,
-                    acceleration: -back.acceleration,
-                    jerk: -back.jerk,
-                    snap: -back.snap,
-                };
-                assert_eq!(there, negated, "{request:?} at {k}");
+                assert_eq!(one.at(k), two.at(k).times(-1.0), "{request:?} at {k}");
             }
             let reversed = plan(&swapped, family);
             assert_eq!(one.scans(), reversed.scans(), "{request:?}");
@@ -309,18 +302,10 @@ fn scaling_by_powers_of_two_changes_no_box() {
         };
         let length = power(2.0, random.below(41)) / power(2.0, 20);
         let time = power(2.0, random.below(21)) / power(2.0, 10);
-        let scaled = |degree: u64, value: f64| value * length / power(time, degree);
-        let limits = request.limits;
         let other = Move {
             start: 0.0,
             target: request.target * length,
-            limits: Limits {
-                velocity: scaled(1, limits.velocity),
-                acceleration: scaled(2, limits.acceleration),
-                deceleration: scaled(2, limits.deceleration),
-                jerk: scaled(3, limits.jerk),
-                snap: scaled(4, limits.snap),
-            },
+            limits: scaled_limits(&request.limits, (length, time)),
             cycle: request.cycle * time,
         };
         for family in FAMILIES {

@@ -2,26 +2,9 @@
 //! of scans. Here for the grid and the papers' systems; `online_plans` and `ramp_plans` have their own tests.
 
 use crate::grid_support::{Move, Random, limits, servo};
+use crate::ramp_plans::support::{UNITS, scaled, scaled_limits};
 use standstill_planner::papers::{Profile, SCurve, ShortPath, ShortPathPolicy, Timed, Tracking, Trapezoid};
 use standstill_planner::{Limits, Method, Setpoint};
-
-/// Units of length and time.
-const UNITS: [(f64, f64); 4] = [(1e6, 1.0), (1e-6, 1.0), (1.0, 1e6), (1.0, 1e-6)];
-
-/// A value with this many units of time in its denominator, in other units.
-fn scaled(value: f64, degree: u32, (length, time): (f64, f64)) -> f64 {
-    (0..degree).fold(value * length, |value, _| value / time)
-}
-
-fn scaled_limits(limits: &Limits, unit: (f64, f64)) -> Limits {
-    Limits {
-        velocity: scaled(limits.velocity, 1, unit),
-        acceleration: scaled(limits.acceleration, 2, unit),
-        deceleration: scaled(limits.deceleration, 2, unit),
-        jerk: scaled(limits.jerk, 3, unit),
-        snap: scaled(limits.snap, 4, unit),
-    }
-}
 
 #[test]
 fn grid_plans_have_the_same_scans() {

@@ -1,6 +1,6 @@
 //! Chained replans: from rest, again and again to a random target at a random instant.
 
-use super::support::{self, ORDERS, Random, Seen, integrate};
+use super::support::{self, ORDERS, Random, arrive};
 use standstill_planner::kernel::MAX_STEPS;
 use standstill_planner::online::MAX_SOLVES;
 use standstill_planner::{Limits, OnlinePlan, Order, Setpoint};
@@ -17,19 +17,6 @@ struct Worst {
     pieces: usize,
     rungs: [u32; 4],
     outside: u32,
-}
-
-/// By how much the integrator saw velocity, acceleration, jerk and snap above their limits, relative to them.
-fn relative_excess(seen: &Seen, limits: &Limits, order: Order) -> [f64; 4] {
-    let over = |value: f64, bound: f64| value / bound - 1.0;
-    let bounded =
-        |least: Order, value: f64, bound: f64| if order >= least { over(value, bound) } else { -1.0 };
-    [
-        over(seen.v_max.max(-seen.v_min), limits.velocity),
-        over(seen.speeding, limits.acceleration).max(over(seen.slowing, limits.deceleration)),
-        bounded(Order::Three, seen.jerk, limits.jerk),
-        bounded(Order::Four, seen.snap, limits.snap),
-    ]
 }
 
 /// Chains of 20 replans; `change` draws the limits of a replan from those of the chain.
@@ -60,27 +47,17 @@ fn chains(seed: u64, count: u32, equal: bool, change: impl Fn(&mut Random, &Limi
                 || format!("chain {chain} link {link}: {start:?} -> {target:?} {now:?} {before:?} {cycle}");
             let plan = OnlinePlan::new(&start, target, &now, &before, cycle)
                 .unwrap_or_else(|error| panic!("{error} {}", context()));
-            let origin = Setpoint {
-                position: 0.0,
-                ..start
-            };
-            let seen = integrate(&origin, &plan, order);
+            let (seen, miss) = arrive(&start, &plan, target, order);
             let end = plan.at(u64::from(plan.scans()));
             assert_eq!(end, Setpoint::at_rest(target));
             assert!((f64::from(plan.scans()) - plan.duration() / cycle).abs() <= 1.0);
-            let travelled = plan.peaks().velocity * plan.duration();
-            // The resolution of the positions themselves is no miss.
-            let resolved = 32.0 * f64::EPSILON * (start.position.abs() + target.abs());
-            let distance = target - start.position;
-            let miss =
-                ((seen.end.position - distance).abs() - resolved).max(0.0) / travelled.max(f64::MIN_POSITIVE);
             assert!(miss <= 1e-9, "miss {miss:e} {} {plan:?}", context());
             worst.miss = worst.miss.max(miss);
             worst.steps = worst.steps.max(plan.steps());
             worst.solves = worst.solves.max(plan.solves());
             worst.pieces = worst.pieces.max(plan.segments().count());
             worst.rungs[plan.rung() as usize] += 1;
-            let truth = relative_excess(&seen, &now, order);
+            let truth = seen.over(now);
             let said = plan.excess().unwrap_or_default();
             let told = [
                 (said.velocity / now.velocity, truth[0]),
@@ -181,20 +158,14 @@ fn overridden(random: &mut Random, limits: &Limits) -> Limits {
 
 /// Any limit may change at every replan.
 fn all_changed(random: &mut Random, limits: &Limits) -> Limits {
-    let mut factor = || {
+    let factor = || {
         if random.below(2) == 0 {
             1.0
         } else {
             random.between(0.4, 1.0)
         }
     };
-    Limits {
-        velocity: limits.velocity * factor(),
-        acceleration: limits.acceleration * factor(),
-        deceleration: limits.deceleration * factor(),
-        jerk: limits.jerk * factor(),
-        snap: limits.snap * factor(),
-    }
+    support::each_times(limits, factor)
 }
 
 #[test]

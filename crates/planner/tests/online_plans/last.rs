@@ -1,6 +1,6 @@
 //! The last rung of the ladder, and the caps: the last rung never fails, and no search is cut short.
 
-use super::support::{self, ORDERS, Random, integrate};
+use super::support::{self, ORDERS, Random, arrive};
 use standstill_planner::kernel::MAX_STEPS;
 use standstill_planner::online::{MAX_SOLVES, Rung};
 use standstill_planner::{Limits, OnlinePlan, Segment, Setpoint};
@@ -13,14 +13,7 @@ fn outside(random: &mut Random, case: usize) -> (Limits, Limits, Setpoint, f64) 
     let way = before.velocity * cycle * random.between(-300.0, 300.0);
     let plan = OnlinePlan::new(&rest, rest.position + way, &before, &before, cycle).expect("a plan");
     let start = plan.at(random.below(u64::from(plan.scans()) + 1));
-    let mut part = || random.between(0.3, 1.0);
-    let now = Limits {
-        velocity: before.velocity * part(),
-        acceleration: before.acceleration * part(),
-        deceleration: before.deceleration * part(),
-        jerk: before.jerk * part(),
-        snap: before.snap * part(),
-    };
+    let now = support::each_times(&before, || random.between(0.3, 1.0));
     (now, before, start, cycle)
 }
 
@@ -45,17 +38,8 @@ fn hardest(first: Rung, seed: u64, count: usize) -> (u32, u32, usize) {
                 panic!("case {case}: {error} {start:?} {target} {end_velocity} {limits:?} {before:?} {cycle}")
             });
         assert!(plan.solves() < MAX_SOLVES && plan.steps() < MAX_STEPS, "{plan:?}");
-        let origin = Setpoint {
-            position: 0.0,
-            ..start
-        };
-        let seen = integrate(&origin, &plan, limits.order());
-        let miss = (seen.end.position - (target - start.position)).abs();
-        let resolved = 32.0 * f64::EPSILON * (start.position.abs() + target.abs());
-        assert!(
-            miss <= resolved + 1e-9 * plan.peaks().velocity * plan.duration(),
-            "case {case}: {miss:e} {plan:?}"
-        );
+        let (_, miss) = arrive(&start, &plan, target, limits.order());
+        assert!(miss <= 1e-9, "case {case}: {miss:e} {plan:?}");
         most.0 = most.0.max(plan.solves());
         most.1 = most.1.max(plan.steps());
         most.2 = most.2.max(plan.segments().count());

@@ -1,6 +1,6 @@
 //! The properties of single plans: units, continuity, rungs, special targets, refusals.
 
-use super::support::{self, ORDERS, Random, integrate};
+use super::support::{self, ORDERS, Random, UNITS, arrive, scaled, scaled_limits, scaled_state};
 use standstill_planner::{
     Limits, MoveProfile, OnlinePlan, Order, Plan, PlanError, Planner, Rung, Setpoint, Standard,
 };
@@ -23,28 +23,6 @@ fn moving(random: &mut Random, order: Order) -> (Limits, f64, Setpoint) {
     (limits, cycle, start)
 }
 
-fn scaled(limits: &Limits, length: f64, time: f64) -> Limits {
-    let per = |n: usize| (0..n).fold(length, |unit, _| unit / time);
-    Limits {
-        velocity: limits.velocity * per(1),
-        acceleration: limits.acceleration * per(2),
-        deceleration: limits.deceleration * per(2),
-        jerk: limits.jerk * per(3),
-        snap: limits.snap * per(4),
-    }
-}
-
-fn scaled_state(state: &Setpoint, length: f64, time: f64) -> Setpoint {
-    let per = |n: usize| (0..n).fold(length, |unit, _| unit / time);
-    Setpoint {
-        position: state.position * per(0),
-        velocity: state.velocity * per(1),
-        acceleration: state.acceleration * per(2),
-        jerk: state.jerk * per(3),
-        snap: state.snap * per(4),
-    }
-}
-
 /// Other units by a factor of a million, which is no power of two: the same scans. By powers of two: the same bits.
 #[test]
 fn other_units_change_no_scan() {
@@ -53,31 +31,29 @@ fn other_units_change_no_scan() {
         let (limits, cycle, start) = moving(&mut random, ORDERS[case % 3]);
         let target = start.position + limits.velocity * cycle * random.between(-300.0, 300.0);
         let reference = plan(&start, target, &limits, cycle);
-        for (length, time) in [(1e6, 1.0), (1e-6, 1.0), (1.0, 1e6), (1.0, 1e-6)] {
-            let other = plan(
-                &scaled_state(&start, length, time),
-                target * length,
-                &scaled(&limits, length, time),
-                cycle * time,
-            );
+        let within = |unit: (f64, f64)| {
+            plan(
+                &scaled_state(&start, unit),
+                scaled(target, 0, unit),
+                &scaled_limits(&limits, unit),
+                cycle * unit.1,
+            )
+        };
+        for unit in UNITS {
+            let other = within(unit);
             assert_eq!(
                 other.scans(),
                 reference.scans(),
-                "case {case} {length} {time} {start:?} -> {target:?} {limits:?} {cycle}"
+                "case {case} {unit:?} {start:?} -> {target:?} {limits:?} {cycle}"
             );
             assert_eq!(other.rung(), reference.rung());
         }
-        let (length, time) = (1_048_576.0, 1.0 / 8192.0);
-        let other = plan(
-            &scaled_state(&start, length, time),
-            target * length,
-            &scaled(&limits, length, time),
-            cycle * time,
-        );
+        let unit = (1_048_576.0, 1.0 / 8192.0);
+        let other = within(unit);
         for scan in 0..=u64::from(reference.scans()) {
             assert_eq!(
                 other.at(scan),
-                scaled_state(&reference.at(scan), length, time),
+                scaled_state(&reference.at(scan), unit),
                 "case {case} scan {scan}"
             );
         }
@@ -91,9 +67,9 @@ fn the_mirrored_move_is_the_mirror_image() {
         let (limits, cycle, start) = moving(&mut random, ORDERS[case % 3]);
         let target = start.position + limits.velocity * cycle * random.between(-300.0, 300.0);
         let one = plan(&start, target, &limits, cycle);
-        let other = plan(&scaled_state(&start, -1.0, 1.0), -target, &limits, cycle);
+        let other = plan(&start.times(-1.0), -target, &limits, cycle);
         for scan in 0..=u64::from(one.scans()) {
-            assert_eq!(one.at(scan), scaled_state(&other.at(scan), -1.0, 1.0));
+            assert_eq!(one.at(scan), other.at(scan).times(-1.0));
         }
     }
 }
@@ -122,22 +98,17 @@ fn the_mirrored_move_from_no_velocity_is_the_mirror_image() {
         let planned = |start: &Setpoint, target| OnlinePlan::new(start, target, &limits, &limits, cycle);
         // The move leads too far to come back in any time that can be counted.
         let Ok(one) = planned(&start, target) else {
-            assert!(planned(&scaled_state(&start, -1.0, 1.0), -target).is_err());
+            assert!(planned(&start.times(-1.0), -target).is_err());
             continue;
         };
-        let other = plan(&scaled_state(&start, -1.0, 1.0), -target, &limits, cycle);
+        let other = plan(&start.times(-1.0), -target, &limits, cycle);
         let context = || format!("case {case} {start:?} -> {target:?} {limits:?} {cycle}");
         assert_eq!(one.scans(), other.scans(), "{}", context());
         assert_eq!(one.rung(), other.rung(), "{}", context());
         assert_eq!(one.peaks(), other.peaks(), "{}", context());
         assert_eq!(one.excess(), other.excess(), "{}", context());
         for scan in (0..=u64::from(one.scans())).step_by(1 + one.scans() as usize / 50) {
-            assert_eq!(
-                one.at(scan),
-                scaled_state(&other.at(scan), -1.0, 1.0),
-                "{}",
-                context()
-            );
+            assert_eq!(one.at(scan), other.at(scan).times(-1.0), "{}", context());
         }
         outside += u32::from(one.excess().is_some());
     }
@@ -282,26 +253,11 @@ fn every_rung_arrives() {
                 "{rung:?} {ratio} {limits:?} {start:?} {target}"
             );
             longer[plan.rung() as usize] = longer[plan.rung() as usize].max(ratio);
-            let origin = Setpoint {
-                position: 0.0,
-                ..start
-            };
-            let seen = integrate(&origin, &plan, order);
-            let miss = seen.end.position - (target - start.position);
-            let resolved = 32.0 * f64::EPSILON * (start.position.abs() + target.abs());
-            assert!(
-                miss.abs() <= resolved + 1e-9 * limits.velocity * plan.duration(),
-                "{rung:?} {miss:e} {plan:?}"
-            );
-            assert!(
-                seen.v_max.max(-seen.v_min) <= limits.velocity * (1.0 + 1e-9)
-                    && seen.speeding <= limits.acceleration * (1.0 + 1e-9)
-                    && seen.slowing <= limits.deceleration * (1.0 + 1e-9)
-                    && (order < Order::Three || seen.jerk <= limits.jerk * (1.0 + 1e-9))
-                    && (order < Order::Four || seen.snap <= limits.snap * (1.0 + 1e-9)),
-                "{rung:?} {seen:?} {limits:?} {plan:?}"
-            );
+            let (seen, miss) = arrive(&start, &plan, target, order);
+            assert!(miss <= 1e-9, "{rung:?} {miss:e} {plan:?}");
+            assert!(seen.inside(limits), "{rung:?} {seen:?} {limits:?} {plan:?}");
             // The set-points between are those of the segments: no jump from one to the next.
+            let resolved = 32.0 * f64::EPSILON * (start.position.abs() + target.abs());
             let mut last = plan.at(0);
             for scan in 1..=u64::from(plan.scans()) + 2 {
                 let now = plan.at(scan);
@@ -337,30 +293,14 @@ fn passing_under_changing_limits_always_has_a_plan() {
         let cycle = 0.02 * time;
         let (mut start, mut before) = (Setpoint::default(), limits);
         for link in 0..20 {
-            let mut factor = || random.between(0.3, 1.0);
-            let now = Limits {
-                velocity: limits.velocity * factor(),
-                acceleration: limits.acceleration * factor(),
-                deceleration: limits.deceleration * factor(),
-                jerk: limits.jerk * factor(),
-                snap: limits.snap * factor(),
-            };
+            let now = support::each_times(&limits, || random.between(0.3, 1.0));
             let target = limits.velocity * time * random.between(-3.0, 3.0);
             let end_velocity = now.velocity * random.between(-1.0, 1.0);
             let plan = OnlinePlan::passing(&start, target, end_velocity, &now, &before, cycle)
                 .unwrap_or_else(|error| panic!("case {case} link {link}: {error}"));
             rungs[plan.rung() as usize] += 1;
-            let origin = Setpoint {
-                position: 0.0,
-                ..start
-            };
-            let seen = integrate(&origin, &plan, order);
-            let miss = (seen.end.position - (target - start.position)).abs();
-            let resolved = 32.0 * f64::EPSILON * (start.position.abs() + target.abs());
-            assert!(
-                miss <= resolved + 1e-9 * plan.peaks().velocity * plan.duration(),
-                "{miss:e} {plan:?}"
-            );
+            let (_, miss) = arrive(&start, &plan, target, order);
+            assert!(miss <= 1e-9, "{miss:e} {plan:?}");
             let end = u64::from(plan.scans());
             let after = plan.at(end + 3);
             assert_eq!(

@@ -1,7 +1,7 @@
 //! Moves with an acceleration at their target. They turn there exactly, within a scan, with the acceleration that
 //! leads back. Or they pass it while slowing down or speeding up.
 
-use super::support::{self, Random, integrate};
+use super::support::{self, Random, arrive};
 use standstill_planner::kernel::MAX_STEPS;
 use standstill_planner::{DirectedLimits, Goal, Limits, OnlinePlan, Order, Passage, Setpoint};
 
@@ -96,21 +96,9 @@ fn turns(seed: u64, count: usize) -> Seen {
 
 /// Every limit holds on the whole way.
 fn kept(start: &Setpoint, plan: &OnlinePlan, limits: &Limits, context: &dyn Fn() -> String) {
-    let origin = Setpoint {
-        position: 0.0,
-        ..*start
-    };
-    let order = limits.order();
-    let seen = integrate(&origin, plan, order);
-    let inside = |value: f64, bound: f64| value <= bound * (1.0 + 1e-9);
+    let (seen, _) = arrive(start, plan, plan.target(), limits.order());
     assert!(
-        plan.excess().is_none()
-            && inside(seen.v_max, limits.velocity)
-            && inside(-seen.v_min, limits.velocity)
-            && inside(seen.speeding, limits.acceleration)
-            && inside(seen.slowing, limits.deceleration)
-            && inside(seen.jerk, limits.jerk)
-            && (order < Order::Four || inside(seen.snap, limits.snap)),
+        plan.excess().is_none() && seen.inside(*limits),
         "{} {seen:?} {plan:?}",
         context()
     );

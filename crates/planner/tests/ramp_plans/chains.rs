@@ -40,24 +40,9 @@ fn forward_chains(seed: u64, chains: u64) -> Worst {
             worst.plans += 1;
             worst.steps = worst.steps.max(plan.steps());
             worst.segments = worst.segments.max(plan.segments().count());
-            let ratios = [
-                seen.v_max / limits.velocity,
-                1.0 - seen.v_min / limits.velocity,
-                seen.speeding / limits.acceleration,
-                seen.slowing / limits.deceleration,
-                if order >= Order::Three {
-                    seen.jerk / limits.jerk
-                } else {
-                    0.0
-                },
-                if order >= Order::Four {
-                    seen.snap / limits.snap
-                } else {
-                    0.0
-                },
-            ];
-            let excess = ratios.into_iter().fold(0.0, f64::max) - 1.0;
-            assert!(excess <= 1e-9, "{ratios:?} {}", context());
+            let over = seen.over(limits);
+            let excess = over.into_iter().fold(-seen.v_min / limits.velocity, f64::max);
+            assert!(excess <= 1e-9, "{over:?} {}", context());
             worst.excess = worst.excess.max(excess);
             assert_eq!(plan.excess(), None, "{}", context());
             let end = (seen.end.velocity - goal).abs() / limits.velocity;

@@ -32,14 +32,8 @@ fn changing_chains(seed: u64, chains: usize) -> (usize, u32, u32) {
         let mut start = Setpoint::at_rest(0.0);
         for link in 0..10 {
             let changed = chain % 2 == 1;
-            let mut factor = || if changed { random.between(0.3, 1.0) } else { 1.0 };
-            let now = Limits {
-                velocity: limits.velocity * factor(),
-                acceleration: limits.acceleration * factor(),
-                deceleration: limits.deceleration * factor(),
-                jerk: limits.jerk * factor(),
-                snap: limits.snap * factor(),
-            };
+            let factor = || if changed { random.between(0.3, 1.0) } else { 1.0 };
+            let now = support::each_times(&limits, factor);
             let goal = match random.below(4) {
                 0 => 0.0,
                 1 => now.velocity,
@@ -337,20 +331,14 @@ fn under_lowered_limits_the_larger_ones_hold() {
         };
         let first = plan(&from, old.velocity * random.unit(), &old, &old);
         let start = first.at(random.below(u64::from(first.scans()) + 1));
-        let mut factor = || {
+        let factor = || {
             if random.below(2) == 0 {
                 1.0
             } else {
                 random.between(0.2, 1.5)
             }
         };
-        let new = Limits {
-            velocity: old.velocity * factor(),
-            acceleration: old.acceleration * factor(),
-            deceleration: old.deceleration * factor(),
-            jerk: old.jerk * factor(),
-            snap: old.snap * factor(),
-        };
+        let new = support::each_times(&old, factor);
         let goal = new.velocity * random.unit();
         let then = plan(&start, goal, &new, &old);
         outside += u32::from(then.excess().is_some());
@@ -514,14 +502,7 @@ fn lowered_limits_keep_the_old_velocity() {
     let count = standstill_testkit::cases(20_000) as usize;
     for case in 0..count {
         let before = support::limits(&mut random, ORDERS[case % 3]);
-        let mut factor = || [1.0, 1.0, 0.5, 0.2, 0.05][random.below(5) as usize];
-        let limits = Limits {
-            velocity: before.velocity * factor(),
-            acceleration: before.acceleration * factor(),
-            deceleration: before.deceleration * factor(),
-            jerk: before.jerk * factor(),
-            snap: before.snap * factor(),
-        };
+        let limits = support::each_times(&before, || random.one_of(&[1.0, 1.0, 0.5, 0.2, 0.05]));
         let lower = before.acceleration.min(before.deceleration);
         let start = Setpoint {
             velocity: before.velocity * random.between(-1.0, 1.0),

@@ -1,6 +1,6 @@
 //! Least time, symmetry, continuity: the properties of a ramp besides its limits.
 
-use super::support::{self, ORDERS, Random};
+use super::support::{self, ORDERS, Random, UNITS, scaled, scaled_limits, scaled_state};
 use standstill_planner::{Limits, Order, PlanError, RampPlan, Setpoint};
 use std::vec::Vec;
 
@@ -222,26 +222,12 @@ fn other_units_change_no_bit() {
         let start = first.at(random.below(u64::from(first.scans()) + 1));
         let goal = limits.velocity * random.between(-1.0, 1.0);
         let reference = plan(&start, goal, &limits, 1e-3);
-        for (length, time) in [(1048576.0, 1.0), (1.0, 8192.0), (1.0 / 2097152.0, 1.0 / 128.0)] {
-            let per = |n: usize| (0..n).fold(length, |unit, _| unit / time);
-            let scaled = |s: &Setpoint| Setpoint {
-                position: s.position * per(0),
-                velocity: s.velocity * per(1),
-                acceleration: s.acceleration * per(2),
-                jerk: s.jerk * per(3),
-                snap: s.snap * per(4),
-            };
+        for unit in [(1048576.0, 1.0), (1.0, 8192.0), (1.0 / 2097152.0, 1.0 / 128.0)] {
             let other = plan(
-                &scaled(&start),
-                goal * per(1),
-                &Limits {
-                    velocity: limits.velocity * per(1),
-                    acceleration: limits.acceleration * per(2),
-                    deceleration: limits.deceleration * per(2),
-                    jerk: limits.jerk * per(3),
-                    snap: limits.snap * per(4),
-                },
-                1e-3 * time,
+                &scaled_state(&start, unit),
+                scaled(goal, 1, unit),
+                &scaled_limits(&limits, unit),
+                1e-3 * unit.1,
             );
             assert_eq!(other.scans(), reference.scans());
             for scan in [
@@ -251,7 +237,8 @@ fn other_units_change_no_bit() {
                 reference.scans(),
                 reference.scans() + 9,
             ] {
-                assert_eq!(other.at(u64::from(scan)), scaled(&reference.at(u64::from(scan))));
+                let scan = u64::from(scan);
+                assert_eq!(other.at(scan), scaled_state(&reference.at(scan), unit));
             }
         }
     }
@@ -267,27 +254,11 @@ fn units_a_million_apart_change_no_scan() {
         let rest = Setpoint::at_rest(0.0);
         let cycle = 0.01 * limits.velocity / limits.acceleration;
         let reference = plan(&rest, goal, &limits, cycle);
-        for unit in [1e6, 1e-6] {
-            let lengths = Limits {
-                velocity: limits.velocity * unit,
-                acceleration: limits.acceleration * unit,
-                deceleration: limits.deceleration * unit,
-                jerk: limits.jerk * unit,
-                snap: limits.snap * unit,
-            };
-            assert_eq!(
-                plan(&rest, (goal * unit).min(lengths.velocity), &lengths, cycle).scans(),
-                reference.scans()
-            );
-            let times = Limits {
-                velocity: limits.velocity / unit,
-                acceleration: limits.acceleration / (unit * unit),
-                deceleration: limits.deceleration / (unit * unit),
-                jerk: limits.jerk / (unit * unit * unit),
-                snap: limits.snap / (unit * unit * unit * unit),
-            };
-            let slower = plan(&rest, (goal / unit).min(times.velocity), &times, cycle * unit);
-            assert_eq!(slower.scans(), reference.scans());
+        for unit in UNITS {
+            let bounds = scaled_limits(&limits, unit);
+            let goal = scaled(goal, 1, unit).min(bounds.velocity);
+            let other = plan(&rest, goal, &bounds, cycle * unit.1);
+            assert_eq!(other.scans(), reference.scans());
         }
     }
 }
@@ -305,20 +276,13 @@ fn the_mirrored_ramp_is_the_mirror_image() {
         );
         let start = first.at(random.below(u64::from(first.scans()) + 1));
         let goal = limits.velocity * random.between(-1.0, 1.0);
-        let mirror = |s: Setpoint| Setpoint {
-            position: -s.position,
-            velocity: -s.velocity,
-            acceleration: -s.acceleration,
-            jerk: -s.jerk,
-            snap: -s.snap,
-        };
         let (one, other) = (
             plan(&start, goal, &limits, 1e-3),
-            plan(&mirror(start), -goal, &limits, 1e-3),
+            plan(&start.times(-1.0), -goal, &limits, 1e-3),
         );
         assert_eq!(one.scans(), other.scans());
         for scan in 0..u64::from(one.scans()).min(50) + 2 {
-            assert_eq!(one.at(scan), mirror(other.at(scan)));
+            assert_eq!(one.at(scan), other.at(scan).times(-1.0));
         }
     }
 }

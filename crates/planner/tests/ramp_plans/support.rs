@@ -1,6 +1,6 @@
 //! Random numbers, random problems, and an integrator that shares no code with the planner.
 
-use standstill_planner::{Limits, OnlinePlan, Order, Peaks, RampPlan, Segment, Setpoint};
+use standstill_planner::{DirectedLimits, Limits, OnlinePlan, Order, Peaks, RampPlan, Segment, Setpoint};
 pub use standstill_testkit::Random;
 
 /// Limits of the size servo axes have, with every order and a snap bound without a jerk bound among them.
@@ -36,6 +36,45 @@ pub fn limits(random: &mut Random, order: Order) -> Limits {
 }
 
 pub const ORDERS: [Order; 3] = [Order::Two, Order::Three, Order::Four];
+
+/// Each bound times a factor of its own.
+pub fn each_times(limits: &Limits, mut factor: impl FnMut() -> f64) -> Limits {
+    Limits {
+        velocity: limits.velocity * factor(),
+        acceleration: limits.acceleration * factor(),
+        deceleration: limits.deceleration * factor(),
+        jerk: limits.jerk * factor(),
+        snap: limits.snap * factor(),
+    }
+}
+
+/// Units of length and time a million times larger or smaller, which is no power of two.
+pub const UNITS: [(f64, f64); 4] = [(1e6, 1.0), (1e-6, 1.0), (1.0, 1e6), (1.0, 1e-6)];
+
+/// A value with this many units of time in its denominator, in other units of length and time.
+pub fn scaled(value: f64, degree: u32, (length, time): (f64, f64)) -> f64 {
+    (0..degree).fold(value * length, |value, _| value / time)
+}
+
+pub fn scaled_limits(limits: &Limits, unit: (f64, f64)) -> Limits {
+    Limits {
+        velocity: scaled(limits.velocity, 1, unit),
+        acceleration: scaled(limits.acceleration, 2, unit),
+        deceleration: scaled(limits.deceleration, 2, unit),
+        jerk: scaled(limits.jerk, 3, unit),
+        snap: scaled(limits.snap, 4, unit),
+    }
+}
+
+pub fn scaled_state(state: &Setpoint, unit: (f64, f64)) -> Setpoint {
+    Setpoint {
+        position: scaled(state.position, 0, unit),
+        velocity: scaled(state.velocity, 1, unit),
+        acceleration: scaled(state.acceleration, 2, unit),
+        jerk: scaled(state.jerk, 3, unit),
+        snap: scaled(state.snap, 4, unit),
+    }
+}
 
 /// A plan as its segments.
 pub trait Segmented: std::fmt::Debug {
@@ -73,6 +112,44 @@ pub struct Seen {
     pub jerk: f64,
     pub snap: f64,
     pub duration: f64,
+}
+
+impl Seen {
+    /// By how much velocity, acceleration, jerk and snap were above their bounds, relative to them.
+    pub fn over(&self, limits: impl Into<DirectedLimits>) -> [f64; 4] {
+        let DirectedLimits {
+            positive,
+            negative,
+            limits,
+        } = limits.into();
+        let over = |value: f64, bound: f64| value / bound - 1.0;
+        [
+            over(self.v_max, positive).max(over(-self.v_min, negative)),
+            over(self.speeding, limits.acceleration).max(over(self.slowing, limits.deceleration)),
+            over(self.jerk, limits.jerk),
+            over(self.snap, limits.snap),
+        ]
+    }
+
+    /// Whether every bound was kept.
+    pub fn inside(&self, limits: impl Into<DirectedLimits>) -> bool {
+        self.over(limits).iter().all(|over| *over <= 1e-9)
+    }
+}
+
+/// Integrates a move to `target` from the position 0, so that a far start costs no digits. Also returns by how much
+/// its end misses the target, beyond what the positions themselves resolve and relative to the length of the move.
+pub fn arrive(start: &Setpoint, plan: &OnlinePlan, target: f64, order: Order) -> (Seen, f64) {
+    let origin = Setpoint {
+        position: 0.0,
+        ..*start
+    };
+    let seen = integrate(&origin, plan, order);
+    let resolved = 32.0 * f64::EPSILON * (start.position.abs() + target.abs());
+    let off = (seen.end.position - (target - start.position)).abs();
+    let travelled = plan.peaks().velocity * plan.duration();
+    let miss = (off - resolved).max(0.0) / travelled.max(f64::MIN_POSITIVE);
+    (seen, miss)
 }
 
 /// Follows the highest derivative of each segment from `start` by many small Taylor steps, and finds the

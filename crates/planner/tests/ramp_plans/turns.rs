@@ -36,23 +36,9 @@ fn late_turns(seed: u64, count: usize) -> (f64, usize, u32) {
         let seen = integrate(&start, &plan, order);
         let context = || format!("case {case}: {start:?} -> {goal:?} {limits:?}\n{seen:?}\n{plan:?}");
         assert_eq!(plan.excess(), None, "{}", context());
-        let ratios = [
-            seen.v_max.max(-seen.v_min) / limits.velocity,
-            seen.speeding / limits.acceleration,
-            seen.slowing / limits.deceleration,
-            if order >= Order::Three {
-                seen.jerk / limits.jerk
-            } else {
-                0.0
-            },
-            if order == Order::Four {
-                seen.snap / limits.snap
-            } else {
-                0.0
-            },
-        ];
-        let excess = ratios.into_iter().fold(0.0, f64::max) - 1.0;
-        assert!(excess <= 1e-9, "{ratios:?} {}", context());
+        let over = seen.over(limits);
+        let excess = over.into_iter().fold(-1.0, f64::max);
+        assert!(excess <= 1e-9, "{over:?} {}", context());
         let end = (seen.end.velocity - goal).abs() / limits.velocity;
         assert!(end <= 1e-12, "end {end:e} {}", context());
         worst = worst.max(excess);
