@@ -315,25 +315,11 @@ fn a_zero_with_slopes_takes_few_steps() {
 
 /// `cargo test --release -p standstill-planner --features std --test all ramp_kernel -- --ignored --nocapture`
 #[test]
-#[ignore = "timing"]
-fn nanoseconds() {
-    let mut random = Random(55);
-    let cases: Vec<Case> = (0..4096).map(|_| case(&mut random, 1.0)).collect();
-    let mut sum = 0.0;
-    for _ in 0..3 {
-        let begin = std::time::Instant::now();
-        for _ in 0..200 {
-            for case in &cases {
-                sum += solve(case).spans.duration();
-            }
-        }
-        let each = begin.elapsed().as_nanos() as f64 / (200.0 * cases.len() as f64);
-        println!("third: {each:.1} ns each");
-    }
-    let mut worst = 0;
-    let mut many = Random(57);
-    for _ in 0..5_000_000 {
-        worst = worst.max(solve(&case(&mut many, 1.0)).steps);
-    }
-    println!("most root steps in 5 million: {worst} of {MAX_STEPS}; {sum:e}");
+#[ignore = "some seconds in release"]
+fn five_million_profiles_take_few_root_steps() {
+    let mut random = Random(57);
+    let steps = (0..5_000_000).map(|_| solve(&case(&mut random, 1.0)).steps);
+    let worst = steps.max().unwrap_or(0);
+    println!("most root steps in 5 million: {worst} of {MAX_STEPS}");
+    assert!(worst < MAX_STEPS / 2);
 }

@@ -2,8 +2,6 @@
 
 use super::support::{self, ORDERS, Random, integrate};
 use standstill_planner::{Limits, Order, RampPlan, Setpoint};
-use std::hint::black_box;
-use std::time::Instant;
 
 /// The worst figures of a chain.
 #[derive(Debug, Default)]
@@ -79,49 +77,6 @@ fn forward_chains_keep_every_limit_and_never_reverse() {
 fn a_million_chained_ramps() {
     let worst = forward_chains(2, 100_000);
     println!("{worst:?}");
-    for order in ORDERS {
-        let mut random = Random(3);
-        let cases: Vec<_> = (0..20_000)
-            .map(|_| {
-                let limits = support::limits(&mut random, order);
-                let first = limits.velocity * random.unit();
-                let cycle = 0.01 * limits.velocity / limits.acceleration;
-                let rest = Setpoint::at_rest(0.0);
-                let plan = RampPlan::new(&rest, first, &limits, &limits, cycle).unwrap();
-                let state = plan.at(random.below(u64::from(plan.scans())));
-                (state, limits.velocity * random.unit(), limits, cycle)
-            })
-            .collect();
-        // One by one, each timed: the median counts on a shared machine.
-        let mut times: Vec<f64> = Vec::new();
-        let mut steps = 0;
-        for (state, goal, limits, cycle) in &cases {
-            let begin = Instant::now();
-            let plan = RampPlan::new(state, *goal, limits, limits, *cycle);
-            times.push(begin.elapsed().as_nanos() as f64);
-            steps += plan.unwrap().steps();
-        }
-        let mut samples: Vec<f64> = Vec::new();
-        for (state, goal, limits, cycle) in &cases {
-            let plan = RampPlan::new(state, *goal, limits, limits, *cycle).unwrap();
-            let begin = Instant::now();
-            for part in 0..32 {
-                black_box(plan.at(u64::from(plan.scans()) * part / 32));
-            }
-            samples.push(begin.elapsed().as_nanos() as f64 / 32.0);
-        }
-        samples.sort_by(f64::total_cmp);
-        times.sort_by(f64::total_cmp);
-        let at = |part: f64| times[(part * (times.len() - 1) as f64) as usize];
-        println!(
-            "{order:?}: ns per plan, timer included: median {} p99 {} p99.9 {}; steps per plan {:.2}; ns per sample {:.1}",
-            at(0.5),
-            at(0.99),
-            at(0.999),
-            f64::from(steps) / times.len() as f64,
-            samples[samples.len() / 2],
-        );
-    }
 }
 
 /// At the turn of a motion the velocity may be exactly 0 and the acceleration a rounding residue, or more. A state
