@@ -5,6 +5,6 @@ mod generator;
 mod published;
 mod s_curve;
 mod short_path;
-mod support;
+pub mod support;
 mod timed;
 mod tracking;

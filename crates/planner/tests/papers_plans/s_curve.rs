@@ -4,6 +4,7 @@ use super::support::{
     Random, bounds, case, case_bounds, cube_root, integrated, keeps_its_word, number, numbers, random_bounds,
     rounds,
 };
+use crate::ramp_plans::support::scaled_limits;
 use standstill_planner::papers::{SCurve, SCurveCase, Stepper};
 use standstill_planner::{Field, Limits, PlanError};
 use std::collections::BTreeSet;
@@ -90,22 +91,9 @@ fn mirrored_and_scaled_moves_are_mirrored_and_scaled() {
         assert_eq!(one.at(time).velocity, -other.at(time).velocity);
         assert_eq!(one.duration(), other.duration());
         let k = 1e6;
-        let longer = Limits {
-            velocity: limits.velocity * k,
-            acceleration: limits.acceleration * k,
-            deceleration: limits.deceleration * k,
-            jerk: limits.jerk * k,
-            ..limits
-        };
-        let long = plan(0.0, s * k, &longer).profile().duration();
+        let long = plan(0.0, s * k, &limits.times(k)).profile().duration();
         assert!((long - one.duration()).abs() <= 1e-13 * long);
-        let slower = Limits {
-            velocity: limits.velocity / k,
-            acceleration: limits.acceleration / (k * k),
-            deceleration: limits.deceleration / (k * k),
-            jerk: limits.jerk / (k * k * k),
-            ..limits
-        };
+        let slower = scaled_limits(&limits, (1.0, k));
         let slow = plan(0.0, s, &slower).profile().duration();
         assert!((slow / k - one.duration()).abs() <= 1e-13 * one.duration());
     }
@@ -224,32 +212,13 @@ fn what_cannot_be_planned_is_refused() {
         other => panic!("{other:?}"),
     };
     for bad in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
-        assert_eq!(
-            field(refused(
-                0.0,
-                1.0,
-                Limits {
-                    velocity: bad,
-                    ..good
-                }
-            )),
-            Field::LimitVelocity
-        );
-        assert_eq!(
-            field(refused(
-                0.0,
-                1.0,
-                Limits {
-                    acceleration: bad,
-                    ..good
-                }
-            )),
-            Field::LimitAcceleration
-        );
-        assert_eq!(
-            field(refused(0.0, 1.0, Limits { jerk: bad, ..good })),
-            Field::LimitJerk
-        );
+        for (limits, named) in [
+            (bounds(bad, 2.0, 3.0), Field::LimitVelocity),
+            (bounds(1.0, bad, 3.0), Field::LimitAcceleration),
+            (bounds(1.0, 2.0, bad), Field::LimitJerk),
+        ] {
+            assert_eq!(field(refused(0.0, 1.0, limits)), named);
+        }
     }
     assert_eq!(
         field(refused(0.0, 1.0, Limits { snap: 9.0, ..good })),

@@ -1,20 +1,12 @@
 //! Least time, symmetry, continuity: the properties of a ramp besides its limits.
 
 use super::support::{self, ORDERS, Random, UNITS, scaled, scaled_limits, scaled_state};
+use crate::papers_plans::support::cube_root;
 use standstill_planner::{Limits, Order, PlanError, RampPlan, Setpoint};
 use std::vec::Vec;
 
 fn plan(start: &Setpoint, goal: f64, limits: &Limits, cycle: f64) -> RampPlan {
     RampPlan::new(start, goal, limits, limits, cycle).unwrap()
-}
-
-/// By Newton's method from above.
-fn cube_root(x: f64) -> f64 {
-    let mut root = x.max(1.0);
-    for _ in 0..200 {
-        root = (2.0 * root + x / (root * root)) / 3.0;
-    }
-    root
 }
 
 /// From and to steady velocities the time is a sum of at most three boxes, longest last, whose product is
@@ -441,105 +433,51 @@ fn unusable_inputs_are_refused_by_name() {
         Err(PlanError::TooLong { .. }) => "too long",
         other => panic!("{other:?}"),
     };
+    type Part<T> = (&'static str, fn(&mut T) -> &mut f64);
+    let states: [Part<Setpoint>; 4] = [
+        ("position", |state| &mut state.position),
+        ("velocity", |state| &mut state.velocity),
+        ("acceleration", |state| &mut state.acceleration),
+        ("jerk", |state| &mut state.jerk),
+    ];
+    let bounds: [Part<Limits>; 5] = [
+        ("limits.velocity", |limits| &mut limits.velocity),
+        ("limits.acceleration", |limits| &mut limits.acceleration),
+        ("limits.deceleration", |limits| &mut limits.deceleration),
+        ("limits.jerk", |limits| &mut limits.jerk),
+        ("limits.snap", |limits| &mut limits.snap),
+    ];
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        assert_eq!(
-            name(
-                Setpoint {
-                    position: bad,
-                    ..rest
-                },
-                1.0,
-                limits,
-                1e-3
-            ),
-            "position"
-        );
-        assert_eq!(
-            name(
-                Setpoint {
-                    velocity: bad,
-                    ..rest
-                },
-                1.0,
-                limits,
-                1e-3
-            ),
-            "velocity"
-        );
-        assert_eq!(
-            name(
-                Setpoint {
-                    acceleration: bad,
-                    ..rest
-                },
-                1.0,
-                limits,
-                1e-3
-            ),
-            "acceleration"
-        );
-        assert_eq!(name(Setpoint { jerk: bad, ..rest }, 1.0, limits, 1e-3), "jerk");
+        for (field, part) in states {
+            let mut start = rest;
+            *part(&mut start) = bad;
+            assert_eq!(name(start, 1.0, limits, 1e-3), field);
+        }
         assert_eq!(name(rest, bad, limits, 1e-3), "end_velocity");
         assert_eq!(name(rest, 1.0, limits, bad), "Ts");
-        assert_eq!(
-            name(
-                rest,
-                1.0,
-                Limits {
-                    acceleration: bad,
-                    ..limits
-                },
-                1e-3
-            ),
-            "limits.acceleration"
-        );
-        assert_eq!(
-            name(
-                rest,
-                1.0,
-                Limits {
-                    deceleration: bad,
-                    ..limits
-                },
-                1e-3
-            ),
-            "limits.deceleration"
-        );
+    }
+    // An infinite bound is none, which only the accelerations cannot be.
+    let invalid = |field, bad: f64| {
+        bad != f64::INFINITY || matches!(field, "limits.acceleration" | "limits.deceleration")
+    };
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -1.0] {
+        for (field, part) in bounds.into_iter().filter(|(field, _)| invalid(field, bad)) {
+            let mut limits = limits;
+            *part(&mut limits) = bad;
+            assert_eq!(name(rest, 0.0, limits, 1e-3), field);
+        }
     }
     for bad in [0.0, -1.0] {
         assert_eq!(name(rest, 1.0, limits, bad), "Ts");
-        assert_eq!(
-            name(rest, 1.0, Limits { jerk: bad, ..limits }, 1e-3),
-            "limits.jerk"
-        );
-        assert_eq!(
-            name(
-                rest,
-                0.0,
-                Limits {
-                    velocity: bad,
-                    ..limits
-                },
-                1e-3
-            ),
-            "limits.velocity"
-        );
     }
     assert_eq!(name(rest, 5.000001, limits, 1e-3), "end_velocity");
     assert_eq!(name(rest, -5.000001, limits, 1e-3), "end_velocity");
     assert_eq!(name(rest, 5.0, limits, 1e-12), "too long");
-    assert_eq!(
-        name(
-            rest,
-            5.0,
-            Limits {
-                snap: 1e-300,
-                ..limits
-            },
-            1e-12
-        ),
-        "too long"
-    );
+    let slow = Limits {
+        snap: 1e-300,
+        ..limits
+    };
+    assert_eq!(name(rest, 5.0, slow, 1e-12), "too long");
 }
 
 /// Bounds of any size against each other: a plan or a refusal, and a plan ends exactly.
