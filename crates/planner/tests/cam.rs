@@ -1,9 +1,10 @@
 //! Cams: the laws between two rows, their joints, their bounds, and their anchor between two axes.
 
+use crate::grid_support::Digest;
 use standstill_planner::cam::CAM_ROWS;
 use standstill_planner::{
-    Anchor, Cam, CamAt, CamBuild, CamCause, CamFault, CamHead, CamLaw, CamPiece, CamRow, CamShape, Limits,
-    Place, Setpoint,
+    Anchor, Cam, CamAt, CamBounds, CamBuild, CamCause, CamFault, CamHead, CamLaw, CamPiece, CamRow, CamShape,
+    Limits, Place, Setpoint,
 };
 use standstill_testkit::Random;
 
@@ -23,12 +24,13 @@ impl Made {
     /// Where the slave is for a master at `x` that moves with 1 u/s: position and derivatives by x.
     fn at(&self, x: f64) -> [f64; 5] {
         let at = law().at(&self.cam(), &Anchor::default(), place(0, x), &moving(1.0), 0);
-        numbers(&at.state)
+        at.state.numbers()
     }
 }
 
-fn numbers(at: &Setpoint) -> [f64; 5] {
-    [at.position, at.velocity, at.acceleration, at.jerk, at.snap]
+/// The bounds of the four derivatives.
+fn four(bounds: &CamBounds) -> [f64; 4] {
+    [bounds.first, bounds.second, bounds.third, bounds.fourth]
 }
 
 fn made(rows: &[CamRow], periodic: bool) -> Result<Made, CamFault> {
@@ -110,8 +112,7 @@ fn the_laws_have_their_published_peaks() {
         let rows = [row(0.0, 0.0, shape), row(1.0, 1.0, CamShape::Line)];
         let made = made(&rows, false).unwrap();
         let found = peaks(&made, 0.0, 1.0, 20_000);
-        let bounds = made.pieces[0].bounds();
-        let bounds = [bounds.first, bounds.second, bounds.third, bounds.fourth];
+        let bounds = four(&made.pieces[0].bounds());
         for ((found, published), bound) in found.into_iter().zip(published).zip(bounds) {
             assert!(
                 (found - published).abs() <= 6e-5 * published + 1e-9,
@@ -380,7 +381,7 @@ fn the_chain_rule_is_what_differences_of_fine_samples_are() {
             &master,
             0,
         );
-        numbers(&found.state)
+        found.state.numbers()
     };
     for step in 1..100 {
         let (t, h) = (f64::from(step) * 1e-3, 1e-5);
@@ -421,34 +422,20 @@ fn the_example_has_its_values_and_its_highest_velocity() {
     };
     let highest = made.head.bounds.highest_velocity(&limits);
     assert!((0.99 * 329.143..=329.143).contains(&highest), "{highest}");
-    for (limits, exact) in [
-        (
-            Limits {
-                velocity: 1e9,
-                ..limits
-            },
-            464.4,
-        ),
-        (
-            Limits {
-                velocity: 1e9,
-                acceleration: 1e9,
-                deceleration: 1e9,
-                ..limits
-            },
-            480.7,
-        ),
-        (
-            Limits {
-                velocity: 1e9,
-                acceleration: 1e9,
-                deceleration: 1e9,
-                jerk: 1e9,
-                ..limits
-            },
-            500.0,
-        ),
-    ] {
+    let no_velocity = Limits {
+        velocity: 1e9,
+        ..limits
+    };
+    let jerk_and_snap = Limits {
+        acceleration: 1e9,
+        deceleration: 1e9,
+        ..no_velocity
+    };
+    let snap_alone = Limits {
+        jerk: 1e9,
+        ..jerk_and_snap
+    };
+    for (limits, exact) in [(no_velocity, 464.4), (jerk_and_snap, 480.7), (snap_alone, 500.0)] {
         let highest = made.head.bounds.highest_velocity(&limits);
         assert!(
             highest <= exact + 0.1 && highest >= 0.99 * exact,
@@ -481,9 +468,7 @@ fn bounds_hold_and_are_close() {
         let made = made(&rows, random.below(2) == 0).unwrap();
         for (piece, ends) in made.pieces.iter().zip(rows.windows(2)) {
             let found = peaks(&made, ends[0].master, ends[1].master, 2000);
-            let bounds = piece.bounds();
-            let bounds = [bounds.first, bounds.second, bounds.third, bounds.fourth];
-            for (found, bound) in found.into_iter().zip(bounds) {
+            for (found, bound) in found.into_iter().zip(four(&piece.bounds())) {
                 assert!(bound >= found * (1.0 - 1e-9) - 1e-12, "{bound} {found}");
                 // A narrow peak may lie between samples.
                 assert!(bound <= 1.02 * found + 1e-12, "{bound} {found}");
@@ -500,12 +485,9 @@ fn parts_of_a_cam_have_bounds_of_their_own() {
     for _ in 0..2000 {
         let low = random.between(-2000.0, 2000.0);
         let high = low + random.between(0.0, 1.0) * random.one_of(&[1.0, 100.0, 500.0]);
-        let bounds = law().bounds_between(&made.cam(), low, high);
-        let bounds = [bounds.first, bounds.second, bounds.third, bounds.fourth];
-        let all = made.head.bounds;
-        let all = [all.first, all.second, all.third, all.fourth];
+        let bounds = four(&law().bounds_between(&made.cam(), low, high));
         let found = peaks(&made, low, high, 50);
-        for ((found, bound), all) in found.into_iter().zip(bounds).zip(all) {
+        for ((found, bound), all) in found.into_iter().zip(bounds).zip(four(&made.head.bounds)) {
             assert!(
                 found <= bound * (1.0 + 1e-9) + 1e-15,
                 "{low} {high} {found} {bound}"
@@ -598,19 +580,15 @@ fn scalings_stretch_and_mirror() {
     let made = up_and_back();
     let at = |law: &CamLaw, x: f64| law.at(&made.cam(), &Anchor::default(), place(0, x), &moving(1.0), 0);
     for x in [1.0, 45.0, 90.0, 200.0] {
-        let plain = numbers(&at(&law(), x).state);
+        let plain = at(&law(), x).state.numbers();
         let wide = CamLaw {
             master_scaling: 2.0,
             slave_scaling: -2.0,
             ..law()
         };
-        let [position, velocity, acceleration, jerk, snap] = numbers(&at(&wide, 2.0 * x).state);
+        let found = at(&wide, 2.0 * x).state.numbers();
         let expected = [-2.0, -1.0, -0.5, -0.25, -0.125];
-        for ((found, plain), factor) in [position, velocity, acceleration, jerk, snap]
-            .into_iter()
-            .zip(plain)
-            .zip(expected)
-        {
+        for ((found, plain), factor) in found.into_iter().zip(plain).zip(expected) {
             assert_eq!(found, plain * factor + 0.0, "{x}");
         }
         let back = CamLaw {
@@ -680,7 +658,7 @@ fn limits_of_a_shadow_leave_the_slave_within_its_own() {
                 jerk: shadow.jerk,
                 snap: shadow.snap,
             });
-            assert_eq!(standstill_planner::CamBounds::beyond(&most, &limits), None);
+            assert_eq!(CamBounds::beyond(&most, &limits), None);
             assert!(shadow.velocity <= 0.98 * bounds.highest_velocity(&limits));
         }
     }
@@ -702,12 +680,7 @@ fn the_bits_are_these() {
     rows[4].slope = 0.31;
     rows[5].curvature = -0.02;
     let made = made(&rows, true).unwrap();
-    let mut digest = 0xcbf2_9ce4_8422_2325_u64;
-    let mut take = |value: f64| {
-        for byte in value.to_bits().to_le_bytes() {
-            digest = (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-    };
+    let mut digest = Digest::new();
     let law = CamLaw {
         master_scaling: 1.3,
         slave_scaling: -0.9,
@@ -730,13 +703,12 @@ fn the_bits_are_these() {
             near,
         );
         near = found.piece;
-        numbers(&found.state).into_iter().for_each(&mut take);
+        digest.add_setpoint(&found.state);
     }
     for piece in &made.pieces {
-        let bounds = piece.bounds();
-        [bounds.first, bounds.second, bounds.third, bounds.fourth]
-            .into_iter()
-            .for_each(&mut take);
+        for bound in four(&piece.bounds()) {
+            digest.add(bound.to_bits());
+        }
     }
-    assert_eq!(format!("{digest:016x}"), "73b50c72e8d9a81f");
+    assert_eq!(format!("{:016x}", digest.0), "73b50c72e8d9a81f");
 }

@@ -123,13 +123,7 @@ impl Digest {
     }
 
     pub fn add_setpoint(&mut self, setpoint: &Setpoint) {
-        for value in [
-            setpoint.position,
-            setpoint.velocity,
-            setpoint.acceleration,
-            setpoint.jerk,
-            setpoint.snap,
-        ] {
+        for value in setpoint.numbers() {
             self.add(value.to_bits());
         }
     }

@@ -1,11 +1,11 @@
 //! The tables of docs/papers.md: published against ours, written from the code.
 
 use super::generator::{first_difference, sequential};
-use super::published::static_formula;
-use super::support::{bounds, case, case_bounds, cases, integrated, number, numbers};
+use super::published::{short_path, static_formula, timed, trapezoid};
+use super::support::{bounds, case, case_bounds, cases, integrated, number, numbers, rows};
 use serde_json::Value;
-use standstill_planner::papers::{SCurve, ShortPath, ShortPathPolicy, Stepper, Timed, Tracking, Trapezoid};
-use standstill_planner::{Limits, Setpoint};
+use standstill_planner::Setpoint;
+use standstill_planner::papers::{SCurve, ShortPath, ShortPathPolicy, Stepper, Tracking};
 use std::env;
 use std::fs;
 
@@ -157,12 +157,7 @@ fn garcia() -> String {
     let mut rows: Vec<_> = cases("garcia").iter().filter_map(garcia_row).collect();
     let case = case("garcia-trapezoid");
     let input = &case["input"];
-    let limits = Limits {
-        velocity: number(&input["V"]),
-        ..Limits::NONE
-    };
-    let plan = Trapezoid::timed(0.0, number(&input["theta"]), number(&input["T"]), &limits).expect("a plan");
-    let peaks = plan.profile().peaks();
+    let peaks = trapezoid(input).profile().peaks();
     rows.push(format!(
         "trapezoid | {:.4}, {}, - , - | {} / {:.4} | {} (measured) / {:.4} | - | not computed by the paper",
         number(&input["theta"]),
@@ -182,8 +177,7 @@ fn garcia_row(case: &Value) -> Option<String> {
     let (input, published) = (&case["input"], &case["published"]);
     let [theta, duration, gamma, phi] = ["theta", "T", "gamma", "phi"].map(|key| number(&input[key]));
     published.get("v")?;
-    let plan = Timed::new(0.0, theta, duration, gamma, phi, &Limits::NONE).expect("a plan");
-    let peaks = plan.profile().peaks();
+    let peaks = timed(input).profile().peaks();
     let ours = [peaks.velocity, peaks.acceleration, peaks.jerk].map(|peak| peak * theta.signum());
     let cell = |key: &str, ours: f64| format!("{} / {ours:.4}", printed(&published[key]));
     let agrees = ["v", "a", "j"].iter().zip(ours).all(|(key, ours)| {
@@ -200,13 +194,6 @@ fn garcia_row(case: &Value) -> Option<String> {
     ))
 }
 
-/// The plan of a row of the paper's Table 2.
-fn bui_plan(case: &Value, policy: ShortPathPolicy) -> ShortPath {
-    let input = &case["input"];
-    let [s, v_s, v_e, feed, a, j] = ["s", "v_s", "v_e", "v_cf", "A", "J"].map(|key| number(&input[key]));
-    ShortPath::new(0.0, v_s, s, v_e, &bounds(feed, a, j), policy).expect("a plan")
-}
-
 fn bui_rows() -> impl Iterator<Item = (String, Value)> {
     cases("bui").into_iter().filter_map(|case| {
         let id = case["id"].as_str()?.strip_prefix("bui-table2-row")?;
@@ -217,7 +204,7 @@ fn bui_rows() -> impl Iterator<Item = (String, Value)> {
 
 fn bui() -> String {
     let rows = bui_rows().map(|(row, case)| {
-        let plan = bui_plan(&case, ShortPathPolicy::Paper);
+        let plan = short_path(&case["input"], ShortPathPolicy::Paper);
         let (input, published) = (&case["input"], &case["published"]);
         let velocity = |key: &str| {
             if input[key] == published[key] {
@@ -279,7 +266,7 @@ fn bui_policies() -> String {
     let rows = bui_rows().filter(|(_, case)| case["expected"]["type"] == "8B");
     let rows = rows.map(|(row, case)| {
         let cell = |policy| {
-            let plan = bui_plan(&case, policy);
+            let plan = short_path(&case["input"], policy);
             format!("{:.6}, {:.6}", plan.end_velocity(), plan.profile().duration())
         };
         format!(
@@ -328,12 +315,7 @@ fn zhang() -> String {
 fn zhang_moving() -> String {
     let rows = cases("zhang_moving").into_iter().map(|case| {
         let limits = case_bounds(&case);
-        let changes: Vec<_> = case["input"]["retarget"]
-            .as_array()
-            .expect("a list")
-            .iter()
-            .map(numbers)
-            .collect();
+        let changes = rows(&case["input"]["retarget"]);
         let [first, second] = [changes[0][1], changes[1][1]];
         let at = changes[1][0];
         let start = Setpoint::at_rest(0.0);

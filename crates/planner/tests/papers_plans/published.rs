@@ -2,7 +2,7 @@
 
 use super::support::{
     Random, bounds, case, case_bounds, cases, close, cube_root, integrated_until, number, numbers,
-    random_bounds, same_profile,
+    random_bounds, rows, same_profile,
 };
 use serde_json::Value;
 use standstill_planner::papers::{SCurve, ShortPath, ShortPathPolicy, Timed, Tracking, Trapezoid};
@@ -28,12 +28,23 @@ fn s_curves_are_those_of_the_corrected_paper() {
     }
 }
 
+pub fn timed(input: &Value) -> Timed {
+    let [theta, duration, gamma, phi] = ["theta", "T", "gamma", "phi"].map(|key| number(&input[key]));
+    Timed::new(0.0, theta, duration, gamma, phi, &Limits::NONE).expect("a plan")
+}
+
+pub fn trapezoid(input: &Value) -> Trapezoid {
+    let limits = Limits {
+        velocity: number(&input["V"]),
+        ..Limits::NONE
+    };
+    Trapezoid::timed(0.0, number(&input["theta"]), number(&input["T"]), &limits).expect("a plan")
+}
+
 #[test]
 fn timed_moves_are_those_of_the_corrected_paper() {
     for case in cases("garcia") {
-        let input = &case["input"];
-        let [theta, duration, gamma, phi] = ["theta", "T", "gamma", "phi"].map(|key| number(&input[key]));
-        let plan = Timed::new(0.0, theta, duration, gamma, phi, &Limits::NONE).expect("a plan");
+        let plan = timed(&case["input"]);
         let expected = &case["expected"];
         let peaks = plan.profile().peaks();
         close(&case, "v", peaks.velocity, number(&expected["v"]).abs());
@@ -48,11 +59,7 @@ fn timed_moves_are_those_of_the_corrected_paper() {
 fn the_trapezoid_is_that_of_the_paper() {
     let case = case("garcia-trapezoid");
     let input = &case["input"];
-    let limits = Limits {
-        velocity: number(&input["V"]),
-        ..Limits::NONE
-    };
-    let plan = Trapezoid::timed(0.0, number(&input["theta"]), number(&input["T"]), &limits).expect("a plan");
+    let plan = trapezoid(input);
     let segments: Vec<_> = plan.profile().segments().collect();
     let expected = &case["expected"];
     close(&case, "T_acc", segments[0].duration, number(&expected["T_acc"]));
@@ -61,8 +68,8 @@ fn the_trapezoid_is_that_of_the_paper() {
     close(&case, "v", plan.profile().peaks().velocity, number(&input["V"]));
 }
 
-fn short_path(input: &Value, from: &str, to: &str, policy: ShortPathPolicy) -> ShortPath {
-    let [s, v_s, v_e, v_cf, a, j] = ["s", from, to, "v_cf", "A", "J"].map(|key| number(&input[key]));
+pub fn short_path(input: &Value, policy: ShortPathPolicy) -> ShortPath {
+    let [s, v_s, v_e, v_cf, a, j] = ["s", "v_s", "v_e", "v_cf", "A", "J"].map(|key| number(&input[key]));
     ShortPath::new(0.0, v_s, s, v_e, &bounds(v_cf, a, j), policy).expect("a plan")
 }
 
@@ -84,9 +91,9 @@ fn short_paths_are_those_of_the_corrected_paper() {
     for case in cases("bui") {
         let (input, expected) = (&case["input"], &case["expected"]);
         let v_s = number(&input["v_s"]);
-        let paper = short_path(input, "v_s", "v_e", ShortPathPolicy::Paper);
+        let paper = short_path(input, ShortPathPolicy::Paper);
         same_short_path(&case, expected, &paper, v_s);
-        let nearest = short_path(input, "v_s", "v_e", ShortPathPolicy::Nearest);
+        let nearest = short_path(input, ShortPathPolicy::Nearest);
         match expected.get("policy_nearest") {
             Some(expected) => same_short_path(&case, expected, &nearest, v_s),
             None => assert_eq!(nearest, paper, "{}", case["id"]),
@@ -97,7 +104,7 @@ fn short_paths_are_those_of_the_corrected_paper() {
             let mut printed = input.clone();
             printed["v_s"] = case["published"]["v_s"].clone();
             printed["v_e"] = case["published"]["v_e"].clone();
-            let plan = short_path(&printed, "v_s", "v_e", ShortPathPolicy::Paper);
+            let plan = short_path(&printed, ShortPathPolicy::Paper);
             same_short_path(&case, expected, &plan, number(&printed["v_s"]));
         }
     }
@@ -187,22 +194,12 @@ fn moving_targets_are_replanned_from_the_state() {
     for case in cases("zhang_moving") {
         let limits = case_bounds(&case);
         let cycle = number(&case["input"]["Ts"]);
-        let targets: Vec<_> = case["input"]["retarget"]
-            .as_array()
-            .expect("a list")
-            .iter()
-            .map(numbers)
-            .collect();
+        let targets = rows(&case["input"]["retarget"]);
         let expected = &case["expected"];
         let start = Setpoint::at_rest(0.0);
         let mut tracking = Tracking::new(&start, targets[0][1], &limits, cycle).expect("a plan");
         let plans = expected["plans"].as_array().expect("a list");
-        let samples: Vec<_> = expected["scan_samples"]
-            .as_array()
-            .expect("a list")
-            .iter()
-            .map(numbers)
-            .collect();
+        let samples = rows(&expected["scan_samples"]);
         let mut changes = 0;
         let last = number(&expected["end_time"]).ceil() as u32;
         for scan in 0..=last {
@@ -258,14 +255,9 @@ fn general_cases_are_planned_in_the_least_time() {
         close(&case, "T", plan.duration(), number(&expected["T"]));
         let segments: Vec<_> = plan.segments().collect();
         let from = [start.position, start.velocity, start.acceleration];
-        let samples = expected["samples"]
-            .as_array()
-            .expect("a list")
-            .iter()
-            .map(numbers);
-        let end = numbers(&expected["end"]);
-        let end = [plan.duration(), end[0], end[1], end[2]];
-        for sample in samples.chain([end.to_vec()]) {
+        let mut samples = rows(&expected["samples"]);
+        samples.push([vec![plan.duration()], numbers(&expected["end"])].concat());
+        for sample in samples {
             let state = integrated_until(from, &segments, sample[0]);
             for i in 0..3 {
                 close(&case, "a sample", state[i], sample[i + 1]);

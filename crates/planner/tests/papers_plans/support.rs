@@ -40,6 +40,14 @@ pub fn numbers(value: &Value) -> Vec<f64> {
         .collect()
 }
 
+/// A list of lists.
+pub fn rows(value: &Value) -> Vec<Vec<f64>> {
+    let rows = value
+        .as_array()
+        .unwrap_or_else(|| panic!("{value} is not a list"));
+    rows.iter().map(numbers).collect()
+}
+
 /// Bounds of order 3.
 pub fn bounds(velocity: f64, acceleration: f64, jerk: f64) -> Limits {
     Limits {
