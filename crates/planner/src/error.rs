@@ -94,13 +94,6 @@ pub enum PlanError {
         /// Its value.
         value: f64,
     },
-    /// The start state does not fit the method (for example: not at rest).
-    NotAtRest {
-        /// The first derivative that is not zero.
-        field: Field,
-        /// Its value.
-        value: f64,
-    },
     /// No bound is given, so the move would take no time.
     Unbounded,
     /// A value that does not fit the rest of the request, although another value would.
@@ -148,13 +141,6 @@ impl fmt::Display for PlanError {
                 "the move is too long for {} = {value:?}: a plan counts at most 2147483647 scans; raise the limit, shorten the move or lengthen the cycle",
                 field.name()
             ),
-            Self::NotAtRest { field, value } => {
-                write!(
-                    f,
-                    "{} is {value:?}: this method starts at rest, so it must be 0",
-                    field.name()
-                )
-            }
             Self::Unbounded => write!(f, "no limit is given: give at least one"),
             Self::OutOfRange {
                 field,
@@ -181,3 +167,35 @@ impl fmt::Display for PlanError {
 }
 
 impl core::error::Error for PlanError {}
+
+impl PlanError {
+    /// A move to `target` (u) that takes more scans than a plan can count.
+    pub(crate) const fn too_far(target: f64) -> Self {
+        Self::TooLong {
+            field: Field::Target,
+            value: target,
+        }
+    }
+}
+
+/// The signed distance (u) from `start` to `target`, which are finite and not too far from each other.
+pub(crate) const fn distance(start: f64, target: f64) -> Result<f64, PlanError> {
+    let distance = target - start;
+    let (field, value) = if !start.is_finite() {
+        (Field::Position, start)
+    } else if !distance.is_finite() {
+        (Field::Target, target)
+    } else {
+        return Ok(distance);
+    };
+    Err(PlanError::InvalidInput { field, value })
+}
+
+/// Refuses a value that is not positive and finite.
+pub(crate) const fn check_positive(field: Field, value: f64) -> Result<(), PlanError> {
+    if value > 0.0 && value.is_finite() {
+        Ok(())
+    } else {
+        Err(PlanError::InvalidInput { field, value })
+    }
+}

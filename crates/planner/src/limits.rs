@@ -334,13 +334,7 @@ impl Limits {
     /// # Errors
     /// [`PlanError::InvalidInput`] names the first bound that is NaN, zero or negative.
     pub const fn check(&self) -> Result<(), PlanError> {
-        let bounds = [
-            (Field::LimitVelocity, self.velocity),
-            (Field::LimitAcceleration, self.acceleration),
-            (Field::LimitDeceleration, self.deceleration),
-            (Field::LimitJerk, self.jerk),
-            (Field::LimitSnap, self.snap),
-        ];
+        let bounds = self.named();
         let mut index = 0;
         while index < bounds.len() {
             let (field, value) = bounds[index];
@@ -350,5 +344,16 @@ impl Limits {
             index += 1;
         }
         Ok(())
+    }
+
+    /// The bounds with their names.
+    pub(crate) const fn named(&self) -> [(Field, f64); 5] {
+        [
+            (Field::LimitVelocity, self.velocity),
+            (Field::LimitAcceleration, self.acceleration),
+            (Field::LimitDeceleration, self.deceleration),
+            (Field::LimitJerk, self.jerk),
+            (Field::LimitSnap, self.snap),
+        ]
     }
 }

@@ -5,6 +5,7 @@
 //! positions. It is at the target when its last part is. The weights are chosen such that the vibrations excited by
 //! the parts of the mean cancel.
 
+use crate::error::check_positive;
 use crate::math::{floor, sqrt};
 use crate::{Field, PlanError, Setpoint};
 use core::f64::consts::{FRAC_PI_2, TAU};
@@ -179,16 +180,14 @@ struct Wave {
 
 impl Wave {
     fn new(mode: &VibrationMode, cycle: f64) -> Result<Self, PlanError> {
-        let invalid = |field, value| Err(PlanError::InvalidInput { field, value });
         let (frequency, damping) = (mode.frequency, mode.damping);
-        if !(cycle > 0.0 && cycle.is_finite()) {
-            return invalid(Field::Cycle, cycle);
-        }
-        if !(frequency > 0.0 && frequency.is_finite()) {
-            return invalid(Field::Frequency, frequency);
-        }
+        check_positive(Field::Cycle, cycle)?;
+        check_positive(Field::Frequency, frequency)?;
         if damping.is_nan() {
-            return invalid(Field::Damping, damping);
+            return Err(PlanError::InvalidInput {
+                field: Field::Damping,
+                value: damping,
+            });
         }
         let out_of_range = |field, value, nearest| {
             Err(PlanError::OutOfRange {

@@ -82,9 +82,6 @@ impl Refusal {
     pub fn of_plan_error(fields: &Fields<'_>, error: PlanError) -> Self {
         let (code, field, value, nearest) = match error {
             PlanError::InvalidInput { field, value } => (Code::InvalidInput, field.name(), Some(value), None),
-            PlanError::NotAtRest { field, value } => {
-                (Code::InvalidInput, field.name(), Some(value), Some(0.0))
-            }
             PlanError::TooLong { field, value } => (Code::TooLong, field.name(), Some(value), None),
             PlanError::Unbounded => (Code::InvalidInput, "limits", None, None),
             PlanError::OutOfRange {

@@ -1,7 +1,6 @@
 //! The second view of a plan: the forward-Euler chain as exact whole numbers.
 
 use super::GridPlan;
-use crate::Order;
 
 /// State of the chain `j += d; a += j; v += a; x += v` (each from the value its input had before) after k
 /// samples, in whole numbers (docs/planner.md, eq. 23).
@@ -49,29 +48,19 @@ impl GridPlan {
                 }
             }
         }
-        let [s0, s1, s2, s3, s4] = sums;
-        match self.order {
-            Order::Four => Euler {
-                position: s4,
-                velocity: s3,
-                acceleration: s2,
-                jerk: s1,
-                input: s0,
-            },
-            Order::Three => Euler {
-                position: s3,
-                velocity: s2,
-                acceleration: s1,
-                jerk: 0,
-                input: s0,
-            },
-            Order::Two => Euler {
-                position: s2,
-                velocity: s1,
-                acceleration: 0,
-                jerk: 0,
-                input: s0,
-            },
+        // The sum of powers 0 is the input of the chain; each integrator has that of one power more.
+        let [input, ..] = sums;
+        let degree = self.order.degree();
+        let sum = |derivative| match degree.saturating_sub(derivative) {
+            0 => 0,
+            power => sums.get(power).copied().unwrap_or(0),
+        };
+        Euler {
+            position: sum(0),
+            velocity: sum(1),
+            acceleration: sum(2),
+            jerk: sum(3),
+            input,
         }
     }
 }

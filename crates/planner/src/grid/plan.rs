@@ -4,6 +4,7 @@ use super::problem::{Boxes, LONGEST, Problem};
 use super::profile::{self, Cruise};
 use super::search::{self, Family, Work};
 use super::{Method, sequential};
+use crate::error::{check_positive, distance};
 use crate::{Field, Limits, Order, PlanError};
 
 /// A rest-to-rest plan: a plain value of at most four box lengths and five scale factors.
@@ -211,13 +212,13 @@ impl GridPlan {
     /// The signed snap (order 4, u/s^4), jerk (order 3, u/s^3) or acceleration (order 2, u/s^2) the plan
     /// switches on and off (docs/planner.md, eq. 5).
     pub fn amplitude(&self) -> f64 {
-        let [_, _, acceleration, jerk, snap] = self.scale;
-        match self.order {
-            Order::Four => snap,
-            Order::Three => jerk,
-            Order::Two => acceleration,
-        }
+        highest(self.order, &self.scale)
     }
+}
+
+/// The factor of the highest derivative that a plan of this order has.
+pub(super) fn highest(order: Order, scale: &[f64; 5]) -> f64 {
+    scale.get(order.degree()).copied().unwrap_or(0.0)
 }
 
 /// Product of the boxes of a plan.
@@ -265,18 +266,8 @@ pub(super) fn checked_distance(
     limits: &Limits,
     cycle: f64,
 ) -> Result<f64, PlanError> {
-    let invalid = |field, value| Err(PlanError::InvalidInput { field, value });
-    if !(cycle > 0.0 && cycle.is_finite()) {
-        return invalid(Field::Cycle, cycle);
-    }
-    if !start.is_finite() {
-        return invalid(Field::Position, start);
-    }
-    let distance = target - start;
-    // A finite target too far from the start is refused here too.
-    if !distance.is_finite() {
-        return invalid(Field::Target, target);
-    }
+    check_positive(Field::Cycle, cycle)?;
+    let distance = distance(start, target)?;
     limits.check()?;
     if limits.is_unbounded() {
         return Err(PlanError::Unbounded);
@@ -284,13 +275,13 @@ pub(super) fn checked_distance(
     // The first three derivatives can't exceed the larger of this and the distance.
     let squared = cycle * cycle;
     if !(1.0 / (squared * squared)).is_finite() {
-        return invalid(Field::Cycle, cycle);
+        return Err(PlanError::InvalidInput {
+            field: Field::Cycle,
+            value: cycle,
+        });
     }
     if !(distance / (squared * squared)).is_finite() {
-        return Err(PlanError::TooLong {
-            field: Field::Target,
-            value: target,
-        });
+        return Err(PlanError::too_far(target));
     }
     Ok(distance)
 }

@@ -10,7 +10,7 @@ use crate::ramp::excess::{self, Excess};
 use crate::ramp::path::Path;
 use crate::ramp::solve::{RAMP_SPANS, Ramps, heading};
 use crate::ramp::{is_there, scans};
-use crate::{DirectedLimits, Field, Limits, Order, PlanError, Setpoint};
+use crate::{DirectedLimits, Limits, Order, PlanError, Setpoint};
 
 /// Largest excess over a limit by the correction that closes a plan on its target: half of what the contract
 /// permits.
@@ -173,10 +173,7 @@ impl OnlinePlan {
             }
             found.path = Path::new(ramps.order());
         }
-        Err(PlanError::TooLong {
-            field: Field::Target,
-            value: target,
-        })
+        Err(PlanError::too_far(target))
     }
 
     /// The same as [`OnlinePlan::climb`], for a plan with an end acceleration: the shortest of the candidates that
@@ -240,10 +237,7 @@ impl OnlinePlan {
             take(&mut climb, &mut best, Rung::Brake, &ends.rest_then_run_up(&from));
         }
         let Some(best) = best else {
-            return Err(PlanError::TooLong {
-                field: Field::Target,
-                value: target,
-            });
+            return Err(PlanError::too_far(target));
         };
         *found = best;
         found.solves = ends.solves();
@@ -473,10 +467,7 @@ impl<'a> Climb<'a> {
         path.pin(0.0);
         let rest = origin + path.end_position().unwrap_or(0.0);
         // Inputs are checked, so a grid plan is refused only for lengths and times beyond numbers.
-        let too_long = PlanError::TooLong {
-            field: Field::Target,
-            value: target,
-        };
+        let too_long = PlanError::too_far(target);
         let limits = &self.limits.limits;
         if !is_there(&end, 0.0, (&self.start, limits, path.duration())) {
             return Err(too_long);

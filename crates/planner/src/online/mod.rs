@@ -191,10 +191,7 @@ impl OnlinePlan {
             scans: 0,
             found: Found::nothing(limits.limits.order()),
         };
-        let too_long = PlanError::TooLong {
-            field: Field::Target,
-            value: target,
-        };
+        let too_long = PlanError::too_far(target);
         if limits.outside(end_velocity) > 0.0 {
             return Err(too_long);
         }
@@ -297,10 +294,7 @@ impl OnlinePlan {
         };
         plan.climb_to_end(top, limits, &wider)?;
         plan.found.excess = plan.excess_beyond(given);
-        plan.scans = ramp::scans(plan.found.path.duration(), cycle).ok_or(PlanError::TooLong {
-            field: Field::Target,
-            value: target,
-        })?;
+        plan.scans = ramp::scans(plan.found.path.duration(), cycle).ok_or(PlanError::too_far(target))?;
         Ok(plan)
     }
 

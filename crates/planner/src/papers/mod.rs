@@ -37,31 +37,10 @@ pub fn scans(duration: f64, cycle: f64) -> Option<u32> {
     crate::ramp::scans(duration, cycle)
 }
 
-/// The signed distance (u) from `start` to `target`.
-fn distance(start: f64, target: f64) -> Result<f64, PlanError> {
-    if !start.is_finite() {
-        return Err(invalid(Field::Position, start));
-    }
-    let distance = target - start;
-    // A finite target too far from the start is refused here too.
-    if distance.is_finite() {
-        Ok(distance)
-    } else {
-        Err(invalid(Field::Target, target))
-    }
-}
-
 /// Refuses missing bounds that a method needs, and bounds that it could not keep.
 fn check_limits(limits: &Limits, needed: &[Field], unknown: &[Field]) -> Result<(), PlanError> {
     limits.check()?;
-    let bounds = [
-        (Field::LimitVelocity, limits.velocity),
-        (Field::LimitAcceleration, limits.acceleration),
-        (Field::LimitDeceleration, limits.deceleration),
-        (Field::LimitJerk, limits.jerk),
-        (Field::LimitSnap, limits.snap),
-    ];
-    for (field, value) in bounds {
+    for (field, value) in limits.named() {
         let missing = value.is_infinite() && needed.contains(&field);
         let too_many = value.is_finite() && unknown.contains(&field);
         if missing || too_many {

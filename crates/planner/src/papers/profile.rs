@@ -103,10 +103,7 @@ impl Profile {
         if profile.ends_near(&state) {
             Ok(profile)
         } else if begin > LONG {
-            Err(PlanError::TooLong {
-                field: Field::Target,
-                value: target,
-            })
+            Err(PlanError::too_far(target))
         } else {
             Err(invalid(Field::Target, target))
         }

@@ -4,7 +4,8 @@
 //! their formulas, with the corrections of `docs/papers.md`.
 
 use super::profile::Times;
-use super::{Profile, check_limits, distance};
+use super::{Profile, check_limits};
+use crate::error::distance;
 use crate::math::{cbrt, sqrt};
 use crate::ramp::path::moved;
 use crate::{Field, Limits, Order, PlanError, Setpoint};

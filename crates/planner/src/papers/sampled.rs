@@ -1,6 +1,7 @@
 //! A profile of a paper at scan ends, in the form that an axis needs.
 
 use super::{Profile, SCurve, ShortPath, ShortPathPolicy, Trapezoid};
+use crate::error::check_positive;
 use crate::{Field, Limits, PlanError, Setpoint};
 
 /// A [`Profile`] evaluated by scan count.
@@ -25,13 +26,9 @@ impl SampledPlan {
     /// [`PlanError::InvalidInput`] for a `cycle` that is not positive and finite, [`PlanError::TooLong`] for
     /// more than 2^31 - 1 scans.
     pub fn new(profile: &Profile, cycle: f64) -> Result<Self, PlanError> {
-        if !(cycle > 0.0 && cycle.is_finite()) {
-            return Err(super::invalid(Field::Cycle, cycle));
-        }
-        let scans = profile.scans(cycle).ok_or(PlanError::TooLong {
-            field: Field::Target,
-            value: profile.end().position,
-        })?;
+        check_positive(Field::Cycle, cycle)?;
+        let too_long = PlanError::too_far(profile.end().position);
+        let scans = profile.scans(cycle).ok_or(too_long)?;
         Ok(Self {
             profile: *profile,
             cycle,

@@ -4,7 +4,8 @@
 //! length", with the corrections of `docs/papers.md`. One function of the peak velocity replaces the
 //! paper's table of conditions.
 
-use super::{Profile, SLACK, check_limits, distance, invalid};
+use super::{Profile, SLACK, check_limits, invalid};
+use crate::error::distance;
 use crate::kernel::falling_root;
 use crate::math::{cbrt, sqrt};
 use crate::{Field, Limits, Order, PlanError, Setpoint};

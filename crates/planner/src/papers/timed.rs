@@ -5,7 +5,8 @@
 //! trapezoid of velocity the paper compares with.
 
 use super::profile::Times;
-use super::{Profile, SLACK, check_limits, distance, invalid};
+use super::{Profile, SLACK, check_limits, invalid};
+use crate::error::{check_positive, distance};
 use crate::math::{cbrt, sqrt};
 use crate::{Field, Limits, Order, PlanError, Setpoint};
 
@@ -86,11 +87,7 @@ fn check_share(field: Field, value: f64) -> Result<(), PlanError> {
             nearest,
         });
     }
-    if value > 0.0 {
-        Ok(())
-    } else {
-        Err(invalid(field, value))
-    }
+    check_positive(field, value)
 }
 
 fn check_duration(value: f64, least: f64) -> Result<(), PlanError> {
@@ -102,11 +99,7 @@ fn check_duration(value: f64, least: f64) -> Result<(), PlanError> {
             nearest: least,
         });
     }
-    if value > 0.0 && value.is_finite() {
-        Ok(())
-    } else {
-        Err(invalid(field, value))
-    }
+    check_positive(field, value)
 }
 
 /// A move from rest to rest at order 2: velocity is a trapezoid, or a triangle over a short distance.

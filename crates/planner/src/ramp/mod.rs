@@ -17,6 +17,7 @@ mod turn;
 pub use count::solved;
 pub use excess::{Excess, Peaks};
 
+use crate::error::check_positive;
 use crate::kernel::ON_LIMIT;
 use crate::turns::{split, two_product, two_sum};
 use crate::{DirectedLimits, Field, Limits, Order, PlanError, Setpoint};
@@ -418,9 +419,7 @@ pub(crate) fn check(
 ) -> Result<(), PlanError> {
     let limits = &directed.limits;
     let invalid = |field, value| Err(PlanError::InvalidInput { field, value });
-    if !(cycle > 0.0 && cycle.is_finite()) {
-        return invalid(Field::Cycle, cycle);
-    }
+    check_positive(Field::Cycle, cycle)?;
     let finite = [
         (Field::Position, start.position),
         (Field::Velocity, start.velocity),

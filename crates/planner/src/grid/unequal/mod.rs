@@ -9,7 +9,7 @@ pub use lattice::MAX_RAMP_ROWS;
 pub use profile::UnequalSegments;
 pub use search::UnequalWork;
 
-use super::plan::{checked_distance, choose};
+use super::plan::{checked_distance, choose, highest};
 use super::problem::Problem;
 use super::search::Family;
 use super::{Method, profile::scale};
@@ -173,14 +173,7 @@ impl UnequalPlan {
     /// The signed snap (order 4, u/s^4), jerk (order 3, u/s^3) or acceleration (order 2, u/s^2) that the ramp up
     /// switches on and off, and that of the ramp down (docs/planner.md, eq. 28).
     pub fn amplitudes(&self) -> [f64; 2] {
-        [&self.up, &self.down].map(|half| {
-            let [_, _, acceleration, jerk, snap] = half.scale;
-            match self.order {
-                Order::Four => snap,
-                Order::Three => jerk,
-                Order::Two => acceleration,
-            }
-        })
+        [&self.up, &self.down].map(|half| highest(self.order, &half.scale))
     }
 
     fn boxes<'a>(&self, half: &'a Half) -> &'a [u32] {
