@@ -50,6 +50,20 @@ pub struct Segment {
     pub snap: f64,
 }
 
+impl Segment {
+    /// A stretch of so many scans from this state on.
+    pub(super) const fn of(scans: i64, cycle: f64, state: &Setpoint) -> Self {
+        Self {
+            scans: scans as u32,
+            duration: scans as f64 * cycle,
+            velocity: state.velocity,
+            acceleration: state.acceleration,
+            jerk: state.jerk,
+            snap: state.snap,
+        }
+    }
+}
+
 /// The segments of a plan in order, at most 15; made by [`GridPlan::segments`].
 #[derive(Clone, Debug)]
 pub struct Segments {
@@ -68,14 +82,7 @@ impl Iterator for Segments {
             self.index += 1;
             if to > from {
                 let state = self.plan.state(from, Side::After);
-                return Some(Segment {
-                    scans: (to - from) as u32,
-                    duration: (to - from) as f64 * self.plan.cycle,
-                    velocity: state.velocity,
-                    acceleration: state.acceleration,
-                    jerk: state.jerk,
-                    snap: state.snap,
-                });
+                return Some(Segment::of(to - from, self.plan.cycle, &state));
             }
         }
         None

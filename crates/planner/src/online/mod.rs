@@ -565,30 +565,12 @@ impl OnlinePlan {
 
     /// The stretches of constant highest derivative, in order of time; none of no length.
     pub fn segments(&self) -> impl Iterator<Item = Segment> {
-        let path = self.found.path.stretches().map(|(stretch, first)| Segment {
-            duration: stretch.duration,
-            velocity: first.velocity,
-            acceleration: first.acceleration,
-            jerk: first.jerk,
-            snap: first.snap,
+        let behind = self.grid().into_iter().flat_map(|(grid, begin)| {
+            // The grid plan begins in a whole scan.
+            let wait = Segment::wait(f64::from(begin) * self.cycle - self.found.path.duration());
+            wait.into_iter().chain(grid.segments().map(Segment::from))
         });
-        // The grid plan begins in a whole scan.
-        let wait = self.grid().map_or(0.0, |(_, begin)| {
-            f64::from(begin) * self.cycle - self.found.path.duration()
-        });
-        let wait = Segment {
-            duration: wait,
-            velocity: 0.0,
-            acceleration: 0.0,
-            jerk: 0.0,
-            snap: 0.0,
-        };
-        let wait = (wait.duration > 0.0).then_some(wait);
-        let grid = self
-            .grid()
-            .into_iter()
-            .flat_map(|(grid, _)| grid.segments().map(Segment::from));
-        path.chain(wait).chain(grid)
+        self.found.path.segments().chain(behind)
     }
 
     /// The largest magnitudes of the continuous plan, in closed form.

@@ -1,7 +1,7 @@
 //! A profile as a short list of polynomial pieces.
 
 use super::{invalid, peaks, scans};
-use crate::ramp::path::moved;
+use crate::ramp::path::{moved, with_input};
 use crate::{Field, Order, Peaks, PlanError, Segment, Setpoint};
 
 /// Largest number of segments of a profile here: three to speed up, a cruise, three to slow down.
@@ -81,7 +81,8 @@ impl Profile {
                 // A length that is only rounding is no span.
                 continue;
             }
-            state = with_input(&state, order, input);
+            // Adding 0.0 removes the sign of zero.
+            state = with_input(&state, order, input + 0.0);
             // An acceleration that is only rounding would be integrated over a long cruise.
             largest = largest.max(state.acceleration.abs());
             if input == 0.0 && state.acceleration.abs() <= ROUNDING * largest {
@@ -217,13 +218,8 @@ impl Profile {
 
     /// The segments in order of time, none of length zero.
     pub fn segments(&self) -> impl Iterator<Item = Segment> {
-        self.pieces.iter().take(self.len).map(|piece| Segment {
-            duration: piece.duration,
-            velocity: piece.first.velocity,
-            acceleration: piece.first.acceleration,
-            jerk: piece.first.jerk,
-            snap: 0.0,
-        })
+        let pieces = self.pieces.iter().take(self.len);
+        pieces.map(|piece| Segment::of(piece.duration, &piece.first))
     }
 
     /// The largest magnitudes of the move, in closed form.
@@ -246,21 +242,4 @@ pub struct Times {
     pub acceleration: f64,
     /// From the start to the start of braking.
     pub velocity: f64,
-}
-
-/// `state` with `input` as the derivative that `order` holds constant.
-fn with_input(state: &Setpoint, order: Order, input: f64) -> Setpoint {
-    // Adding 0.0 removes the sign of zero.
-    let input = input + 0.0;
-    match order {
-        Order::Two => Setpoint {
-            acceleration: input,
-            jerk: 0.0,
-            ..*state
-        },
-        Order::Three | Order::Four => Setpoint {
-            jerk: input,
-            ..*state
-        },
-    }
 }

@@ -80,14 +80,7 @@ impl Tracking {
             left -= segment.duration;
             (duration > 0.0).then_some(Segment { duration, ..segment })
         });
-        let wait = Segment {
-            duration: elapsed - self.plan.duration(),
-            velocity: 0.0,
-            acceleration: 0.0,
-            jerk: 0.0,
-            snap: 0.0,
-        };
-        moving.chain((wait.duration > 0.0).then_some(wait))
+        moving.chain(Segment::wait(elapsed - self.plan.duration()))
     }
 }
 
@@ -96,30 +89,14 @@ impl Tracking {
 pub fn peaks(order: Order, segments: impl IntoIterator<Item = Segment>) -> Peaks {
     let mut peaks = Peaks::default();
     for segment in segments {
-        let first = Setpoint {
-            position: 0.0,
-            velocity: segment.velocity,
-            acceleration: segment.acceleration,
-            jerk: segment.jerk,
-            snap: segment.snap,
-        };
+        let first = segment.first();
         let [early, late] = zeros(first.acceleration, first.jerk, first.snap);
         let flat = -first.jerk / first.snap;
         for time in [0.0, flat, early, late, segment.duration] {
             if time >= 0.0 && time <= segment.duration {
-                let state = moved(&first, time);
-                peaks.velocity = peaks.velocity.max(state.velocity.abs());
-                peaks.acceleration = peaks.acceleration.max(state.acceleration.abs());
-                peaks.jerk = peaks.jerk.max(state.jerk.abs());
-                peaks.snap = peaks.snap.max(state.snap.abs());
+                peaks.see(&moved(&first, time));
             }
         }
     }
-    if order < Order::Four {
-        peaks.snap = f64::INFINITY;
-    }
-    if order < Order::Three {
-        peaks.jerk = f64::INFINITY;
-    }
-    peaks
+    peaks.with_jumps(order)
 }

@@ -3,7 +3,7 @@
 use super::path::Path;
 use crate::kernel::ON_LIMIT;
 use crate::limits::REACH;
-use crate::{DirectedLimits, Order};
+use crate::{DirectedLimits, Order, Setpoint};
 
 /// The resolution of a 64-bit instant of a path, relative to its duration.
 const TICK: f64 = 2.0 * f64::EPSILON;
@@ -35,25 +35,35 @@ pub struct Peaks {
     pub snap: f64,
 }
 
+impl Peaks {
+    /// Takes a state on the way into account.
+    pub(crate) fn see(&mut self, state: &Setpoint) {
+        self.velocity = self.velocity.max(state.velocity.abs());
+        self.acceleration = self.acceleration.max(state.acceleration.abs());
+        self.jerk = self.jerk.max(state.jerk.abs());
+        self.snap = self.snap.max(state.snap.abs());
+    }
+
+    /// Infinite where a plan of `order` has jumps.
+    pub(crate) fn with_jumps(mut self, order: Order) -> Self {
+        if order < Order::Four {
+            self.snap = f64::INFINITY;
+        }
+        if order < Order::Three {
+            self.jerk = f64::INFINITY;
+        }
+        self
+    }
+}
+
 /// The largest magnitudes along `path`, which ends at `goal` (R20).
 pub(crate) fn peaks<const N: usize>(path: &Path<N>, goal: f64) -> Peaks {
     let mut peaks = Peaks {
         velocity: goal.abs(),
         ..Peaks::default()
     };
-    path.extremes(f64::INFINITY, |state, _| {
-        peaks.velocity = peaks.velocity.max(state.velocity.abs());
-        peaks.acceleration = peaks.acceleration.max(state.acceleration.abs());
-        peaks.jerk = peaks.jerk.max(state.jerk.abs());
-        peaks.snap = peaks.snap.max(state.snap.abs());
-    });
-    if path.order() < Order::Four {
-        peaks.snap = f64::INFINITY;
-    }
-    if path.order() < Order::Three {
-        peaks.jerk = f64::INFINITY;
-    }
-    peaks
+    path.extremes(f64::INFINITY, |state, _| peaks.see(state));
+    peaks.with_jumps(path.order())
 }
 
 /// Whether the velocity along `path`, which ends at `goal`, leaves its bounds.
@@ -153,7 +163,6 @@ fn beyond(over: f64, bound: f64, within: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Setpoint;
     use standstill_testkit::Random;
     use std::vec::Vec;
 

@@ -67,6 +67,35 @@ pub struct Segment {
     pub snap: f64,
 }
 
+impl Segment {
+    /// A stretch from this state on, just after any jump.
+    pub(crate) const fn of(duration: f64, state: &Setpoint) -> Self {
+        Self {
+            duration,
+            velocity: state.velocity,
+            acceleration: state.acceleration,
+            jerk: state.jerk,
+            snap: state.snap,
+        }
+    }
+
+    /// The state at its start, at position 0.
+    pub(crate) const fn first(&self) -> Setpoint {
+        Setpoint {
+            position: 0.0,
+            velocity: self.velocity,
+            acceleration: self.acceleration,
+            jerk: self.jerk,
+            snap: self.snap,
+        }
+    }
+
+    /// A wait at rest of this duration (s), if there is any.
+    pub(crate) fn wait(duration: f64) -> Option<Self> {
+        (duration > 0.0).then(|| Self::of(duration, &Setpoint::at_rest(0.0)))
+    }
+}
+
 impl From<crate::grid::Segment> for Segment {
     fn from(segment: crate::grid::Segment) -> Self {
         Self {
@@ -381,13 +410,7 @@ impl RampPlan {
 
     /// The stretches of constant highest derivative, in order of time.
     pub fn segments(&self) -> impl Iterator<Item = Segment> {
-        self.path.stretches().map(|(stretch, first)| Segment {
-            duration: stretch.duration,
-            velocity: first.velocity,
-            acceleration: first.acceleration,
-            jerk: first.jerk,
-            snap: first.snap,
-        })
+        self.path.segments()
     }
 
     /// The largest magnitudes of the continuous plan, in closed form.

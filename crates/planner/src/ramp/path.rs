@@ -2,7 +2,7 @@
 
 use crate::kernel::{Spans, falling_root};
 use crate::math::{max, sqrt};
-use crate::{Order, Setpoint};
+use crate::{Order, Segment, Setpoint};
 
 /// What a jerk of zero may be off by, relative to the largest one before.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -319,7 +319,7 @@ impl<const N: usize> Path<N> {
     }
 
     /// Every piece, and the state at its start.
-    pub(crate) fn stretches(&self) -> impl Iterator<Item = (Stretch, Setpoint)> {
+    fn stretches(&self) -> impl Iterator<Item = (Stretch, Setpoint)> {
         let pieces = self.pieces.iter().take(self.len).enumerate();
         pieces.map(move |(index, piece)| {
             let stretch = Stretch {
@@ -330,6 +330,12 @@ impl<const N: usize> Path<N> {
             let first = stretch.at(0.0);
             (stretch, first)
         })
+    }
+
+    /// Every piece by the derivatives at its start.
+    pub(crate) fn segments(&self) -> impl Iterator<Item = Segment> {
+        self.stretches()
+            .map(|(stretch, first)| Segment::of(stretch.duration, &first))
     }
 
     /// The states that have every extreme of velocity, acceleration and jerk: the ends of each piece, and inside it
@@ -485,9 +491,9 @@ impl Way {
 }
 
 /// A piece on its own.
-pub(crate) struct Stretch {
+struct Stretch {
     /// Its duration (s).
-    pub(crate) duration: f64,
+    duration: f64,
     is_last: bool,
     state: Setpoint,
 }
@@ -504,7 +510,7 @@ impl Stretch {
 }
 
 /// `state` with `input` as the derivative that `order` holds constant, and none above it.
-fn with_input(state: &Setpoint, order: Order, input: f64) -> Setpoint {
+pub(crate) fn with_input(state: &Setpoint, order: Order, input: f64) -> Setpoint {
     match order {
         Order::Four => Setpoint {
             snap: input,

@@ -139,11 +139,10 @@ impl UnequalPlan {
 
     /// The switching instants in ascending order, in scans from the start, and how many there are.
     fn instants(&self) -> ([i64; MAX_INSTANTS], usize) {
-        let each = match (self.scans, self.order) {
-            (0, _) => 0,
-            (_, Order::Four) => 8,
-            (_, Order::Three) => 4,
-            (_, Order::Two) => 2,
+        let each = if self.scans == 0 {
+            0
+        } else {
+            1 << (self.order.degree() - 1)
         };
         let mut instants = [0; MAX_INSTANTS];
         let up = self.up.instants().into_iter().take(each);
@@ -183,14 +182,7 @@ impl Iterator for UnequalSegments {
             self.index += 1;
             if to > from {
                 let state = self.plan.state(*from, Side::After);
-                return Some(Segment {
-                    scans: (to - from) as u32,
-                    duration: (to - from) as f64 * self.plan.cycle,
-                    velocity: state.velocity,
-                    acceleration: state.acceleration,
-                    jerk: state.jerk,
-                    snap: state.snap,
-                });
+                return Some(Segment::of(to - from, self.plan.cycle, &state));
             }
         }
         None
