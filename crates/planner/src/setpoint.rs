@@ -30,6 +30,15 @@ impl Setpoint {
         }
     }
 
+    /// The same motion at position 0, where positions have the finest resolution.
+    #[must_use]
+    pub(crate) const fn at_origin(&self) -> Self {
+        Self {
+            position: 0.0,
+            ..*self
+        }
+    }
+
     /// Whether velocity, acceleration and jerk are all exactly zero.
     pub fn is_at_rest(&self) -> bool {
         self.velocity == 0.0 && self.acceleration == 0.0 && self.jerk == 0.0

@@ -8,11 +8,8 @@ use crate::ramp::excess;
 use crate::ramp::path::{Path, moved};
 use crate::{Limits, Order, Plan, Segment, Setpoint, StandardPlan};
 
-/// Largest number of switches of two plans: a path, a wait and a grid plan each.
-const MAX_SWITCHES: usize = 96;
-
-/// Largest number of switches of three plans.
-const MAX_SWITCHES_BEHIND: usize = 144;
+/// Largest number of switches of three plans: a path, a wait and a grid plan each.
+const MAX_SWITCHES: usize = 144;
 
 /// Shorter pieces of the sum, relative to a cycle, are rounding and not motion. They occur if two
 /// switches at the same scan end differ in a bit.
@@ -64,12 +61,8 @@ struct Walk<I> {
 }
 
 impl<I: Iterator<Item = Segment>> Walk<I> {
-    fn new(segments: I, part: Part<'_>, cycle: f64) -> Self {
-        Self::geared(segments, part, 1.0, cycle)
-    }
-
     /// Its derivatives times `factor`; the position is that of the plan.
-    fn geared(segments: I, (plan, elapsed): Part<'_>, factor: f64, cycle: f64) -> Self {
+    fn new(segments: I, (plan, elapsed): Part<'_>, factor: f64, cycle: f64) -> Self {
         let mut walk = Self {
             segments,
             state: Setpoint::default(),
@@ -106,10 +99,7 @@ impl<I: Iterator<Item = Segment>> Walk<I> {
                 segment.duration,
                 Setpoint {
                     position,
-                    velocity: self.factor * segment.velocity,
-                    acceleration: self.factor * segment.acceleration,
-                    jerk: self.factor * segment.jerk,
-                    snap: self.factor * segment.snap,
+                    ..segment.first().times(self.factor)
                 },
             ),
             None => (
@@ -127,6 +117,21 @@ impl<I: Iterator<Item = Segment>> Walk<I> {
         self.left -= time;
         self.turn();
     }
+}
+
+/// The rest of a plan, its derivatives times `factor`.
+fn walk<'a>(part: Part<'a>, factor: f64, cycle: f64) -> Walk<impl Iterator<Item = Segment> + use<'a>> {
+    Walk::new(part.0.segments(), part, factor, cycle)
+}
+
+/// A piece of constant snap as a path.
+fn piece(state: &Setpoint, length: f64) -> Path<1> {
+    Path::follow(
+        Order::Four,
+        state,
+        f64::INFINITY,
+        core::iter::once((length, state.snap)),
+    )
 }
 
 /// Whether a plan is on a curve that has no pieces of constant snap.
@@ -162,31 +167,22 @@ pub(crate) fn fits(
     if is_curve(second) {
         return false;
     }
-    let mut one = Walk::new(first.0.segments(), first, cycle);
-    let mut two = Walk::new(second.0.segments(), second, cycle);
-    let mut room = range.map(|range| Room::of(range, first, second));
-    for _ in 0..MAX_SWITCHES {
-        let state = one.state.plus(&two.state);
-        let length = if one.left < two.left { one.left } else { two.left };
-        if !length.is_finite() {
-            return state.velocity.abs() <= limits.velocity * (1.0 + ROUNDING);
-        }
-        if length > GRAIN * cycle && !piece_fits(&state, length, limits, room.as_mut()) {
-            return false;
-        }
-        one.go(length);
-        two.go(length);
-    }
-    false
+    let walks = [
+        Some(walk(first, 1.0, cycle)),
+        Some(walk(second, 1.0, cycle)),
+        None,
+    ];
+    let room = range.map(|range| Room::of(range, first, second));
+    keeps(Sum { walks }, None, limits, room, cycle)
 }
 
 /// The sum of at most three plans, followed piece by piece: those of the masters, and the slave's additional
 /// motion.
-struct Behind<I> {
+struct Sum<I> {
     walks: [Option<Walk<I>>; 3],
 }
 
-impl<I: Iterator<Item = Segment>> Behind<I> {
+impl<I: Iterator<Item = Segment>> Sum<I> {
     fn state(&self) -> Setpoint {
         let mut walks = self.walks.iter().flatten().map(|walk| walk.state);
         let first = walks.next().unwrap_or_default();
@@ -207,12 +203,38 @@ impl<I: Iterator<Item = Segment>> Behind<I> {
     }
 }
 
+/// Whether a sum keeps `limits` and its `room` to its end and, if it goes on from a `last` state, has no jump.
+fn keeps<I: Iterator<Item = Segment>>(
+    mut sum: Sum<I>,
+    mut last: Option<Setpoint>,
+    limits: &Limits,
+    mut room: Option<Room>,
+    cycle: f64,
+) -> bool {
+    for _ in 0..MAX_SWITCHES {
+        let state = sum.state();
+        if last.is_some_and(|last| !is_continuous(&last, &state, limits, cycle)) {
+            return false;
+        }
+        let length = sum.left();
+        if !length.is_finite() {
+            return state.velocity.abs() <= limits.velocity * (1.0 + ROUNDING);
+        }
+        if length > GRAIN * cycle && !piece_fits(&state, length, limits, room.as_mut()) {
+            return false;
+        }
+        last = last.map(|_| moved(&state, length));
+        sum.go(length);
+    }
+    false
+}
+
 /// The plans of `leads` and, in units of the slave, the one `beside`; `None` where one of them is on a curve.
 fn behind<'a>(
     leads: &Leads<'a, StandardPlan>,
     beside: Option<Part<'a>>,
     cycle: f64,
-) -> Option<Behind<impl Iterator<Item = Segment> + use<'a>>> {
+) -> Option<Sum<impl Iterator<Item = Segment> + use<'a>>> {
     let beside = beside.map(|(plan, elapsed)| Lead {
         plan,
         elapsed,
@@ -222,9 +244,8 @@ fn behind<'a>(
     if parts.iter().flatten().any(|lead| is_curve(lead.part())) {
         return None;
     }
-    let walk =
-        |lead: Lead<'a, StandardPlan>| Walk::geared(lead.plan.segments(), lead.part(), lead.factor, cycle);
-    Some(Behind {
+    let walk = |lead: Lead<'a, StandardPlan>| walk(lead.part(), lead.factor, cycle);
+    Some(Sum {
         walks: parts.map(|lead| lead.map(walk)),
     })
 }
@@ -241,7 +262,7 @@ impl<'a> Lead<'a, StandardPlan> {
 /// A jump of a derivative does not fit if `limits` bound the next one; `now` is the sum published for
 /// this instant.
 ///
-/// Limits are kept to 1e-9 of each. Bounded by [`MAX_SWITCHES_BEHIND`] pieces with at most two roots
+/// Limits are kept to 1e-9 of each. Bounded by [`MAX_SWITCHES`] pieces with at most two roots
 /// each.
 pub(crate) fn fits_behind(
     leads: &Leads<'_, StandardPlan>,
@@ -250,30 +271,11 @@ pub(crate) fn fits_behind(
     limits: &Limits,
     cycle: f64,
 ) -> bool {
-    let Some(mut sum) = behind(leads, beside, cycle) else {
-        return false;
-    };
-    let mut last = *now;
-    for _ in 0..MAX_SWITCHES_BEHIND {
-        let state = sum.state();
-        if !is_continuous(&last, &state, limits, cycle) {
-            return false;
-        }
-        let length = sum.left();
-        if !length.is_finite() {
-            return state.velocity.abs() <= limits.velocity * (1.0 + ROUNDING);
-        }
-        if length > GRAIN * cycle && !piece_fits(&state, length, limits, None) {
-            return false;
-        }
-        last = moved(&state, length);
-        sum.go(length);
-    }
-    false
+    behind(leads, beside, cycle).is_some_and(|sum| keeps(sum, Some(*now), limits, None, cycle))
 }
 
 /// The lowest and the highest velocity of the rest of the masters' plans together with the slave's additional
-/// motion. `None` on a curve through points. Bounded by [`MAX_SWITCHES_BEHIND`] pieces with at most two roots each.
+/// motion. `None` on a curve through points. Bounded by [`MAX_SWITCHES`] pieces with at most two roots each.
 pub(crate) fn velocities_behind(
     leads: &Leads<'_, StandardPlan>,
     beside: Part<'_>,
@@ -281,7 +283,7 @@ pub(crate) fn velocities_behind(
 ) -> Option<(f64, f64)> {
     let mut sum = behind(leads, Some(beside), cycle)?;
     let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
-    for _ in 0..MAX_SWITCHES_BEHIND {
+    for _ in 0..MAX_SWITCHES {
         let state = sum.state();
         let mut see = |velocity: f64| {
             lowest = lowest.min(velocity);
@@ -293,9 +295,7 @@ pub(crate) fn velocities_behind(
             return Some((lowest, highest));
         }
         if length > GRAIN * cycle {
-            let piece = core::iter::once((length, state.snap));
-            let path = Path::<1>::follow(Order::Four, &state, f64::INFINITY, piece);
-            path.extremes(f64::INFINITY, |state, _| see(state.velocity));
+            piece(&state, length).extremes(f64::INFINITY, |state, _| see(state.velocity));
         }
         sum.go(length);
     }
@@ -314,14 +314,14 @@ fn is_continuous(last: &Setpoint, next: &Setpoint, limits: &Limits, cycle: f64) 
 /// The next stretch in which the masters' plans together have a constant velocity: the scans until it
 /// begins and until it ends, the largest number if it has no end. `None` on a curve through points.
 ///
-/// Bounded by [`MAX_SWITCHES_BEHIND`] pieces.
+/// Bounded by [`MAX_SWITCHES`] pieces.
 pub(crate) fn stretch(leads: &Leads<'_, StandardPlan>, cycle: f64) -> Option<(u64, u64)> {
     let mut time = 0.0;
     let mut sum = behind(leads, None, cycle)?;
     // From its last scan on a plan does not change.
     let rest = |lead: &Lead<'_, StandardPlan>| u64::from(lead.plan.scans()).saturating_sub(lead.elapsed);
     let all = leads.iter().flatten().map(rest).max().unwrap_or(0);
-    for _ in 0..MAX_SWITCHES_BEHIND {
+    for _ in 0..MAX_SWITCHES {
         let even = |walk: &Walk<_>| {
             let state = &walk.state;
             state.acceleration == 0.0 && state.jerk == 0.0 && state.snap == 0.0
@@ -391,12 +391,7 @@ fn piece_fits(state: &Setpoint, length: f64, limits: &Limits, room: Option<&mut 
     if state.snap.abs() > limits.snap * (1.0 + ROUNDING) {
         return false;
     }
-    let path = Path::<1>::follow(
-        Order::Four,
-        state,
-        f64::INFINITY,
-        core::iter::once((length, state.snap)),
-    );
+    let path = piece(state, length);
     if excess::excess(&path, 0.0, None, &(*limits).into()).is_some() {
         return false;
     }
@@ -450,7 +445,7 @@ pub(crate) fn peaks(part: Part<'_>, time: f64, cycle: f64) -> Option<Setpoint> {
     if is_curve(part) {
         return None;
     }
-    let mut walk = Walk::new(part.0.segments(), part, cycle);
+    let mut walk = walk(part, 1.0, cycle);
     let mut peak = Setpoint::default();
     let mut see = |state: &Setpoint| {
         peak.velocity = peak.velocity.max(state.velocity.abs());
@@ -465,13 +460,7 @@ pub(crate) fn peaks(part: Part<'_>, time: f64, cycle: f64) -> Option<Setpoint> {
             break;
         }
         if length > GRAIN * cycle {
-            let path = Path::<1>::follow(
-                Order::Four,
-                &walk.state,
-                f64::INFINITY,
-                core::iter::once((length, walk.state.snap)),
-            );
-            path.extremes(f64::INFINITY, |state, _| see(state));
+            piece(&walk.state, length).extremes(f64::INFINITY, |state, _| see(state));
         }
         left -= length;
         if !(left > 0.0) {
@@ -489,7 +478,7 @@ pub(crate) fn next_switch((plan, elapsed): Part<'_>, cycle: f64) -> u64 {
     if is_curve((plan, elapsed)) {
         return u64::from(plan.scans());
     }
-    let walk = Walk::new(plan.segments(), (plan, elapsed), cycle);
+    let walk = walk((plan, elapsed), 1.0, cycle);
     if !walk.left.is_finite() {
         return elapsed;
     }
@@ -532,25 +521,15 @@ pub(crate) fn reach(part: Part<'_>, cycle: f64) -> (f64, f64) {
 
 /// The distances (u) of the rest of a plan one after the other, with their signs: none of them turns.
 fn each_way(part: Part<'_>, cycle: f64, mut go: impl FnMut(f64)) {
-    let mut walk = Walk::new(part.0.segments(), part, cycle);
+    let mut walk = walk(part, 1.0, cycle);
     for _ in 0..MAX_SWITCHES {
         if !walk.left.is_finite() {
             break;
         }
         if walk.left > GRAIN * cycle {
-            // From 0, where positions have the finest resolution.
-            let start = Setpoint {
-                position: 0.0,
-                ..walk.state
-            };
-            let path = Path::<1>::follow(
-                Order::Four,
-                &start,
-                f64::INFINITY,
-                core::iter::once((walk.left, start.snap)),
-            );
+            let start = walk.state.at_origin();
             let mut from = 0.0;
-            path.extremes(0.0, |state, direction| {
+            piece(&start, walk.left).extremes(0.0, |state, direction| {
                 if direction.is_none() {
                     go(state.position - from);
                     from = state.position;
