@@ -1,5 +1,6 @@
 //! The bounds that a plan keeps.
 
+use crate::kernel::Sides;
 use crate::math::sqrt;
 use crate::{Field, PlanError, Setpoint};
 
@@ -72,18 +73,22 @@ impl DirectedLimits {
         }
     }
 
+    /// The velocities of both directions (u/s).
+    pub(crate) const fn sides(&self) -> Sides {
+        Sides {
+            minus: self.negative,
+            plus: self.positive,
+        }
+    }
+
     /// The lower one of both velocities (u/s).
     pub(crate) const fn lower_velocity(&self) -> f64 {
-        if self.positive <= self.negative {
-            self.positive
-        } else {
-            self.negative
-        }
+        self.sides().lower()
     }
 
     /// The bound of a velocity with the sign of `side`.
     pub(crate) const fn velocity(&self, side: f64) -> f64 {
-        if side < 0.0 { self.negative } else { self.positive }
+        self.sides().towards(side)
     }
 
     /// The excess of a velocity over its bound (u/s); negative inside.

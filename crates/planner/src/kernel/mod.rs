@@ -58,6 +58,19 @@ impl Sides {
         }
     }
 
+    /// Both changed alike.
+    pub(crate) fn map(self, change: impl Fn(f64) -> f64) -> Self {
+        Self {
+            minus: change(self.minus),
+            plus: change(self.plus),
+        }
+    }
+
+    /// The one of a value with the sign of `side`.
+    pub(crate) const fn towards(self, side: f64) -> f64 {
+        if side < 0.0 { self.minus } else { self.plus }
+    }
+
     /// The lower one.
     pub(crate) const fn lower(self) -> f64 {
         if self.plus <= self.minus {

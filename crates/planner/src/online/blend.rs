@@ -7,7 +7,7 @@
 use super::search::{Search, follow};
 use super::{OnlinePlan, Rung, check};
 use crate::kernel::{NOISE, ON_LIMIT, Point, Sides, zero};
-use crate::ramp::solve::{Course, Ramps, heading};
+use crate::ramp::solve::Ramps;
 use crate::{Limits, PlanError, Setpoint};
 
 /// A speed on the border of what can be reached is moved inside until a plan accepts it. These are the tried parts
@@ -197,11 +197,7 @@ impl Way<'_> {
 
     /// The start in the kernel's units, at position 0.
     fn inward(&self) -> Setpoint {
-        let origin = Setpoint {
-            position: 0.0,
-            ..*self.start
-        };
-        self.ramps.state_inward(&origin)
+        self.ramps.state_inward(&self.start.at_origin())
     }
 
     /// Converts a speed from the kernel's units (u/s).
@@ -241,9 +237,7 @@ pub fn entry_speed(wanted: f64, brake: f64, distance: f64, exit: f64, limits: &L
             acceleration: -ramps.inward(brake, 2),
             ..Setpoint::default()
         };
-        let heading = heading(&start, goal, ramps.lower_velocity(), ramps.order());
-        let ramp = ramps.ramp(&start, goal, heading, Course::Free);
-        let end = follow(&ramps, &start, &ramp.spans).position;
+        let end = follow(&ramps, &start, &ramps.freely(&start, goal)).position;
         Point {
             at: speed,
             value: end + ramps.inward(speed * cycle, 0) - way,

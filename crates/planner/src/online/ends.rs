@@ -6,15 +6,12 @@
 //! (O16) to (O20) and (O22) to (O26) are in `docs/planner-online.md`. Everything is in the kernel's units, with
 //! positions counted from the start.
 
-use core::cell::Cell;
-
-use super::MAX_PIECES;
-use super::search::{CANDIDATE_SPANS, Candidate, PARTS, Search, follow, steady};
-use crate::kernel::{NOISE, ON_LIMIT, Point, Sides, Spans, zero};
+use super::ladder::excess_along;
+use super::search::{CANDIDATE_SPANS, Candidate, PARTS, Search, Work, follow, steady};
+use crate::kernel::{NOISE, ON_LIMIT, Point, Sides, Spans};
 use crate::math::ceil;
-use crate::ramp::excess;
-use crate::ramp::path::{Path, Way};
-use crate::ramp::solve::{Course, RAMP_SPANS, Ramps, heading};
+use crate::ramp::path::Way;
+use crate::ramp::solve::{RAMP_SPANS, Ramps};
 use crate::{DirectedLimits, Limits, Order, Setpoint};
 
 /// Largest number of spans of a candidate: a push, a cruise, and a last ramp that is a move of one order less.
@@ -52,8 +49,7 @@ pub(super) struct Ends<'a> {
     top: Sides,
     /// The largest error of the positions of start and target.
     resolution: f64,
-    solves: Cell<u32>,
-    steps: Cell<u32>,
+    pub(super) work: Work,
 }
 
 /// The last ramp of a move, from some state.
@@ -63,6 +59,15 @@ struct Last {
     beyond: f64,
     /// The part of that which may be rounding.
     noise: f64,
+}
+
+/// A ramp from the start and one from the end to the same velocity.
+struct Halves {
+    first: Spans<RAMP_SPANS>,
+    /// Time-reversed.
+    last: Spans<RAMP_SPANS>,
+    /// The distance of both together.
+    way: f64,
 }
 
 /// Whether a motion inside `limits` can reach the velocity and acceleration of `end`, without jerk, and continue
@@ -95,12 +100,8 @@ fn goes_on(state: &Setpoint, limits: &DirectedLimits) -> bool {
     let (low, high) = (-ramps.velocity(-1.0), ramps.velocity(1.0));
     let arrested = ramps.arrested(&start).max(low).min(high);
     [arrested, 0.0, low, high].into_iter().any(|goal| {
-        let heading = heading(&start, goal, ramps.lower_velocity(), ramps.order());
-        let ramp = ramps.ramp(&start, goal, heading, Course::Free);
-        let spans = ramps.scale().outward(&ramp.spans);
-        let path =
-            Path::<MAX_PIECES>::follow(ramps.order(), state, limits.limits.lower_acceleration(), spans);
-        excess::excess(&path, 0.0, None, limits).is_none()
+        let ramp = ramps.freely(&start, goal);
+        excess_along(ramps.order(), state, ramps.scale().outward(&ramp), limits).is_none()
     })
 }
 
@@ -158,19 +159,8 @@ impl<'a> Ends<'a> {
             acceleration,
             top,
             resolution,
-            solves: Cell::new(0),
-            steps: Cell::new(0),
+            work: Work::nothing(),
         }
-    }
-
-    /// Number of ramps solved so far.
-    pub(super) const fn solves(&self) -> u32 {
-        self.solves.get()
-    }
-
-    /// Largest number of steps of one root.
-    pub(super) const fn steps(&self) -> u32 {
-        self.steps.get()
     }
 
     /// The end state as the start of the time-reversed motion (O16).
@@ -188,21 +178,19 @@ impl<'a> Ends<'a> {
         spans.backwards(if is_odd { 1.0 } else { -1.0 })
     }
 
-    fn counted(&self, search: &Search<'_>) {
-        self.solves.set(self.solves.get().saturating_add(search.solves()));
-        self.steps.set(self.steps.get().max(search.steps()));
-    }
-
-    fn zero(&self, low: Point, high: Point, function: impl Fn(f64) -> Point) -> Point {
-        let (point, steps) = zero(low, high, function);
-        self.steps.set(self.steps.get().max(steps));
-        point
-    }
-
     fn ramp(&self, ramps: &Ramps, start: &Setpoint, velocity: f64) -> Spans<RAMP_SPANS> {
-        self.solves.set(self.solves.get().saturating_add(1));
-        let heading = heading(start, velocity, ramps.lower_velocity(), ramps.order());
-        ramps.ramp(start, velocity, heading, Course::Free).spans
+        self.work.add(1, 0);
+        ramps.freely(start, velocity)
+    }
+
+    /// The ramp from `start` to `velocity`, the time-reversed one from the end to it, and how far both lead together.
+    fn halves(&self, ramps: &Ramps, start: &Setpoint, velocity: f64) -> Halves {
+        let (first, last) = (
+            self.ramp(ramps, start, velocity),
+            self.ramp(&self.back, &self.end(), velocity),
+        );
+        let way = follow(ramps, start, &first).position + follow(&self.back, &self.end(), &last).position;
+        Halves { first, last, way }
     }
 
     /// The whole move from a `start` of constant velocity. Seen from its end, it is a move that ends with that
@@ -217,7 +205,7 @@ impl<'a> Ends<'a> {
         );
         let mut spans = Candidate::new();
         search.push_then_stop(&mut spans, &self.end());
-        self.counted(&search);
+        self.work.include(&search.work);
         self.turned(&spans)
     }
 
@@ -240,7 +228,7 @@ impl<'a> Ends<'a> {
                 ..Setpoint::default()
             },
         );
-        self.counted(&search);
+        self.work.include(&search.work);
         let end = follow(self.ramps, start, &spans);
         let added_up = start.position.abs() + self.target.abs() + spans.duration() * start.velocity.abs();
         Last {
@@ -253,7 +241,7 @@ impl<'a> Ends<'a> {
     /// Calls `see` with the moves that push towards the bound of one `side`, then follow the last ramp to the
     /// target (O19).
     pub(super) fn pushes(&self, start: &Setpoint, side: f64, mut see: impl FnMut(&Wide)) {
-        let top = side * if side < 0.0 { self.top.minus } else { self.top.plus };
+        let top = side * self.top.towards(side);
         let mut spans = Wide::new();
         let ahead = |state: &Setpoint, at: f64| {
             let last = self.last(state);
@@ -283,7 +271,9 @@ impl<'a> Ends<'a> {
             let to = ahead(&after(span.duration), span.duration);
             if (from.value < 0.0) != (to.value < 0.0) && crossings < CROSSINGS {
                 crossings += 1;
-                let switch = self.zero(Point { at: 0.0, ..from }, to, |time| ahead(&after(time), time));
+                let switch = self
+                    .work
+                    .zero(Point { at: 0.0, ..from }, to, |time| ahead(&after(time), time));
                 let mut whole = spans;
                 whole.push(switch.at, span.input);
                 whole.extend(&self.last(&after(switch.at)).spans);
@@ -308,16 +298,8 @@ impl<'a> Ends<'a> {
     ///
     /// The distance of both ramps together changes with the velocity without a jump, so there is always a solution.
     pub(super) fn two_phase(&self, start: &Setpoint) -> Wide {
-        let end = self.end();
-        let both = |velocity: f64| {
-            (
-                self.ramp(self.ramps, start, velocity),
-                self.ramp(&self.back, &end, velocity),
-            )
-        };
         let beyond = |velocity: f64| {
-            let (first, last) = both(velocity);
-            let way = follow(self.ramps, start, &first).position + follow(&self.back, &end, &last).position;
+            let Halves { first, last, way } = self.halves(self.ramps, start, velocity);
             let duration = first.duration() + last.duration();
             let added_up = self.target.abs() + duration * velocity.abs();
             Point {
@@ -333,10 +315,10 @@ impl<'a> Ends<'a> {
         } else if low.value >= 0.0 {
             low
         } else {
-            self.zero(low, high, beyond)
+            self.work.zero(low, high, beyond)
         };
         let is_bound = peak.at == high.at || peak.at == low.at;
-        let (first, last) = both(peak.at);
+        let Halves { first, last, .. } = self.halves(self.ramps, start, peak.at);
         let mut spans = Wide::new();
         spans.extend(&first);
         if is_bound {
@@ -361,25 +343,15 @@ impl<'a> Ends<'a> {
         {
             return Some(self.stretched(start, scan));
         }
-        let end = self.end();
-        let both = |velocity: f64| {
-            (
-                self.ramp(self.ramps, start, velocity),
-                self.ramp(&self.back, &end, velocity),
-            )
-        };
-        let way = |first: &Spans<RAMP_SPANS>, last: &Spans<RAMP_SPANS>| {
-            follow(self.ramps, start, first).position + follow(&self.back, &end, last).position
-        };
         // The distance by which it ends beyond the target, with a cruise that makes it `whole`, or without one.
         let beyond = |speed: f64, whole: Option<f64>| {
-            let (first, last) = both(side * speed);
+            let Halves { first, last, way } = self.halves(self.ramps, start, side * speed);
             let moving = first.duration() + last.duration();
             let cruise = whole.map_or(0.0, |whole| speed * (whole - moving));
             let exactly = 0.25 * NOISE * (self.target.abs() + whole.unwrap_or(moving) * speed);
             Point {
                 at: speed,
-                value: side * (way(&first, &last) - self.target) + cruise,
+                value: side * (way - self.target) + cruise,
                 noise: match scan {
                     // For the fastest move only the whole scans are needed.
                     Some(scan) if whole.is_none() => ROUGHLY * scan * speed,
@@ -388,7 +360,7 @@ impl<'a> Ends<'a> {
                 slope: f64::NAN,
             }
         };
-        let slowest = self.ramps.arrested(&end).abs();
+        let slowest = self.ramps.arrested(&self.end()).abs();
         // A faster start slows down sooner in one go.
         let coming = side * self.ramps.arrested(start);
         let low = beyond(slowest, None);
@@ -405,10 +377,10 @@ impl<'a> Ends<'a> {
         let fastest = if top.value <= 0.0 {
             top
         } else {
-            self.zero(low, top, |speed| beyond(speed, None))
+            self.work.zero(low, top, |speed| beyond(speed, None))
         };
         let laid = |speed: f64, whole: Option<f64>| {
-            let (first, last) = both(side * speed);
+            let Halves { first, last, .. } = self.halves(self.ramps, start, side * speed);
             let moving = first.duration() + last.duration();
             let left = (-fastest.value).max(0.0);
             let cruise = whole.map_or(left / speed, |whole| whole - moving);
@@ -427,7 +399,7 @@ impl<'a> Ends<'a> {
         } else if high.value <= 0.0 {
             laid(high.at, Some(whole))
         } else {
-            let speed = self.zero(low, high, |speed| beyond(speed, Some(whole)));
+            let speed = self.work.zero(low, high, |speed| beyond(speed, Some(whole)));
             laid(speed.at, Some(whole))
         };
         let held = if comes_faster { coming } else { fastest.at };
@@ -465,7 +437,7 @@ impl<'a> Ends<'a> {
         if low.at >= high.at || low.value > 0.0 || high.value < 0.0 {
             return None;
         }
-        let speed = self.zero(low, high, beyond).at;
+        let speed = self.work.zero(low, high, beyond).at;
         let mut spans = Wide::new();
         spans.extend(&self.turned(&ramp(speed).1));
         Some((spans, speed))
@@ -527,7 +499,7 @@ impl<'a> Ends<'a> {
         if low.value >= 0.0 || high.value <= 0.0 {
             return None;
         }
-        let last = self.zero(low, high, beyond).at;
+        let last = self.work.zero(low, high, beyond).at;
         let (held, along, moment) = phases(last);
         let middle = moment / along;
         let (first, third) = (time - middle - 0.5 * along, middle - 0.5 * along - held);
@@ -570,7 +542,7 @@ impl<'a> Ends<'a> {
         if most.value > 0.0 || least.value < 0.0 {
             return None;
         }
-        let lack = self.zero(most, least, late).at;
+        let lack = self.work.zero(most, least, late).at;
         let (last, cruise) = less(lack);
         let mut spans = Wide::new();
         spans.extend(&first);
@@ -616,14 +588,12 @@ impl<'a> Ends<'a> {
         let ahead = self.target - rest.position - follow(&self.back, &end, &direct).position;
         let side = if ahead < 0.0 { -1.0 } else { 1.0 };
         let even = self.ramps.even();
-        let mut held = if side < 0.0 { self.top.minus } else { self.top.plus };
+        let mut held = self.top.towards(side);
         let mut spans = Wide::new();
         spans.extend(&brake);
         for _ in 0..HALVINGS {
-            let first = self.ramp(&even, &rest, side * held);
-            let last = self.ramp(&self.back, &end, side * held);
-            let reached = follow(&even, &rest, &first).position + follow(&self.back, &end, &last).position;
-            let left = side * (self.target - reached);
+            let Halves { first, last, way } = self.halves(&even, &rest, side * held);
+            let left = side * (self.target - way);
             if left >= 0.0 {
                 spans.extend(&first);
                 spans.push(left / held, 0.0);

@@ -1,7 +1,7 @@
 //! The ladder: each candidate is verified against the true limits before it is taken.
 
 use super::ends::{Ends, Wide};
-use super::search::{Candidate, Search};
+use super::search::{Candidate, Search, Work};
 use super::{MAX_PIECES, OnlinePlan, grid_from};
 use crate::grid::GridPlan;
 use crate::kernel::{NOISE, ON_LIMIT, Sides, Spans};
@@ -100,6 +100,11 @@ impl Found {
             excess: None,
         }
     }
+
+    /// Takes over the work of its search.
+    pub(super) const fn count(&mut self, work: &Work) {
+        (self.solves, self.steps) = (work.solves(), work.steps());
+    }
 }
 
 /// A problem, its search, and the data for verifying a candidate.
@@ -167,8 +172,7 @@ impl OnlinePlan {
                 }
             };
             if is_plan {
-                found.solves = climb.search.solves();
-                found.steps = climb.search.steps();
+                found.count(&climb.search.work);
                 return Ok(());
             }
             found.path = Path::new(ramps.order());
@@ -200,7 +204,7 @@ impl OnlinePlan {
             ramps,
             ramps.inward(climb.distance, 0),
             (ramps.inward(end_velocity, 1), ramps.inward(end_acceleration, 2)),
-            sides_inward(ramps, top),
+            top.map(|top| ramps.inward(top, 1)),
             NOISE * ramps.inward(start.position.abs() + target.abs(), 0),
         );
         let from = climb.inward;
@@ -240,8 +244,7 @@ impl OnlinePlan {
             return Err(PlanError::too_far(target));
         };
         *found = best;
-        found.solves = ends.solves();
-        found.steps = ends.steps();
+        found.count(&ends.work);
         Ok(())
     }
 
@@ -301,12 +304,15 @@ impl OnlinePlan {
     }
 }
 
-/// Velocity bounds in the kernel's units.
-fn sides_inward(ramps: &Ramps, top: Sides) -> Sides {
-    Sides {
-        minus: ramps.inward(top.minus, 1),
-        plus: ramps.inward(top.plus, 1),
-    }
+/// The excess of `spans` (seconds, highest derivative) from `start` over `limits`.
+pub(super) fn excess_along(
+    order: Order,
+    start: &Setpoint,
+    spans: impl Iterator<Item = (f64, f64)>,
+    limits: &DirectedLimits,
+) -> Option<Excess> {
+    let path = Path::<MAX_PIECES>::follow(order, start, limits.limits.lower_acceleration(), spans);
+    excess::excess(&path, 0.0, None, limits)
 }
 
 impl<'a> Climb<'a> {
@@ -319,10 +325,7 @@ impl<'a> Climb<'a> {
         limits: &'a DirectedLimits,
         cycle: f64,
     ) -> Self {
-        let origin = Setpoint {
-            position: 0.0,
-            ..start
-        };
+        let origin = start.at_origin();
         let distance = target - start.position;
         let resolution = NOISE * ramps.inward(start.position.abs() + target.abs(), 0);
         Climb {
@@ -330,7 +333,7 @@ impl<'a> Climb<'a> {
                 ramps,
                 ramps.inward(distance, 0),
                 ramps.inward(end_velocity, 1),
-                sides_inward(ramps, top),
+                top.map(|top| ramps.inward(top, 1)),
                 resolution,
             ),
             ramps,
@@ -440,13 +443,7 @@ impl<'a> Climb<'a> {
     /// The excess of the first `count` of `spans`.
     fn excess_of(&self, spans: &Spans<RAMP_SPANS>, count: usize) -> Excess {
         let spans = self.ramps.scale().outward(spans).take(count);
-        let path = Path::<MAX_PIECES>::follow(
-            self.ramps.order(),
-            &self.start,
-            self.limits.limits.lower_acceleration(),
-            spans,
-        );
-        excess::excess(&path, 0.0, None, self.limits).unwrap_or_default()
+        excess_along(self.ramps.order(), &self.start, spans, self.limits).unwrap_or_default()
     }
 
     /// To rest, and from the next scan on a grid plan: a method that can't fail for lack of accuracy.

@@ -152,11 +152,27 @@ impl OnlinePlan {
         before: &DirectedLimits,
         cycle: f64,
     ) -> Result<Self, PlanError> {
-        let top = Sides {
-            minus: limits.negative,
-            plus: limits.positive,
-        };
+        let top = limits.sides();
         Self::cruising(first, start, target, end_velocity, top, limits, before, cycle)
+    }
+
+    /// The frame of a plan that ends with this velocity and acceleration, without a path.
+    const fn nothing(
+        start: &Setpoint,
+        target: f64,
+        (end_velocity, end_acceleration): (f64, f64),
+        order: Order,
+        cycle: f64,
+    ) -> Self {
+        Self {
+            start: *start,
+            target,
+            end_velocity,
+            end_acceleration,
+            cycle,
+            scans: 0,
+            found: Found::nothing(order),
+        }
     }
 
     /// The same as [`OnlinePlan::by_direction_with`], but until its last ramp the plan goes for the velocity `top`
@@ -182,15 +198,8 @@ impl OnlinePlan {
         } else {
             acting(&given.or_larger(before))
         };
-        let mut plan = Self {
-            start: *start,
-            target,
-            end_velocity,
-            end_acceleration: 0.0,
-            cycle,
-            scans: 0,
-            found: Found::nothing(limits.limits.order()),
-        };
+        let end = (end_velocity, 0.0);
+        let mut plan = Self::nothing(start, target, end, limits.limits.order(), cycle);
         let too_long = PlanError::too_far(target);
         if limits.outside(end_velocity) > 0.0 {
             return Err(too_long);
@@ -279,20 +288,9 @@ impl OnlinePlan {
                 },
             });
         }
-        let mut plan = Self {
-            start: *start,
-            target,
-            end_velocity: velocity,
-            end_acceleration: acceleration,
-            cycle,
-            scans: 0,
-            found: Found::nothing(limits.limits.order()),
-        };
-        let top = Sides {
-            minus: limits.negative,
-            plus: limits.positive,
-        };
-        plan.climb_to_end(top, limits, &wider)?;
+        let end = (velocity, acceleration);
+        let mut plan = Self::nothing(start, target, end, limits.limits.order(), cycle);
+        plan.climb_to_end(limits.sides(), limits, &wider)?;
         plan.found.excess = plan.excess_beyond(given);
         plan.scans = ramp::scans(plan.found.path.duration(), cycle).ok_or(PlanError::too_far(target))?;
         Ok(plan)

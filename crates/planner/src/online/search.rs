@@ -8,7 +8,7 @@ use crate::Setpoint;
 use crate::kernel::{MAX_STEPS, NOISE, ON_LIMIT, Point, Sides, Span, Spans, THIRD_SPANS, zero};
 use crate::math::min;
 use crate::ramp::path::Way;
-use crate::ramp::solve::{Course, RAMP_SPANS, Ramp, Ramps, heading};
+use crate::ramp::solve::{RAMP_SPANS, Ramp, Ramps};
 
 /// Largest number of spans of a candidate: a ramp before it, a push, a cruise and a stop.
 pub(super) const CANDIDATE_SPANS: usize = 3 * RAMP_SPANS + 1;
@@ -39,10 +39,50 @@ pub(super) struct Search<'a> {
     top: Sides,
     /// The largest error of the positions of start and target.
     resolution: f64,
-    /// Number of ramps solved so far.
+    pub(super) work: Work,
+}
+
+/// The work of a search so far.
+pub(super) struct Work {
     solves: Cell<u32>,
-    /// Largest number of steps of one root.
     steps: Cell<u32>,
+}
+
+impl Work {
+    pub(super) const fn nothing() -> Self {
+        Self {
+            solves: Cell::new(0),
+            steps: Cell::new(0),
+        }
+    }
+
+    /// Number of ramps solved.
+    pub(super) const fn solves(&self) -> u32 {
+        self.solves.get()
+    }
+
+    /// Largest number of steps of one root.
+    pub(super) const fn steps(&self) -> u32 {
+        self.steps.get()
+    }
+
+    /// Counts more ramps, and the steps of another root.
+    pub(super) fn add(&self, solves: u32, steps: u32) {
+        self.solves.set(self.solves.get().saturating_add(solves));
+        self.steps.set(self.steps.get().max(steps));
+    }
+
+    /// Counts that of a part of the search.
+    pub(super) fn include(&self, part: &Self) {
+        self.add(part.solves(), part.steps());
+    }
+
+    /// The same as [`zero`], with its steps counted.
+    pub(super) fn zero(&self, low: Point, high: Point, function: impl FnMut(f64) -> Point) -> Point {
+        let (point, steps) = zero(low, high, function);
+        self.add(0, steps);
+        point
+    }
 }
 
 /// The last ramp of a move, from some state.
@@ -109,28 +149,13 @@ impl<'a> Search<'a> {
             end_velocity,
             top,
             resolution,
-            solves: Cell::new(0),
-            steps: Cell::new(0),
+            work: Work::nothing(),
         }
     }
 
     /// The signed velocity that a push towards `side` goes for.
     fn top(&self, side: f64) -> f64 {
-        if side < 0.0 {
-            side * self.top.minus
-        } else {
-            side * self.top.plus
-        }
-    }
-
-    /// Number of ramps solved so far.
-    pub(super) const fn solves(&self) -> u32 {
-        self.solves.get()
-    }
-
-    /// Largest number of steps of one root.
-    pub(super) const fn steps(&self) -> u32 {
-        self.steps.get()
+        side * self.top.towards(side)
     }
 
     /// The whole move, if the kernel can solve it (O3).
@@ -139,8 +164,7 @@ impl<'a> Search<'a> {
             return None;
         }
         let profile = self.ramps.position_profile(start, self.target, self.top)?;
-        self.solves.set(self.solves.get() + 1);
-        self.steps.set(self.steps.get().max(profile.steps));
+        self.work.add(1, profile.steps);
         Some(profile.spans)
     }
 
@@ -198,7 +222,7 @@ impl<'a> Search<'a> {
                     };
                     let to = ahead(span.duration);
                     if to.value >= 0.0 {
-                        let switch = self.zero(from, to, &mut ahead);
+                        let switch = self.work.zero(from, to, &mut ahead);
                         ahead(switch.at);
                         spans.push(switch.at, span.input);
                         spans.extend(&stop.ramp.spans);
@@ -279,7 +303,7 @@ impl<'a> Search<'a> {
         let highest = at(top);
         let lowest = stop.ahead(self.end_velocity, side);
         let peak = if highest.value > 0.0 {
-            self.zero(lowest, highest, at)
+            self.work.zero(lowest, highest, at)
         } else {
             highest
         };
@@ -342,8 +366,7 @@ impl<'a> Search<'a> {
         let mut spans = Spans::new();
         spans.extend(&brake);
         spans.extend(&search.run_up(&rest));
-        self.solves.set(self.solves.get() + search.solves());
-        self.steps.set(self.steps.get().max(search.steps()));
+        self.work.include(&search.work);
         spans
     }
 
@@ -389,9 +412,8 @@ impl<'a> Search<'a> {
     }
 
     fn lay(&self, ramp: &mut Ramp, start: &Setpoint, velocity: f64) {
-        self.solves.set(self.solves.get() + 1);
-        let heading = heading(start, velocity, self.ramps.lower_velocity(), self.ramps.order());
-        self.ramps.lay(ramp, start, velocity, heading, Course::Free);
+        self.work.add(1, 0);
+        self.ramps.lay_freely(ramp, start, velocity);
     }
 
     /// The speed between `near` and `far` at which the ramp alone ends on the target (O11). From `near` it ends
@@ -400,7 +422,7 @@ impl<'a> Search<'a> {
     pub(super) fn speed_on_target(&self, start: &Setpoint, side: f64, near: f64, far: f64) -> Option<f64> {
         let at = |speed: f64| self.ramp_to(start, side * speed).ahead(speed, side);
         let (low, high) = (at(near), at(far));
-        (low.value <= 0.0 && high.value > 0.0).then(|| self.zero(low, high, at).at)
+        (low.value <= 0.0 && high.value > 0.0).then(|| self.work.zero(low, high, at).at)
     }
 
     /// Whether the ramp alone to `speed` towards the side `side` ends on the target or short of it.
@@ -435,12 +457,6 @@ impl<'a> Search<'a> {
         stop.start = *start;
         stop.beyond = end.position - self.target;
         stop.noise = 0.25 * NOISE * added_up;
-    }
-
-    fn zero(&self, low: Point, high: Point, function: impl FnMut(f64) -> Point) -> Point {
-        let (point, steps) = zero(low, high, function);
-        self.steps.set(self.steps.get().max(steps));
-        point
     }
 }
 

@@ -5,7 +5,6 @@
 //! acceleration. Equations (O22) to (O26) are in `docs/planner-online.md`.
 
 use super::ends::Ends;
-use super::ladder::Found;
 use super::{OnlinePlan, Passage, check};
 use crate::kernel::{NOISE, Sides};
 use crate::ramp::{self, solve::Ramps};
@@ -82,21 +81,9 @@ impl OnlinePlan {
             Sides::both(ramps.velocity(side)),
             NOISE * ramps.inward(start.position.abs() + target.abs(), 0),
         );
-        let mut plan = Self {
-            start: *start,
-            target,
-            end_velocity: 0.0,
-            end_acceleration: 0.0,
-            cycle,
-            scans: 0,
-            found: Found::nothing(ramps.order()),
-        };
-        let origin = Setpoint {
-            position: 0.0,
-            ..*start
-        };
+        let mut plan = Self::nothing(start, target, (0.0, 0.0), ramps.order(), cycle);
         let scan = ramps.scale().moments(cycle);
-        let from = ramps.state_inward(&origin);
+        let from = ramps.state_inward(&start.at_origin());
         let is_steady = from.acceleration == 0.0 && from.jerk == 0.0;
         let found = if pushes {
             let found = is_steady.then(|| ends.speeding(&from, side)).flatten();
@@ -111,7 +98,7 @@ impl OnlinePlan {
         if !plan.climb_to_brake(&ramps, &spans, end, limits) {
             return Ok(None);
         }
-        (plan.found.solves, plan.found.steps) = (ends.solves(), ends.steps());
+        plan.found.count(&ends.work);
         let scans = ramp::scans(plan.found.path.duration(), cycle);
         Ok(scans.map(|scans| Self { scans, ..plan }))
     }

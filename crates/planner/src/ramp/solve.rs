@@ -100,10 +100,7 @@ impl Ramps {
         Self {
             order,
             scale,
-            velocity: Sides {
-                minus: inward(directed.negative, 1),
-                plus: inward(directed.positive, 1),
-            },
+            velocity: directed.sides().map(|side| inward(side, 1)),
             acceleration: inward(limits.acceleration, 2),
             deceleration: inward(limits.deceleration, 2),
             jerk: inward(limits.jerk, 3),
@@ -192,11 +189,7 @@ impl Ramps {
 
     /// The bound of a velocity with the sign of `side`, in the kernel's units.
     pub(crate) const fn velocity(&self, side: f64) -> f64 {
-        if side < 0.0 {
-            self.velocity.minus
-        } else {
-            self.velocity.plus
-        }
+        self.velocity.towards(side)
     }
 
     /// The lower one of both velocity bounds in the kernel's units.
@@ -276,6 +269,19 @@ impl Ramps {
         }
     }
 
+    /// The same as a part of a move: the ramp may turn.
+    pub(crate) fn lay_freely(&self, ramp: &mut Ramp, start: &Setpoint, goal: f64) {
+        let heading = heading(start, goal, self.lower_velocity(), self.order);
+        self.lay(ramp, start, goal, heading, Course::Free);
+    }
+
+    /// The spans of [`Ramps::lay_freely`].
+    pub(crate) fn freely(&self, start: &Setpoint, goal: f64) -> Spans<RAMP_SPANS> {
+        let mut ramp = Ramp::nothing();
+        self.lay_freely(&mut ramp, start, goal);
+        ramp.spans
+    }
+
     /// The whole move from `start` to rest at `target` with the velocity `top`, if the kernel can solve it: at order 3
     /// with the same bound on acceleration and deceleration, from a viable state that is no faster (O3).
     pub(crate) fn position_profile(&self, start: &Setpoint, target: f64, top: Sides) -> Option<Profile> {
@@ -289,7 +295,7 @@ impl Ramps {
             v: top,
             a: Sides::both(self.acceleration),
         };
-        let coming = |v: f64| v.abs() <= (if v < 0.0 { top.minus } else { top.plus }) * (1.0 + ON_LIMIT);
+        let coming = |v: f64| v.abs() <= top.towards(v) * (1.0 + ON_LIMIT);
         let fits = self.order == Order::Three
             && self.acceleration == self.deceleration
             && a.abs() <= self.acceleration * (1.0 + ON_LIMIT)
