@@ -225,21 +225,7 @@ impl Gear {
 
     /// `position` as a place of the slave, this many whole turns further than the anchor.
     fn placed(&self, anchor: &Anchor, turns: i64, position: Double) -> Place {
-        match self.slave_turn {
-            None => Place {
-                turns: 0,
-                position: position.0 + 0.0,
-                ..Place::default()
-            },
-            Some(length) => {
-                let (further, position) = in_first_turn(position, length);
-                Place {
-                    turns: anchor.slave.turns.wrapping_add(turns).wrapping_add(further),
-                    position,
-                    ..Place::default()
-                }
-            }
-        }
+        placed(self.slave_turn, anchor.slave.turns.wrapping_add(turns), position)
     }
 
     /// The rounded value of [`Gear::geared`], if a few operations prove it: either their error interval
@@ -340,8 +326,25 @@ pub(crate) fn divided(value: Double, by: f64) -> Double {
     two_sum(quotient, left.0 / by)
 }
 
+/// The place of a slave at `position`: after whole turns of its own on top of `turns`, if it has any.
+#[inline]
+pub(crate) fn placed(turn: Option<f64>, turns: i64, position: Double) -> Place {
+    let (turns, position) = match turn {
+        None => (0, position.0 + 0.0),
+        Some(length) => {
+            let (further, position) = in_first_turn(position, length);
+            (turns.wrapping_add(further), position)
+        }
+    };
+    Place {
+        turns,
+        position,
+        ..Place::default()
+    }
+}
+
 /// Whole turns, and the rest in [0, `length`).
-pub(crate) fn in_first_turn(position: Double, length: f64) -> (i64, f64) {
+fn in_first_turn(position: Double, length: f64) -> (i64, f64) {
     if position.0 > 0.0 && position.0 < length {
         return (0, position.0);
     }
@@ -632,26 +635,6 @@ mod tests {
             if whole % 7 == 0 {
                 assert_eq!(slave.position, 0.2, "{whole}");
             }
-        }
-    }
-
-    /// Covers: G31
-    #[test]
-    fn ten_million_scans_at_three_sevenths_are_exact() {
-        // 1.8 in a scan, 200 scans a turn; the reference uses integers, in tenths.
-        let gear = Gear::new(3, 7, Some(360.0), Some(360.0)).unwrap();
-        let anchor = Anchor::default();
-        for scan in (0..10_000_000_u64).step_by(997) {
-            let master = place((scan / 200) as i64, (scan % 200) as f64 * 18.0 / 10.0);
-            let slave = gear.slave(&anchor, master);
-            // 3 * 18 * scan / 70 in units, taken modulo 360 in seventieths.
-            let seventieths = (u128::from(scan) * 54) % (360 * 70);
-            let expected = seventieths as f64 / 70.0;
-            // The master's own position is rounded, which is geared to less than an ulp of the slave's.
-            assert!(
-                (slave.position - expected).abs() <= 6e-14,
-                "{scan}: {slave:?} {expected}"
-            );
         }
     }
 

@@ -201,6 +201,28 @@ impl Cam<'_> {
     }
 }
 
+/// The chain rule: the motion behind `master` on a curve with these derivatives; its position is 0.
+#[inline]
+pub(super) fn behind([first, second, third, fourth]: [f64; 4], master: &Setpoint) -> Setpoint {
+    let Setpoint {
+        velocity: v,
+        acceleration: a,
+        jerk: j,
+        snap: s,
+        ..
+    } = *master;
+    Setpoint {
+        position: 0.0,
+        velocity: first * v,
+        acceleration: second * v * v + first * a,
+        jerk: third * v * v * v + 3.0 * second * v * a + first * j,
+        snap: fourth * v * v * v * v
+            + 6.0 * third * v * v * a
+            + second * (3.0 * a * a + 4.0 * v * j)
+            + first * s,
+    }
+}
+
 impl CamBounds {
     /// The larger one of each pair.
     #[must_use]
@@ -252,28 +274,8 @@ impl CamBounds {
     /// The largest motion of the slave if the derivatives of its master are at most those of `master`
     /// (its position is not used).
     pub fn most(&self, master: &Setpoint) -> Setpoint {
-        let [v, a, j, s] = [
-            master.velocity.abs(),
-            master.acceleration.abs(),
-            master.jerk.abs(),
-            master.snap.abs(),
-        ];
-        let Self {
-            first,
-            second,
-            third,
-            fourth,
-        } = *self;
-        Setpoint {
-            position: 0.0,
-            velocity: first * v,
-            acceleration: second * v * v + first * a,
-            jerk: third * v * v * v + 3.0 * second * v * a + first * j,
-            snap: fourth * v * v * v * v
-                + 6.0 * third * v * v * a
-                + second * (3.0 * a * a + 4.0 * v * j)
-                + first * s,
-        }
+        let master = Setpoint::of(master.numbers().map(f64::abs));
+        behind([self.first, self.second, self.third, self.fourth], &master)
     }
 
     /// Limits of the slave's own virtual master, behind which the slave keeps `limits` anywhere on the cam. The

@@ -3,8 +3,9 @@
 //! Periods are counted in integers from the master's position alone, so no error accumulates: a master that returns
 //! to a position returns the slave to the same bits.
 
+use super::bounds::behind;
 use super::{Cam, CamBounds};
-use crate::gear::{Double, add, divided, in_first_turn, plus};
+use crate::gear::{Double, add, divided, placed, plus};
 use crate::turns::{two_product, two_sum};
 use crate::{Anchor, Place, Setpoint};
 
@@ -115,7 +116,7 @@ impl CamLaw {
         } else {
             add(position, two_sum(anchor.slave.position, anchor.slave.phase))
         };
-        let place = self.placed(anchor, position);
+        let place = placed(self.slave_turn, anchor.slave.turns, position);
         CamAt {
             place,
             state: Setpoint {
@@ -128,48 +129,15 @@ impl CamLaw {
         }
     }
 
-    fn placed(&self, anchor: &Anchor, position: Double) -> Place {
-        let (turns, position) = match self.slave_turn {
-            None => (0, position.0 + 0.0),
-            Some(length) => {
-                let (further, position) = in_first_turn(position, length);
-                (anchor.slave.turns.wrapping_add(further), position)
-            }
-        };
-        Place {
-            turns,
-            position,
-            ..Place::default()
-        }
-    }
-
-    /// The chain rule: the motion of the slave on a curve with these derivatives, behind a master with
-    /// this motion.
+    /// The motion of the slave on a curve with these derivatives, behind a master with this motion.
     fn moved(&self, curve: &Setpoint, master: &Setpoint) -> Setpoint {
         let per = 1.0 / self.master_scaling;
         let first = self.slave_scaling * curve.velocity * per;
         let second = self.slave_scaling * curve.acceleration * per * per;
         let third = self.slave_scaling * curve.jerk * per * per * per;
         let fourth = self.slave_scaling * curve.snap * per * per * per * per;
-        let Setpoint {
-            velocity: v,
-            acceleration: a,
-            jerk: j,
-            snap: s,
-            ..
-        } = *master;
-        Setpoint {
-            position: 0.0,
-            // Adding 0 changes -0 to 0.
-            velocity: first * v + 0.0,
-            acceleration: second * v * v + first * a + 0.0,
-            jerk: third * v * v * v + 3.0 * second * v * a + first * j + 0.0,
-            snap: fourth * v * v * v * v
-                + 6.0 * third * v * v * a
-                + second * (3.0 * a * a + 4.0 * v * j)
-                + first * s
-                + 0.0,
-        }
+        // Adding 0 changes -0 to 0.
+        behind([first, second, third, fourth], master).plus(&Setpoint::at_rest(0.0))
     }
 
     /// The bounds of the slave's derivatives by its master from `low` to `high` on the master's side of

@@ -1,7 +1,7 @@
 //! The one root of the third-order problem: the end of a rising push and the begin of the stop.
 
 use super::third::depth_term;
-use crate::math::{max, min, sqrt};
+use crate::math::{max, min, rough_cbrt, sqrt};
 
 /// Largest number of steps that a root may take. A false position needs at most 94, a [`zero`](super::zero) 114;
 /// the tests show how many the others need.
@@ -153,10 +153,10 @@ fn guess_sum(offset: f64, budget: f64) -> f64 {
     }
 }
 
-/// Cube root to within a few per cent, for first guesses only: thirds the exponent and the mantissa.
+/// Cube root to within a few per cent, for first guesses only; 0 where there is no normal one.
 fn rough_cube_root(x: f64) -> f64 {
     if x.is_normal() && x > 0.0 {
-        f64::from_bits(x.to_bits() / 3 + 0x2a9f_7893_0000_0000)
+        rough_cbrt(x)
     } else {
         0.0
     }

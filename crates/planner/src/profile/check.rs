@@ -199,19 +199,12 @@ fn first_broken(
 fn broken_rate(speeds: (f64, f64), rates: (f64, f64), limits: &Limits) -> Option<(ProfileCause, f64, f64)> {
     let (faster, slower) = (limits.acceleration, limits.deceleration);
     let (least, most) = speeds;
-    let upwards = if least >= 0.0 {
-        faster
+    let (upwards, downwards) = if least >= 0.0 {
+        (faster, slower)
     } else if most <= 0.0 {
-        slower
+        (slower, faster)
     } else {
-        faster.min(slower)
-    };
-    let downwards = if least >= 0.0 {
-        slower
-    } else if most <= 0.0 {
-        faster
-    } else {
-        faster.min(slower)
+        (faster.min(slower), faster.min(slower))
     };
     let cause = |limit: f64| {
         if limit == faster {
