@@ -112,7 +112,7 @@ fn the_laws_have_their_published_peaks() {
         let rows = [row(0.0, 0.0, shape), row(1.0, 1.0, CamShape::Line)];
         let made = made(&rows, false).unwrap();
         let found = peaks(&made, 0.0, 1.0, 20_000);
-        let bounds = four(&made.pieces[0].bounds());
+        let bounds = four(made.pieces[0].bounds());
         for ((found, published), bound) in found.into_iter().zip(published).zip(bounds) {
             assert!(
                 (found - published).abs() <= 6e-5 * published + 1e-9,
@@ -468,7 +468,7 @@ fn bounds_hold_and_are_close() {
         let made = made(&rows, random.below(2) == 0).unwrap();
         for (piece, ends) in made.pieces.iter().zip(rows.windows(2)) {
             let found = peaks(&made, ends[0].master, ends[1].master, 2000);
-            for (found, bound) in found.into_iter().zip(four(&piece.bounds())) {
+            for (found, bound) in found.into_iter().zip(four(piece.bounds())) {
                 assert!(bound >= found * (1.0 - 1e-9) - 1e-12, "{bound} {found}");
                 // A narrow peak may lie between samples.
                 assert!(bound <= 1.02 * found + 1e-12, "{bound} {found}");
@@ -706,7 +706,7 @@ fn the_bits_are_these() {
         digest.add_setpoint(&found.state);
     }
     for piece in &made.pieces {
-        for bound in four(&piece.bounds()) {
+        for bound in four(piece.bounds()) {
             digest.add(bound.to_bits());
         }
     }

@@ -48,10 +48,7 @@ fn exact(anchor: &Anchor, turns: i64, position: f64) -> (i64, f64) {
 /// Covers: G31, GS16
 #[test]
 fn every_scan_at_three_sevenths_is_the_exact_place_rounded_once() {
-    let scans = std::env::var("STANDSTILL_SOAK")
-        .ok()
-        .and_then(|scans| scans.parse().ok())
-        .unwrap_or_else(|| standstill_testkit::cases(10_000_000));
+    let scans = standstill_testkit::soak(standstill_testkit::cases(10_000_000));
     let gear = Gear::new(3, 7, Some(TURN), Some(TURN)).unwrap();
     let at = |position| Place {
         position,

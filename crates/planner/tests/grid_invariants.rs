@@ -1,9 +1,9 @@
 //! The invariants of grid plans, over the reference vectors and seeded random moves.
 
-use crate::grid_support::{Digest, Move, Random, limits, power, servo, vector_move, vectors};
+use crate::grid_support::{Digest, Move, Random, four, keeps, limits, power, servo, vector_move, vectors};
 use crate::ramp_plans::support::scaled_limits;
 use standstill_planner::grid::Euler;
-use standstill_planner::{GridPlan, Limits, Method, Order, Setpoint};
+use standstill_planner::{GridPlan, Method, Order, Setpoint};
 
 const METHODS: [Method; 3] = [Method::Sequential, Method::Grid, Method::Overlapped];
 
@@ -217,38 +217,18 @@ fn positions_are_one_way_and_end_on_the_target_to_the_bit() {
 /// Invariant 4: the continuous plan keeps every bound to 2^-39, the published samples keep the peaks.
 #[test]
 fn bounds_hold() {
-    let slack = 1.0 + 1.0 / (1_u64 << 39) as f64;
     for (request, plan) in plans(5, 1000, u32::MAX) {
         let peaks = plan.peaks();
-        let Limits {
-            velocity: v,
-            acceleration: a,
-            jerk: j,
-            snap: s,
-            ..
-        } = request.limits;
-        assert!(peaks.velocity <= v * slack, "{request:?}");
-        assert!(peaks.acceleration <= a * slack, "{request:?}");
-        assert!(peaks.jerk.is_none_or(|peak| peak <= j * slack), "{request:?}");
-        assert!(peaks.snap.is_none_or(|peak| peak <= s * slack), "{request:?}");
+        assert!(keeps(&peaks, &request.limits), "{request:?}");
         assert_eq!(peaks.jerk.is_some(), plan.order() >= Order::Three);
         assert_eq!(peaks.snap.is_some(), plan.order() == Order::Four);
         let n = u64::from(plan.scans());
         let rounding = 1.0 + 4.0 * f64::EPSILON;
         for k in (0..=n).step_by((n as usize / 300).max(1)) {
-            let state = plan.at(k);
+            let [_, derivatives @ ..] = plan.at(k).numbers();
+            let inside = |(value, peak): (f64, f64)| value.abs() <= peak * rounding;
             assert!(
-                state.velocity.abs() <= peaks.velocity * rounding,
-                "{request:?} at {k}"
-            );
-            assert!(
-                state.acceleration.abs() <= peaks.acceleration * rounding,
-                "{request:?} at {k}"
-            );
-            let jerk = peaks.jerk.unwrap_or(0.0);
-            assert!(state.jerk.abs() <= jerk * rounding, "{request:?} at {k}");
-            assert!(
-                state.snap.abs() <= peaks.snap.unwrap_or(0.0),
+                derivatives.into_iter().zip(four(&peaks)).all(inside),
                 "{request:?} at {k}"
             );
         }
@@ -320,13 +300,7 @@ fn segments_add_up_to_the_move() {
             // The end just before the jump is what `at` publishes.
             let state = plan.at(scan);
             let published = [state.velocity, state.acceleration, state.jerk, state.snap];
-            let scales = plan.peaks();
-            let scales = [
-                scales.velocity,
-                scales.acceleration,
-                scales.jerk.unwrap_or(0.0),
-                scales.snap.unwrap_or(0.0),
-            ];
+            let scales = four(&plan.peaks());
             let held_to_the_end = scan < u64::from(plan.scans());
             for (degree, ((value, published), scale)) in (1..).zip(at(t).iter().zip(published).zip(scales)) {
                 // At orders 3 and 2 the last jump is to rest.
@@ -343,14 +317,7 @@ fn segments_add_up_to_the_move() {
         assert!((1..=15).contains(&count));
         assert_eq!(scan, u64::from(plan.scans()));
         assert!((x - distance).abs() <= 1e-9 * distance.abs(), "{request:?}");
-        let peaks = plan.peaks();
-        let expected = [
-            peaks.velocity,
-            peaks.acceleration,
-            peaks.jerk.unwrap_or(0.0),
-            peaks.snap.unwrap_or(0.0),
-        ];
-        for (peak, expected) in peak.into_iter().zip(expected) {
+        for (peak, expected) in peak.into_iter().zip(four(&plan.peaks())) {
             assert!(
                 (peak - expected).abs() <= 1e-9 * expected,
                 "{request:?}: {peak} {expected}"

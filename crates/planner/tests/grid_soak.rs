@@ -1,20 +1,16 @@
 //! Many random moves: 2,000 in a plain test run, 10,000 in `.ci/run`. `STANDSTILL_SOAK=1000000` runs more and prints
 //! the most work of one.
 
-use crate::grid_support::{Move, Random, limits, servo};
+use crate::grid_support::{Move, Random, keeps, limits, servo};
 use standstill_planner::grid::Work;
 use standstill_planner::{GridPlan, Limits, Method};
 
 fn rounds() -> u64 {
-    std::env::var("STANDSTILL_SOAK")
-        .ok()
-        .and_then(|count| count.parse().ok())
-        .unwrap_or(standstill_testkit::whole_or(10_000, 2_000))
+    standstill_testkit::soak(standstill_testkit::whole_or(10_000, 2_000))
 }
 
 #[test]
 fn random_moves_never_fail_overshoot_or_break_a_bound() {
-    let slack = 1.0 + 1.0 / (1_u64 << 39) as f64;
     let mut random = Random(2026);
     let mut worst = Work::default();
     let mut samples = 0_u64;
@@ -34,14 +30,7 @@ fn random_moves_never_fail_overshoot_or_break_a_bound() {
             worst.candidates = worst.candidates.max(work.candidates);
             worst.capped |= work.capped;
             longest = longest.max(plan.scans());
-            let peaks = plan.peaks();
-            assert!(
-                peaks.velocity <= bounds.velocity * slack
-                    && peaks.acceleration <= bounds.acceleration * slack
-                    && peaks.jerk.is_none_or(|jerk| jerk <= bounds.jerk * slack)
-                    && peaks.snap.is_none_or(|snap| snap <= bounds.snap * slack),
-                "{round} {request:?}"
-            );
+            assert!(keeps(&plan.peaks(), &bounds), "{round} {request:?}");
             let n = u64::from(plan.scans());
             // All scans of a short move, about a hundred of a long one, always the last ones.
             let step = (n / 100).max(1);

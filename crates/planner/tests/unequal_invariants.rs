@@ -1,6 +1,6 @@
 //! The invariants of plans whose acceleration and deceleration differ, over seeded random moves.
 
-use crate::grid_support::{Digest, Move, Random, power, servo};
+use crate::grid_support::{Digest, Move, Random, four, power, servo};
 use crate::ramp_plans::support::scaled_limits;
 use standstill_planner::grid::Family;
 use standstill_planner::{Field, Limits, Method, OnlinePlan, Order, PlanError, Setpoint, UnequalPlan};
@@ -64,13 +64,7 @@ fn segments_lead_to_the_target_through_the_published_states_with_the_peaks_told(
     let mut overlapped = 0;
     for (request, plan) in plans(21, 2000, u32::MAX) {
         let distance = request.target - request.start;
-        let peaks = plan.peaks();
-        let peaks = [
-            peaks.velocity,
-            peaks.acceleration,
-            peaks.jerk.unwrap_or(0.0),
-            peaks.snap.unwrap_or(0.0),
-        ];
+        let peaks = four(&plan.peaks());
         let (mut x, mut scan, mut count) = (0.0, 0, 0);
         let mut seen = [0.0_f64; 4];
         for segment in plan.segments() {

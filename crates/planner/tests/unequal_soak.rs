@@ -1,18 +1,12 @@
 //! Many random moves with unequal rates. 200 in a plain test run, 10,000 in `.ci/run`; `STANDSTILL_SOAK=1000000` runs more
 //! and prints the largest work of one.
 
-use crate::grid_support::{Move, Random, servo};
+use crate::grid_support::{Move, Random, keeps, servo};
 use standstill_planner::grid::{Family, UnequalWork};
-use standstill_planner::{Limits, Method, UnequalPlan};
-
-/// The most that rounding may add to a bound: the slack of eq. 7 in docs/planner.md, and that of products.
-const SLACK: f64 = 1.0 + 1.0 / (1_u64 << 39) as f64;
+use standstill_planner::{Method, UnequalPlan};
 
 fn rounds() -> u64 {
-    std::env::var("STANDSTILL_SOAK")
-        .ok()
-        .and_then(|count| count.parse().ok())
-        .unwrap_or_else(|| standstill_testkit::cases(10_000))
+    standstill_testkit::soak(standstill_testkit::cases(10_000))
 }
 
 /// A servo-like move whose deceleration is 0.2 to 5 times the acceleration, now and then 1000 times more or
@@ -26,14 +20,6 @@ fn unequal(random: &mut Random) -> Move {
     let most = if random.below(10) == 0 { 1000.0 } else { 5.0 };
     limits.deceleration = limits.acceleration * random.log(1.0 / most, most);
     request
-}
-
-fn keeps_bounds(plan: &UnequalPlan, bounds: &Limits) -> bool {
-    let peaks = plan.peaks();
-    peaks.velocity <= bounds.velocity * SLACK
-        && peaks.acceleration <= bounds.acceleration.max(bounds.deceleration) * SLACK
-        && peaks.jerk.is_none_or(|jerk| jerk <= bounds.jerk * SLACK)
-        && peaks.snap.is_none_or(|snap| snap <= bounds.snap * SLACK)
 }
 
 #[test]
@@ -66,7 +52,7 @@ fn random_moves_never_fail_overshoot_break_a_bound_or_lose_to_the_lower_rate() {
             saved += u64::from(lower.scans() - plan.scans());
             scans += u64::from(lower.scans());
             assert!(
-                keeps_bounds(&plan, &bounds),
+                keeps(&plan.peaks(), &bounds),
                 "{round} {request:?}: {:?}",
                 plan.peaks()
             );

@@ -26,6 +26,14 @@ pub fn cases(whole: u64) -> u64 {
     whole_or(whole, whole.div_ceil(50))
 }
 
+/// The cases that `STANDSTILL_SOAK` in the environment asks for, as docs/performance.md does; without it `usual`.
+#[cfg(not(target_os = "none"))]
+#[must_use]
+pub fn soak(usual: u64) -> u64 {
+    let given = std::env::var("STANDSTILL_SOAK").ok();
+    given.and_then(|count| count.parse().ok()).unwrap_or(usual)
+}
+
 /// The step with which a search goes through a long list: 1 if it [searches]; else 23, a prime, so that no column
 /// of a table is left out.
 #[cfg(not(target_os = "none"))]

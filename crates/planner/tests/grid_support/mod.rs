@@ -1,5 +1,6 @@
 //! The common parts of the grid tests: the reference vectors, seeded random moves and a digest.
 use serde_json::Value;
+use standstill_planner::grid::Peaks;
 use standstill_planner::{GridPlan, Limits, Method, PlanError, Setpoint};
 pub use standstill_testkit::Random;
 
@@ -27,6 +28,25 @@ pub fn limits(velocity: f64, acceleration: f64, jerk: f64, snap: f64) -> Limits 
         jerk,
         snap,
     }
+}
+
+/// The most that rounding may add to a bound: the slack of eq. 7 in docs/planner.md, and that of products.
+const SLACK: f64 = 1.0 + 1.0 / (1_u64 << 39) as f64;
+
+/// The largest magnitudes of the four derivatives; 0 for those that an order does not have.
+pub fn four(peaks: &Peaks) -> [f64; 4] {
+    let [jerk, snap] = [peaks.jerk, peaks.snap].map(Option::unwrap_or_default);
+    [peaks.velocity, peaks.acceleration, jerk, snap]
+}
+
+/// Whether a continuous plan with these peaks keeps every bound; of two rates the higher one.
+pub fn keeps(peaks: &Peaks, bounds: &Limits) -> bool {
+    let rate = bounds.acceleration.max(bounds.deceleration);
+    let bounds = [bounds.velocity, rate, bounds.jerk, bounds.snap];
+    four(peaks)
+        .iter()
+        .zip(bounds)
+        .all(|(peak, bound)| *peak <= bound * SLACK)
 }
 
 /// The vectors of tests/data/planner4-basic.json.
