@@ -3,11 +3,10 @@
 //!
 //! Without clang there is nothing to compare with: it reports that and prints the other figures.
 
-use standstill_axis::{AxisConfig, DrivePosition, IdealDrive, Limits, Standard, StartState};
+mod hosted;
+
+use hosted::{EMPTY, Hosted};
 use standstill_export::{Dialect, Prefix, Target, export};
-use standstill_fb::Context;
-use standstill_guest::{Guest, Program, Settings};
-use standstill_scan::{Executor, Machine, ProgramConfig, ProgramFault, ProgramId, Programs};
 use standstill_st::{Options, Source, compile};
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -138,67 +137,10 @@ __attribute__((export_name(\"plc_scan\"))) void plc_scan(int32_t tick, int64_t n
 }
 ";
 
-const EMPTY: &str = "(module (memory (export \"memory\") 1) (func (export \"plc_scan\") (param i32 i64)))";
+type Bench = hosted::Bench<Hosted>;
 
-struct Hosted(Guest);
-
-impl Programs<Standard, IdealDrive> for Hosted {
-    fn run(&mut self, _: ProgramId, context: &mut Context<'_>) -> Result<u64, ProgramFault> {
-        let fuel = self.0.scan(context);
-        fuel.map(|_| 0).map_err(|fault| ProgramFault {
-            reason: fault.reason(),
-        })
-    }
-}
-
-/// A guest under an executor with an axis.
-struct Bench {
-    program: Hosted,
-    machine: Machine<Standard, IdealDrive>,
-    executor: Executor,
-    now_ns: i64,
-    /// Seconds of a scan in the fastest round.
-    best: f64,
-}
-
-impl Bench {
-    fn new(module: &[u8]) -> Result<Self, Box<dyn Error>> {
-        let limits = Limits {
-            velocity: 50.0,
-            acceleration: 200.0,
-            deceleration: 200.0,
-            jerk: 2e3,
-            snap: 4e4,
-        };
-        let config = AxisConfig {
-            start: StartState::Standstill,
-            ..AxisConfig::new(limits)
-        };
-        let mut machine = Machine::new();
-        let drive = IdealDrive::new(DrivePosition::Units(0.0), 0, Some(0), true);
-        machine.add_axis(config, Standard::new(0.001), drive)?;
-        Ok(Self {
-            program: Hosted(Program::compile(module, Settings::default())?.start()?),
-            machine,
-            executor: Executor::new(1_000_000, &[], &[ProgramConfig::free("main")])?,
-            now_ns: 0,
-            best: f64::MAX,
-        })
-    }
-
-    fn round(&mut self) -> Result<(), Box<dyn Error>> {
-        let begin = Instant::now();
-        for _ in 0..SCANS {
-            let report = self
-                .executor
-                .scan(self.now_ns, &mut self.program, &mut self.machine)?;
-            assert!(report.mode.fault().is_none(), "{:?}", report.mode);
-            self.now_ns += 1_000_000;
-        }
-        // Other load of the machine can only add to it.
-        self.best = self.best.min(begin.elapsed().as_secs_f64() / SCANS as f64);
-        Ok(())
-    }
+fn bench(module: &[u8]) -> Result<Bench, Box<dyn Error>> {
+    Bench::new(Hosted::new(module)?)
 }
 
 fn of_st(text: &str) -> Result<Vec<u8>, Box<dyn Error>> {
@@ -259,19 +201,19 @@ fn lines(count: usize) -> String {
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("structured_text");
     std::fs::create_dir_all(&folder)?;
-    let mut empty = Bench::new(EMPTY.as_bytes())?;
+    let mut empty = bench(EMPTY.as_bytes())?;
     println!(
         "{:<18}{:>10}{:>10}{:>8}{:>18}",
         "a scan of", "ST", "clang", "ratio", "without the host"
     );
     for (name, st, c) in PAIRS {
-        let mut ours = Bench::new(&of_st(st)?)?;
-        let mut theirs = of_c(c, &folder)?.map(|module| Bench::new(&module)).transpose()?;
+        let mut ours = bench(&of_st(st)?)?;
+        let mut theirs = of_c(c, &folder)?.map(|module| bench(&module)).transpose()?;
         for _ in 0..ROUNDS {
-            empty.round()?;
-            ours.round()?;
+            empty.round(SCANS)?;
+            ours.round(SCANS)?;
             if let Some(theirs) = &mut theirs {
-                theirs.round()?;
+                theirs.round(SCANS)?;
             }
         }
         let ns = |bench: &Bench| bench.best * 1e9;

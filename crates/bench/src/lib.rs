@@ -12,7 +12,7 @@ mod random;
 mod trapezoid;
 
 pub use many_axes::{AXES, IN_MOTION, ManyAxes, WAYS};
-pub use one_axis::{CYCLE, Executed, LIMITS, OneAxis, Program, TARGET};
+pub use one_axis::{CYCLE, Executed, LIMITS, OneAxis, Program, TARGET, feedback};
 pub use random::{Move, Replan, any_unit, ordinary, servo};
 pub use standstill_testkit::Random;
 pub use trapezoid::{Sample, Trapezoid, trapezoid};

@@ -1,10 +1,10 @@
 //! Many axes in one runtime, each with its own kind of motion.
 
-use crate::{CYCLE, LIMITS};
+use crate::{CYCLE, LIMITS, feedback};
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, CamId, CamPiece, CamRow, CamSelection, CamSlot, Cams,
-    Comms, ConfigError, DriveFeedback, DrivePosition, DriveSignals, InstanceId, Log, Scaling, Scope,
-    Standard, StartMode, StartState, steps,
+    ConfigError, DriveFeedback, DrivePosition, InstanceId, Log, Scaling, Scope, Standard, StartMode,
+    StartState, steps,
 };
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Context, Value};
@@ -96,18 +96,11 @@ impl ManyAxes {
             };
             rig.axes
                 .push(Axis::new(AxisId::new(number), config, Standard::new(CYCLE))?);
-            rig.feedback.push(DriveFeedback {
-                enabled: true,
-                voltage: true,
-                fault: None,
-                position: if way == 4 {
-                    DrivePosition::Increments(0)
-                } else {
-                    DrivePosition::Units(0.0)
-                },
-                comms: Comms::Ok,
-                signals: DriveSignals::default(),
-            });
+            rig.feedback.push(feedback(if way == 4 {
+                DrivePosition::Increments(0)
+            } else {
+                DrivePosition::Units(0.0)
+            }));
             rig.add(number, "MC_Power", &[("Enable", Value::Bool(true))]);
             // A little apart, so that they do not switch in the same scans.
             let part = f64::from(number) / f64::from(count);

@@ -51,14 +51,7 @@ impl OneAxis {
             log: Log::default(),
             power: power(),
             to_target: to_target(),
-            feedback: DriveFeedback {
-                enabled: true,
-                voltage: true,
-                fault: None,
-                position: DrivePosition::Units(0.0),
-                comms: Comms::Ok,
-                signals: DriveSignals::default(),
-            },
+            feedback: feedback(DrivePosition::Units(0.0)),
             scan: 0,
         };
         axis.scan();
@@ -175,6 +168,18 @@ impl Executed {
             .scan(self.now_ns, &mut self.program, &mut self.machine);
         self.now_ns += 1_000_000;
         report
+    }
+}
+
+/// That of an enabled drive at a position.
+pub fn feedback(position: DrivePosition) -> DriveFeedback {
+    DriveFeedback {
+        enabled: true,
+        voltage: true,
+        fault: None,
+        position,
+        comms: Comms::Ok,
+        signals: DriveSignals::default(),
     }
 }
 

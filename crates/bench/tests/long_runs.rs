@@ -103,10 +103,7 @@ fn a_thousand_moves_there_and_back_end_on_zero() {
 /// After a move that ends between two increments an axis does not move: not a bit of any value changes.
 #[test]
 fn nothing_creeps_at_standstill() {
-    let scans = std::env::var("STANDSTILL_SOAK")
-        .ok()
-        .and_then(|scans| scans.parse().ok())
-        .unwrap_or(60_000_u64);
+    let scans = standstill_testkit::soak(60_000);
     let ratio = Scaling::new(4096, 7, false, 0.25).expect("valid");
     let mut rig = Rig::new(&[None, Some(ratio)]);
     rig.go(0, 1.0 / 3.0);

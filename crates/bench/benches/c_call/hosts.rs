@@ -1,10 +1,9 @@
 //! The two hosts: one in C, as a separate program, and one in Rust.
 
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, Comms, ConfigError, DriveFeedback, DrivePosition, DriveSignals, InstanceId,
-    Log, Scope, Standard, StartState,
+    Axis, AxisConfig, AxisId, ConfigError, DrivePosition, InstanceId, Log, Scope, Standard, StartState,
 };
-use standstill_bench::{CYCLE, LIMITS, TARGET};
+use standstill_bench::{CYCLE, LIMITS, TARGET, feedback};
 use standstill_blocks::BlockInstance;
 use standstill_fb::Context;
 use std::io::{BufRead, BufReader, Write};
@@ -31,14 +30,7 @@ impl RustHost {
         };
         let mut axis = Axis::new(AxisId::new(0), config, Standard::new(CYCLE))?;
         let mut log = Log::default();
-        let feedback = DriveFeedback {
-            enabled: true,
-            voltage: true,
-            fault: None,
-            position: DrivePosition::Units(0.0),
-            comms: Comms::Ok,
-            signals: DriveSignals::default(),
-        };
+        let feedback = feedback(DrivePosition::Units(0.0));
         axis.follow_feedback(&feedback, &mut Scope::new(0, &mut log));
         Ok(Self {
             axes: [axis],
