@@ -19,7 +19,7 @@ fn the_good_script_is_good() {
 fn every_bad_script_has_its_error_and_only_that() {
     let mut messages = String::new();
     for case in cases() {
-        let error = refused(&case.text());
+        let error = refused(&case.text(GOOD));
         let codes: Vec<_> = error
             .diagnostics()
             .iter()
