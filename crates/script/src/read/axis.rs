@@ -43,12 +43,11 @@ impl Reader {
             .check()
             .and_then(|()| cycle.map_or(Ok(()), |cycle| config.check_cycle(cycle)));
         if let Err(error) = checked {
-            self.report(Diagnostic::new(
+            return self.refuse(Diagnostic::new(
                 Code::BadValue,
                 place_of(key, node, error.key()),
                 error.to_string(),
             ));
-            return None;
         }
         self.check_turn(&fields, &config)?;
         Some(Axis {
@@ -71,11 +70,10 @@ impl Reader {
         {
             let message = format!("an axis cannot start in {text}");
             let help = names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>();
-            self.report(
+            return self.refuse(
                 Diagnostic::new(Code::BadValue, node.span, message)
                     .help(format!("it starts in {}", help.join(" or "))),
             );
-            return None;
         }
         let name = self.state_name(node, "`state`", names)?;
         names.iter().position(|known| *known == name)
@@ -94,11 +92,10 @@ impl Reader {
         let message = format!(
             "`modulo` is {length:?}, and at its velocity limit the axis goes {way:?} in a cycle: half a turn or more, so positions would not tell which way"
         );
-        self.report(
+        self.refuse(
             Diagnostic::new(Code::BadValue, node.span, message)
                 .help("lower `limits.velocity`, or give a longer turn or a shorter `cycle`"),
-        );
-        None
+        )
     }
 }
 

@@ -156,11 +156,10 @@ impl Reader {
         let Some((index, pin)) = block.pin(name) else {
             let inputs = block.pins().take(block.input_count());
             let message = format!("{} has no pin {}", block.name, quoted(name));
-            self.report(
+            return self.refuse(
                 Diagnostic::new(Code::UnknownPin, span, message)
                     .maybe_help(suggestion(name, inputs.map(|pin| pin.name))),
             );
-            return None;
         };
         if index < block.input_count() {
             return Some((index, pin));
@@ -170,7 +169,6 @@ impl Reader {
             quoted(pin.name),
             block.name
         );
-        self.report(Diagnostic::new(Code::NotWritable, span, message));
-        None
+        self.refuse(Diagnostic::new(Code::NotWritable, span, message))
     }
 }

@@ -3,6 +3,7 @@
 use super::formula::{Reads, expression};
 use super::json::{Json, Key, Node};
 use super::names::{Entity, suggestion};
+use super::value::wrong_type;
 use super::{Reader, hints, is_note, shape};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::format::number_text;
@@ -78,9 +79,7 @@ impl Reader {
         if let Json::Text(text) = &node.json {
             if expression(text).is_none() {
                 let wanted = "an object, or an expression, which begins with `=`";
-                let wrong = self.wrong_type(node, what, wanted);
-                self.report(wrong);
-                return None;
+                return self.refuse(wrong_type(node, what, wanted));
             }
             let formula = self.formula(node, text, PinType::Bool, Reads::Row)?;
             return Some(vec![Condition {
@@ -99,8 +98,7 @@ impl Reader {
             .collect();
         if conditions.is_empty() {
             let message = format!("{what} needs at least one condition");
-            self.report(Diagnostic::new(Code::BadValue, node.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadValue, node.span, message));
         }
         let conditions: Vec<Condition> = conditions.into_iter().collect::<Option<_>>()?;
         // Equal keys were reported before; names do not distinguish case.
@@ -110,8 +108,7 @@ impl Reader {
             .find(|condition| !known.insert(condition.text.to_ascii_lowercase()));
         if let Some(twice) = twice {
             let message = format!("{what} asks twice for {}", quoted(&twice.text));
-            self.report(Diagnostic::new(Code::DuplicateKey, twice.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::DuplicateKey, twice.span, message));
         }
         Some(conditions)
     }
@@ -231,8 +228,7 @@ impl Reader {
                 "same_as" => self.same_as(value, kind, what),
                 _ if !self.is_numeric(kind) => {
                     let message = format!("{what} is no number: only `ne` and `same_as` compare it");
-                    self.report(Diagnostic::new(Code::WrongType, key.span, message));
-                    None
+                    self.refuse(Diagnostic::new(Code::WrongType, key.span, message))
                 }
                 "within" if fields.get("near").is_some() => continue,
                 name if self.variable_of(kind).is_some_and(|variable| variable.is_wide()) => {
@@ -241,8 +237,7 @@ impl Reader {
                 }
                 "within" => {
                     let message = "`within` is the tolerance of `near`, which is not given";
-                    self.report(Diagnostic::new(Code::MissingKey, key.span, message));
-                    None
+                    self.refuse(Diagnostic::new(Code::MissingKey, key.span, message))
                 }
                 "near" => self.near(value, fields.get("within"), key.span, kind, what),
                 name => self.scalar(value, kind, what).and_then(|limit| match name {
@@ -259,11 +254,10 @@ impl Reader {
         }
         if comparisons.is_empty() {
             let message = format!("{what} is compared with nothing");
-            self.report(
+            return self.refuse(
                 Diagnostic::new(Code::MissingKey, node.span, message)
                     .help("for example {\"le\": 50} or {\"near\": 20, \"within\": 0.001}"),
             );
-            return None;
         }
         let comparisons: Vec<Comparison> = comparisons.into_iter().collect::<Option<_>>()?;
         self.contradiction(&comparisons, node.span, what);
@@ -290,14 +284,12 @@ impl Reader {
         };
         let Some(tolerance) = within else {
             let message = "`near` needs a tolerance: `within`";
-            self.report(Diagnostic::new(Code::MissingKey, key, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::MissingKey, key, message));
         };
         let within = self.scalar(tolerance, kind, "`within`")?;
         if !(within >= 0.0) {
             let message = format!("`within` is {}: a tolerance is 0 or more", number_text(within));
-            self.report(Diagnostic::new(Code::BadValue, tolerance.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadValue, tolerance.span, message));
         }
         match other {
             None => Some(Comparison::Near { near: near?, within }),
@@ -326,8 +318,7 @@ impl Reader {
             return Some((text.to_owned(), signal, plus?));
         }
         let message = format!("`of` takes a number, {} is {}", quoted(text), other.name());
-        self.report(Diagnostic::new(Code::WrongType, of.span, message));
-        None
+        self.refuse(Diagnostic::new(Code::WrongType, of.span, message))
     }
 
     /// Comparisons that no value satisfies.
@@ -369,8 +360,7 @@ impl Reader {
             quoted(text),
             self.kind_name(other)
         );
-        self.report(Diagnostic::new(Code::WrongType, node.span, message));
-        None
+        self.refuse(Diagnostic::new(Code::WrongType, node.span, message))
     }
 
     /// Whether two signals can be equal to the bit: of one type, or numbers of Structured Text and
@@ -409,8 +399,7 @@ impl Reader {
                         .to_owned()
                 });
                 let help = help.or_else(|| self.name_help(name, |_| true));
-                self.report(Diagnostic::new(Code::UnknownSignal, span, message).maybe_help(help));
-                return None;
+                return self.refuse(Diagnostic::new(Code::UnknownSignal, span, message).maybe_help(help));
             }
         };
         if rest.eq_ignore_ascii_case("State") {
@@ -463,8 +452,7 @@ impl Reader {
         };
         if let Some((pin, help)) = lacks {
             let message = format!("{} stands at no {pin}, and has no {}", quoted(name), quoted(rest));
-            self.report(Diagnostic::new(Code::UnknownSignal, span, message).help(help));
-            return None;
+            return self.refuse(Diagnostic::new(Code::UnknownSignal, span, message).help(help));
         }
         if let Some(which) = which {
             return Some((Signal::Master(axis, which), Kind::Master));

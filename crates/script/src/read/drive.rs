@@ -42,19 +42,17 @@ impl Reader {
         };
         if let Some((_, second, _)) = kinds.next() {
             let message = format!("an axis has one drive, `{}` or `{}`", key.text, second.text);
-            self.report(Diagnostic::new(Code::BadValue, second.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadValue, second.span, message));
         }
         match kind {
             DriveKind::Ideal => self.ideal(node).map(DriveSetup::Ideal),
             DriveKind::Plant => self.plant(node).map(DriveSetup::Plant),
             DriveKind::Cia402 if !is_scaled => {
                 let message = "a CiA 402 drive counts increments, so its axis needs `scaling`";
-                self.report(
+                self.refuse(
                     Diagnostic::new(Code::MissingKey, key.span, message)
                         .help("for example \"scaling\": {\"increments\": 10000, \"units\": 1}"),
-                );
-                None
+                )
             }
             DriveKind::Cia402 => self.cia402(node).map(DriveSetup::Cia402),
         }
@@ -90,8 +88,7 @@ impl Reader {
             .and_then(|made| setup.stops.map_or(Ok(made), |stops| made.between(stops, cycle)))
             .and_then(|made| Servo::new(made, setup.gains, cycle));
         if let Err(error) = made {
-            self.report(Diagnostic::new(Code::BadValue, fields.brace(), error.to_string()));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadValue, fields.brace(), error.to_string()));
         }
         Some(setup)
     }
@@ -112,8 +109,7 @@ impl Reader {
             "`motor.max_torque` is {:?}: it must be from a thousandth of `rated_torque` to 32.767 times as much",
             motor.max_torque
         );
-        self.report(Diagnostic::new(Code::BadValue, span, message));
-        None
+        self.refuse(Diagnostic::new(Code::BadValue, span, message))
     }
 
     /// The first of two places must not be above the second.

@@ -52,8 +52,7 @@ impl Reader {
                 });
             let message = "a claim says one of `at`, `by`, `always`, `never`, `once`, `exclusive`, `within_limits`, `follows`, `when`, \
                  `after`, `duration`, `count`";
-            self.report(Diagnostic::new(Code::MissingKey, members.brace(), message).maybe_help(slip));
-            return None;
+            return self.refuse(Diagnostic::new(Code::MissingKey, members.brace(), message).maybe_help(slip));
         };
         let fields = self.fields(node, shape)?;
         self.may_be_vacuous(&fields);
@@ -162,8 +161,7 @@ impl Reader {
                     "the range ends with scan {to}, before it begins with scan {}",
                     range.from
                 );
-                self.report(Diagnostic::new(Code::BadValue, end.span, message));
-                None
+                self.refuse(Diagnostic::new(Code::BadValue, end.span, message))
             }
             _ => Some(()),
         }
@@ -191,8 +189,7 @@ impl Reader {
         if slave == master {
             let message = "an axis does not follow itself";
             let help = "`master` is the axis that leads, `slave` the one behind it";
-            self.report(Diagnostic::new(Code::BadValue, leader?.span, message).help(help));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadValue, leader?.span, message).help(help));
         }
         let follow = Follow {
             slave,
@@ -220,16 +217,14 @@ impl Reader {
             return Some(factor);
         }
         let message = format!("`factor` is {}: it must be above 0", number_text(factor));
-        self.report(Diagnostic::new(Code::BadValue, node.span, message));
-        None
+        self.refuse(Diagnostic::new(Code::BadValue, node.span, message))
     }
 
     fn exclusive(&mut self, node: &Node) -> Option<Vec<(String, Point)>> {
         let items = self.list(node, "`exclusive`")?;
         if items.len() < 2 {
             let message = "`exclusive` needs at least two signals";
-            self.report(Diagnostic::new(Code::BadValue, node.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadValue, node.span, message));
         }
         self.each(items, |reader, item| {
             let text = reader.text(item, "`exclusive`")?;
@@ -238,8 +233,7 @@ impl Reader {
                 return Some((text.to_owned(), point));
             }
             let message = format!("`exclusive` takes BOOLs, {} is {}", quoted(text), ty.iec_name());
-            reader.report(Diagnostic::new(Code::WrongType, item.span, message));
-            None
+            reader.refuse(Diagnostic::new(Code::WrongType, item.span, message))
         })
     }
 }

@@ -63,13 +63,11 @@ impl Reader {
         let inner = expression(text)?;
         if !ARE_RUN {
             let message = format!("the expression cannot run: {}", LoadError::NotBuilt);
-            self.report(Diagnostic::new(Code::BadProgram, node.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadProgram, node.span, message));
         }
         if self.formulas.len() >= FORMULAS_MAX {
             let message = format!("a script has at most {FORMULAS_MAX} expressions");
-            self.report(Diagnostic::new(Code::TooLarge, node.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::TooLarge, node.span, message));
         }
         let place = Place::new(node.span, text);
         let references = match st::references(inner) {
@@ -84,8 +82,7 @@ impl Reader {
         let wanted = match ty {
             PinType::Axis(_) | PinType::Table(_) => {
                 let message = format!("an expression gives no {}", ty.iec_name());
-                self.report(Diagnostic::new(Code::WrongType, node.span, message));
-                return None;
+                return self.refuse(Diagnostic::new(Code::WrongType, node.span, message));
             }
             other => other.iec_name(),
         };
@@ -115,8 +112,7 @@ impl Reader {
             Ok(guest) => guest,
             Err(why) => {
                 let message = format!("the expression cannot run: {why}");
-                self.report(Diagnostic::new(Code::BadProgram, node.span, message));
-                return None;
+                return self.refuse(Diagnostic::new(Code::BadProgram, node.span, message));
             }
         };
         let find = |name: &str| compiled.symbols.find(name);
@@ -199,8 +195,7 @@ impl Reader {
                 "{} is known when the scan is over: conditions read it, wires do not",
                 quoted(path)
             );
-            self.report(Diagnostic::new(Code::UnknownSignal, span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::UnknownSignal, span, message));
         }
         Some((signal, kind))
     }
@@ -232,8 +227,7 @@ impl Reader {
                     quoted(path),
                     kind.name()
                 );
-                self.report(Diagnostic::new(Code::WrongType, span, message));
-                return None;
+                return self.refuse(Diagnostic::new(Code::WrongType, span, message));
             }
             Kind::Pin(ty) => (ty.iec_name().to_owned(), Vec::new()),
             Kind::Variable(..) => {

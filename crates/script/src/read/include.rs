@@ -5,6 +5,7 @@
 //! does, see [`ScriptError`](crate::ScriptError).
 
 use super::json::{self, Json, Key, Node};
+use super::value::wrong_type;
 use super::{Reader, shape, without_mark};
 use crate::error::{Code, Diagnostic, File, quoted};
 use crate::model::Span;
@@ -108,12 +109,11 @@ impl Reader {
         };
         let text = |node: &Node| match &node.json {
             Json::Text(text) => Some((text.clone(), node.span)),
-            _ => {
-                let diagnostic =
-                    self.wrong_type(node, "`include` or `override`", "a string or a list of them");
-                self.report(diagnostic);
-                None
-            }
+            _ => self.refuse(wrong_type(
+                node,
+                "`include` or `override`",
+                "a string or a list of them",
+            )),
         };
         items.iter().filter_map(text).collect()
     }

@@ -38,8 +38,7 @@ impl Reader {
         if object.needs_one && names.iter().all(|name| fields.get(name).is_none()) {
             let quoted: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
             let message = format!("{} needs at least one of {}", object.what, quoted.join(", "));
-            self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::MissingKey, fields.brace(), message));
         }
         let mut good = true;
         for (key, name) in object.keys.iter().zip(names) {
@@ -89,8 +88,7 @@ impl Reader {
                         items.len(),
                         places.len()
                     );
-                    self.report(Diagnostic::new(Code::BadValue, node.span, message));
-                    return None;
+                    return self.refuse(Diagnostic::new(Code::BadValue, node.span, message));
                 }
                 let mut good = true;
                 for (item, object) in items.iter().zip(*places) {

@@ -3,7 +3,7 @@
 
 use super::names::suggestion;
 use super::shape::machine as shape;
-use super::value::Fields;
+use super::value::{Fields, wrong_type};
 use super::{Reader, json, without_mark};
 use crate::error::{Code, Diagnostic, ScriptError, quoted};
 use crate::read::json::{Json, Key, Node};
@@ -92,9 +92,10 @@ impl Reader {
             return Some(());
         }
         let message = format!("version {version} of the map format is not supported");
-        let diagnostic = Diagnostic::new(Code::Unsupported, node.span, message);
-        self.report(diagnostic.help(format!("this runtime reads version {MAP_VERSION}")));
-        None
+        self.refuse(
+            Diagnostic::new(Code::Unsupported, node.span, message)
+                .help(format!("this runtime reads version {MAP_VERSION}")),
+        )
     }
 
     fn recording(&mut self, node: &Node) -> Option<Layout> {
@@ -112,14 +113,12 @@ impl Reader {
         let times = if let Some(every) = time.get("every") {
             if let Some(other) = time.get("column").or(time.get("unit")) {
                 let message = "with `every` no column of times is read: leave `column` and `unit` out";
-                self.report(Diagnostic::new(Code::BadValue, other.span, message));
-                return None;
+                return self.refuse(Diagnostic::new(Code::BadValue, other.span, message));
             }
             let every_ns = self.time_literal(every, "`every`")?;
             if every_ns <= 0 {
                 let message = "`every` must be longer than no time";
-                self.report(Diagnostic::new(Code::BadTime, every.span, message));
-                return None;
+                return self.refuse(Diagnostic::new(Code::BadTime, every.span, message));
             }
             Times::Every(every_ns)
         } else {
@@ -141,23 +140,21 @@ impl Reader {
         match &node.json {
             Json::Text(name) if name.trim().is_empty() => {
                 let message = "`column` names no column";
-                self.report(
+                self.refuse(
                     Diagnostic::new(Code::BadValue, node.span, message)
                         .help("give its name, or its number from 1"),
-                );
-                None
+                )
             }
             Json::Text(name) => Some(Place::Name(name.trim().to_owned())),
             Json::Number(_) => {
                 let number = self.whole(node, "`column`", 1..=COLUMNS_MAX)?;
                 usize::try_from(number).ok().map(Place::Number)
             }
-            _ => {
-                let diagnostic =
-                    self.wrong_type(node, "`column`", "the name of a column or its number from 1");
-                self.report(diagnostic);
-                None
-            }
+            _ => self.refuse(wrong_type(
+                node,
+                "`column`",
+                "the name of a column or its number from 1",
+            )),
         }
     }
 
@@ -167,8 +164,7 @@ impl Reader {
             return Some(ns);
         }
         let message = format!("{what} is negative");
-        self.report(Diagnostic::new(Code::BadTime, node.span, message));
-        None
+        self.refuse(Diagnostic::new(Code::BadTime, node.span, message))
     }
 
     fn window(&mut self, node: &Node) -> Option<(i64, i64)> {
@@ -178,8 +174,7 @@ impl Reader {
             return Some((from, to));
         }
         let message = "`window` begins before scan 0";
-        self.report(Diagnostic::new(Code::BadTime, node.span, message));
-        None
+        self.refuse(Diagnostic::new(Code::BadTime, node.span, message))
     }
 
     fn limits_of_time(&mut self, fields: &Fields<'_>, what: &str) -> Option<(i64, i64)> {
@@ -190,12 +185,11 @@ impl Reader {
         if from <= to {
             return Some((from, to));
         }
-        self.report(Diagnostic::new(
+        self.refuse(Diagnostic::new(
             Code::BadTime,
             to_node.span,
             "`to` is before `from`",
-        ));
-        None
+        ))
     }
 
     fn signals(&mut self, node: &Node, trace: &Trace, time_tolerance: i64) -> Option<Vec<Signal>> {
@@ -209,11 +203,10 @@ impl Reader {
             }
         }
         if whole && signals.is_empty() {
-            let diagnostic = Diagnostic::new(Code::BadValue, node.span, "the map names no column");
-            self.report(
-                diagnostic.help("for example {\"X.Position\": {\"column\": \"ActPos\", \"tolerance\": 0.1}}"),
+            return self.refuse(
+                Diagnostic::new(Code::BadValue, node.span, "the map names no column")
+                    .help("for example {\"X.Position\": {\"column\": \"ActPos\", \"tolerance\": 0.1}}"),
             );
-            return None;
         }
         whole.then_some(signals)
     }
@@ -229,9 +222,10 @@ impl Reader {
         let Some(column) = trace.column(&key.text).and_then(|at| columns.get(at)) else {
             let names = columns.iter().map(|column: &Column| column.name.as_str());
             let message = format!("the trace has no signal {}", quoted(&key.text));
-            let diagnostic = Diagnostic::new(Code::UnknownSignal, key.span, message);
-            self.report(diagnostic.maybe_help(suggestion(&key.text, names)));
-            return None;
+            return self.refuse(
+                Diagnostic::new(Code::UnknownSignal, key.span, message)
+                    .maybe_help(suggestion(&key.text, names)),
+            );
         };
         let shape = match column.kind {
             Kind::Real => &shape::CURVE,
@@ -274,8 +268,7 @@ impl Reader {
         let factor = number(self, "factor", 1.0)?;
         if let (0.0, Some(node)) = (factor, fields.get("factor")) {
             let message = "`factor` is 0: everything recorded would be the same";
-            self.report(Diagnostic::new(Code::BadValue, node.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadValue, node.span, message));
         }
         let sign = match fields.get("sign") {
             Some(node) => self.sign(node)?,
@@ -286,8 +279,7 @@ impl Reader {
         let tolerance = self.finite(node, "`tolerance`")?;
         if tolerance < 0.0 {
             let message = format!("`tolerance` is {tolerance:?}: it must be 0 or more");
-            self.report(Diagnostic::new(Code::BadValue, node.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadValue, node.span, message));
         }
         Some(Measure::Curve {
             factor: factor * sign,
@@ -302,9 +294,7 @@ impl Reader {
             return Some(sign);
         }
         let message = format!("`sign` is {sign:?}: it must be 1 or -1");
-        let diagnostic = Diagnostic::new(Code::BadValue, node.span, message);
-        self.report(diagnostic.help("other numbers go to `factor`"));
-        None
+        self.refuse(Diagnostic::new(Code::BadValue, node.span, message).help("other numbers go to `factor`"))
     }
 
     fn words(&mut self, fields: &Fields<'_>) -> Option<BTreeMap<String, String>> {
@@ -327,11 +317,9 @@ impl Reader {
             return self.time_literal(node, "`offset`").map(Offset::Fixed);
         }
         let Json::Map(members) = &node.json else {
-            let diagnostic = self.wrong_type(node, "`offset`", "a TIME literal or an object");
-            self.report(diagnostic.help(
+            return self.refuse(wrong_type(node, "`offset`", "a TIME literal or an object").help(
                 "\"T#20ms\", {\"edge\": \"move.Done\", \"to\": true} or {\"fit\": \"X.Position\", \"from\": \"T#-1s\", \"to\": \"T#1s\"}",
             ));
-            return None;
         };
         if members.iter().any(|(key, _)| key.text == "fit") {
             return self.fit(node, signals, trace);
@@ -343,9 +331,10 @@ impl Reader {
         let to = match (&signal.measure, &node.json) {
             (Measure::Curve { .. }, _) => {
                 let message = format!("{} has no edges", quoted(&signal.name));
-                let diagnostic = Diagnostic::new(Code::BadValue, edge.span, message);
-                self.report(diagnostic.help("numbers are fitted: {\"fit\": .., \"from\": .., \"to\": ..}"));
-                return None;
+                return self.refuse(
+                    Diagnostic::new(Code::BadValue, edge.span, message)
+                        .help("numbers are fitted: {\"fit\": .., \"from\": .., \"to\": ..}"),
+                );
             }
             (Measure::Bool { .. }, _) => {
                 let to = self.boolean(node, "`to`")?;
@@ -374,17 +363,19 @@ impl Reader {
         let signal = self.of_map(name, "`fit`", signals)?;
         if !matches!(signal.measure, Measure::Curve { .. }) {
             let message = format!("{} is no curve to fit", quoted(&signal.name));
-            let diagnostic = Diagnostic::new(Code::BadValue, name.span, message);
-            self.report(diagnostic.help("take one of its edges: {\"edge\": .., \"to\": ..}"));
-            return None;
+            return self.refuse(
+                Diagnostic::new(Code::BadValue, name.span, message)
+                    .help("take one of its edges: {\"edge\": .., \"to\": ..}"),
+            );
         }
         let (from, to) = self.limits_of_time(&fields, shape::FIT.what)?;
         let cycle = i128::from(trace.header().cycle_ns.max(1));
         if (i128::from(to) - i128::from(from)) / cycle >= i128::from(FIT_SCANS) {
             let message = format!("the fit would try more than {FIT_SCANS} scans");
-            let diagnostic = Diagnostic::new(Code::BadTime, node.span, message);
-            self.report(diagnostic.help("give a rough offset first, and the window around it"));
-            return None;
+            return self.refuse(
+                Diagnostic::new(Code::BadTime, node.span, message)
+                    .help("give a rough offset first, and the window around it"),
+            );
         }
         Some(Offset::Fit {
             signal: signal.name.clone(),
@@ -400,8 +391,9 @@ impl Reader {
         if found.is_none() {
             let names = signals.iter().map(|signal| signal.name.as_str());
             let message = format!("`signals` has no {}", quoted(name));
-            let diagnostic = Diagnostic::new(Code::UnknownSignal, node.span, message);
-            self.report(diagnostic.maybe_help(suggestion(name, names)));
+            self.report(
+                Diagnostic::new(Code::UnknownSignal, node.span, message).maybe_help(suggestion(name, names)),
+            );
         }
         found
     }

@@ -42,7 +42,7 @@ use standstill_fb::{PinType, TableInfo, TableRef, Value};
 use standstill_trace::digest::Fnv1a;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-use value::Fields;
+use value::{Fields, wrong_type};
 
 /// Largest number of scans of one run; 10^7 are 2 h 46 min at 1 ms.
 pub const SCANS_MAX: u64 = 1_000_000_000;
@@ -360,15 +360,14 @@ impl Reader {
         if version == i64::from(VERSION) {
             return Some(());
         }
-        self.report(
+        self.refuse(
             Diagnostic::new(
                 Code::Unsupported,
                 node.span,
                 format!("version {version} of the script format is not supported"),
             )
             .help(format!("this runtime reads version {VERSION}")),
-        );
-        None
+        )
     }
 
     fn parameters(&mut self, fields: &Fields<'_>, overrides: &[(String, f64)]) {
@@ -378,11 +377,7 @@ impl Reader {
         for (key, node) in declared.iter().flat_map(Fields::iter) {
             let value = match &node.json {
                 // A parameter of a parameter would need an order, and has no use.
-                Json::Map(_) => {
-                    let diagnostic = self.wrong_type(node, &quoted(&key.text), "a number");
-                    self.report(diagnostic);
-                    None
-                }
+                Json::Map(_) => self.refuse(wrong_type(node, &quoted(&key.text), "a number")),
                 _ => self.number(node, &quoted(&key.text)),
             };
             // A refused value is already reported, so its uses need not be.
@@ -416,12 +411,11 @@ impl Reader {
             self.cycle_ns = Some(ns);
             return Some(ns);
         }
-        self.report(Diagnostic::new(
+        self.refuse(Diagnostic::new(
             Code::BadTime,
             node.span,
             "`cycle` must be longer than nothing",
-        ));
-        None
+        ))
     }
 
     fn scan_number(&mut self, fields: &Fields<'_>) -> Option<u64> {
@@ -449,8 +443,7 @@ impl Reader {
             self.scan_count = Some(scans);
             return Some(scans);
         };
-        self.report(diagnostic);
-        None
+        self.refuse(diagnostic)
     }
 
     /// Removes errors that follow from other mistakes: unknown names, if some names could not be read.
@@ -638,11 +631,7 @@ impl Reader {
             }
             let initial = match &node.json {
                 Json::Bool(value) => Some(Value::Bool(*value)),
-                Json::Null | Json::List(_) => {
-                    let diagnostic = self.wrong_type(node, &what, "a bool or a number");
-                    self.report(diagnostic);
-                    None
-                }
+                Json::Null | Json::List(_) => self.refuse(wrong_type(node, &what, "a bool or a number")),
                 _ => self.number(node, &what).map(Value::Lreal),
             };
             inputs.push(initial.map(|initial| Input {
@@ -679,8 +668,7 @@ impl Reader {
             (None, None) => Some(None),
             (None, Some((key, _))) => {
                 let message = "`after` says how long a run goes on after `stop_when`, which is not given";
-                self.report(Diagnostic::new(Code::MissingKey, key.span, message));
-                None
+                self.refuse(Diagnostic::new(Code::MissingKey, key.span, message))
             }
         }
     }

@@ -55,8 +55,7 @@ impl Reader {
         let members = self.map(node, "`programs`")?;
         if members.iter().count() > PROGRAMS_MAX {
             let message = format!("a script has at most {PROGRAMS_MAX} programs");
-            self.report(Diagnostic::new(Code::TooLarge, node.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::TooLarge, node.span, message));
         }
         // The numbers of their instances end below the largest one.
         let first = 65_535 - PROGRAMS_MAX * INSTANCES_MOST;
@@ -66,8 +65,7 @@ impl Reader {
         };
         if instances >= first {
             let message = format!("beside programs a script has less than {first} instances");
-            self.report(Diagnostic::new(Code::TooLarge, node.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::TooLarge, node.span, message));
         }
         let share = self.memory_share(&members, node)?;
         for (index, (key, node)) in members.iter().enumerate() {
@@ -103,8 +101,7 @@ impl Reader {
                 "the programs may take {total} bytes of memory, more than the {most} of all guests of a script"
             );
             let help = format!("where that is wanted, run it with `--guest-memory {total}`");
-            self.report(Diagnostic::new(Code::TooLarge, node.span, message).help(help));
-            return None;
+            return self.refuse(Diagnostic::new(Code::TooLarge, node.span, message).help(help));
         }
         let silent = all.iter().filter(|said| said.is_none()).count() as u64;
         let left = (most - total).checked_div(silent).unwrap_or_default();
@@ -122,8 +119,7 @@ impl Reader {
         let fields = self.fields(node, &shape::PROGRAM)?;
         if !ARE_RUN {
             let message = format!("the program {} cannot run: {}", quoted(name), LoadError::NotBuilt);
-            self.report(Diagnostic::new(Code::BadProgram, node.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadProgram, node.span, message));
         }
         let defaults = Settings::default();
         let fuel = match fields.get("fuel") {
@@ -149,16 +145,14 @@ impl Reader {
         match (fields.entry("wasm"), fields.entry("st")) {
             (Some((first, _)), Some((second, _))) => {
                 let message = "a program comes from `wasm` or from `st`, not from both";
-                self.report(
+                self.refuse(
                     Diagnostic::new(Code::UnknownKey, second.span, message)
                         .related(first.span, "the other one"),
-                );
-                None
+                )
             }
             (None, None) => {
                 let message = "a program needs the key `wasm` or the key `st`";
-                self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
-                None
+                self.refuse(Diagnostic::new(Code::MissingKey, fields.brace(), message))
             }
             (Some(_), None) => {
                 self.refuse_keys(&fields, &["program", "axes", "trace"], "st");
@@ -205,8 +199,7 @@ impl Reader {
             }),
             Err(why) => {
                 let message = format!("{} cannot be the program {}: {why}", quoted(path), quoted(name));
-                self.report(Diagnostic::new(Code::BadProgram, wasm.span, message));
-                None
+                self.refuse(Diagnostic::new(Code::BadProgram, wasm.span, message))
             }
         }
     }
@@ -220,8 +213,7 @@ impl Reader {
         if let Some((members, node)) = members {
             if members.iter().count() > SYMBOLS_MAX {
                 let message = format!("a program has at most {SYMBOLS_MAX} symbols");
-                self.report(Diagnostic::new(Code::TooLarge, node.span, message));
-                return None;
+                return self.refuse(Diagnostic::new(Code::TooLarge, node.span, message));
             }
             let mut names = vec![FAULT.to_ascii_uppercase()];
             for (key, node) in members.iter() {
@@ -277,8 +269,7 @@ impl Reader {
         let Some(own) = SymbolType::find(text) else {
             let message = format!("a symbol cannot be of type {}", quoted(text));
             let help = format!("one of {}", SYMBOL_TYPES.join(", "));
-            self.report(Diagnostic::new(Code::BadValue, ty.span, message).help(help));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadValue, ty.span, message).help(help));
         };
         Some(Symbol {
             name: name.to_owned(),
@@ -372,9 +363,8 @@ impl Reader {
         }
         let message = format!("{} has no symbol {}", quoted(&program_read.name), quoted(name));
         let help = super::names::suggestion(name, symbols.iter().map(|symbol| symbol.name.as_str()));
-        self.report(Diagnostic::new(Code::UnknownSignal, span, message).maybe_help(
+        self.refuse(Diagnostic::new(Code::UnknownSignal, span, message).maybe_help(
             help.or_else(|| Some("`symbols` of the program lists its variables that are signals".to_owned())),
-        ));
-        None
+        ))
     }
 }

@@ -78,11 +78,10 @@ impl Reader {
                 "`duration` takes two conditions, its begin and its end; here are {}",
                 items.len()
             );
-            self.report(
+            return self.refuse(
                 Diagnostic::new(Code::BadValue, node.span, message)
                     .help("for example \"duration\": [{\"GO\": true}, {\"move.Done\": true}]"),
             );
-            return None;
         };
         let begin = self.conditions(begin, "the begin of `duration`");
         let end = self.conditions(end, "the end of `duration`");
@@ -115,18 +114,16 @@ impl Reader {
         }
         let Some(last) = last else {
             let message = format!("{what} says how much it may be: give `le` or `ge`");
-            self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::MissingKey, fields.brace(), message));
         };
         match (bounds.ge, bounds.le) {
             (Some(ge), Some(le)) if ge > le => {
                 let message =
                     format!("{what} contradicts itself: no number is at least {ge} and at most {le}");
-                self.report(
+                self.refuse(
                     Diagnostic::new(Code::BadValue, last.span, message)
                         .help("widen the bounds, or turn them"),
-                );
-                None
+                )
             }
             _ => good.then_some(bounds),
         }
@@ -139,8 +136,7 @@ impl Reader {
             return Some(scans);
         }
         let message = format!("{what} is 0: it must be one scan at least");
-        self.report(Diagnostic::new(Code::BadValue, node.span, message));
-        None
+        self.refuse(Diagnostic::new(Code::BadValue, node.span, message))
     }
 
     /// The conditions at which the scans of a claim begin and end.

@@ -44,8 +44,7 @@ impl Reader {
         let actions = actions?;
         if actions.is_empty() {
             let message = "a step does nothing without `set`, `fault`, `clear` or `drive`";
-            self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::MissingKey, fields.brace(), message));
         }
         let place = self.stands_at(node.span, &fields);
         Some(Step {
@@ -82,19 +81,17 @@ impl Reader {
             }
             (Some((first, _)), Some((second, _))) => {
                 let message = "a step has `at` or `when`, not both";
-                self.report(
+                self.refuse(
                     Diagnostic::new(Code::UnknownKey, second.span, message)
                         .related(first.span, "the other one"),
-                );
-                None
+                )
             }
             (None, None) => {
                 let message = "a step needs `at` or `when`";
-                self.report(
+                self.refuse(
                     Diagnostic::new(Code::MissingKey, fields.brace(), message)
                         .help("`at` names a scan, `when` conditions on the trace"),
-                );
-                None
+                )
             }
         }
     }
@@ -109,11 +106,10 @@ impl Reader {
             return Some(scan);
         }
         let message = format!("{what} is scan {scan}, but the run's last scan is {}", count - 1);
-        self.report(
+        self.refuse(
             Diagnostic::new(Code::OutsideRun, node.span, message)
                 .help("scans are counted from 0; or raise `scans`"),
-        );
-        None
+        )
     }
 
     fn set(&mut self, node: &Node) -> Option<Vec<Action>> {
@@ -145,23 +141,20 @@ impl Reader {
                 && pin >= block.input_count()
             {
                 let message = format!("{} is an output: only inputs are written", quoted(name));
-                self.report(Diagnostic::new(Code::NotWritable, span, message));
-                return None;
+                return self.refuse(Diagnostic::new(Code::NotWritable, span, message));
             }
             if let Some((_, wire)) = self.wires.get(&(instance, pin)) {
                 let message = format!("two writers on {}: a wire and this step", quoted(name));
-                self.report(
+                return self.refuse(
                     Diagnostic::new(Code::TwoWriters, span, message)
                         .related(*wire, "wired here")
                         .help("set the input variable the wire reads, or replace the wire by a constant"),
                 );
-                return None;
             }
         }
         if let Point::Symbol(_, 0) = point {
             let message = format!("{} is written by the runtime", quoted(name));
-            self.report(Diagnostic::new(Code::NotWritable, span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::NotWritable, span, message));
         }
         if let Some(variable) = self.variable_at(point).cloned() {
             return self.set_variable(point, &variable, (name, span), node);
@@ -223,10 +216,9 @@ impl Reader {
         let (axis, changes) = (axis?, changes?);
         if changes.is_empty() {
             let message = "a `drive` step needs what is to happen";
-            self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message).help(
+            return self.refuse(Diagnostic::new(Code::MissingKey, fields.brace(), message).help(
                 "give `displace`, `input`, `probe` or `report`, or for a CiA 402 drive `remote` or `warning`",
             ));
-            return None;
         }
         let actions = changes.into_iter();
         Some(actions.map(|change| Action::Drive { axis, change }).collect())
@@ -262,8 +254,7 @@ impl Reader {
         let (number, at, level) = (number?, at?, level?);
         if !(0.0..=1.0).contains(&at) {
             let message = format!("`at` is {at:?}, a part of a scan is from 0 to 1");
-            self.report(Diagnostic::new(Code::BadValue, fields.brace(), message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadValue, fields.brace(), message));
         }
         Some(DriveChange::Probe {
             number: usize::try_from(number - 1).ok()?,
@@ -296,18 +287,16 @@ impl Reader {
             };
             if !tells_torque {
                 let message = "this drive tells no torque";
-                self.report(
+                return self.refuse(
                     Diagnostic::new(Code::BadValue, key.span, message)
                         .help("a `plant` does, and a `cia402` drive with a `motor`"),
                 );
-                return None;
             }
             changes.push(DriveChange::ReportTorque(torque));
         }
         if changes.is_empty() {
             let message = "`report` needs `position` or `torque`";
-            self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::MissingKey, fields.brace(), message));
         }
         Some(changes)
     }

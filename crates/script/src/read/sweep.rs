@@ -1,7 +1,7 @@
 //! From text to a checked [`Sweep`]: which parameters of a script vary, and how.
 
 use super::shape::sweep as shape;
-use super::value::{Fields, WHOLE_MAX};
+use super::value::{Fields, WHOLE_MAX, wrong_type};
 use super::{Reader, is_note, json, without_mark};
 use crate::error::{Code, Diagnostic, ScriptError, quoted};
 use crate::read::json::{Json, Key, Node};
@@ -57,8 +57,7 @@ impl Reader {
         let varied = match (fields.get("grid"), fields.entry("sample")) {
             (Some(_), Some((key, _))) => {
                 let message = "a sweep has a `grid` or a `sample`, not both";
-                self.report(Diagnostic::new(Code::BadValue, key.span, message));
-                None
+                self.refuse(Diagnostic::new(Code::BadValue, key.span, message))
             }
             (Some(node), None) => self
                 .varied(node, "`grid`", true)
@@ -66,9 +65,10 @@ impl Reader {
             (None, Some((_, node))) => self.sample(node),
             (None, None) => {
                 let message = "a sweep needs the key `grid` or the key `sample`";
-                let diagnostic = Diagnostic::new(Code::MissingKey, fields.brace(), message);
-                self.report(diagnostic.help("for example \"grid\": {\"v\": [10, 20, 50]}"));
-                None
+                self.refuse(
+                    Diagnostic::new(Code::MissingKey, fields.brace(), message)
+                        .help("for example \"grid\": {\"v\": [10, 20, 50]}"),
+                )
             }
         };
         let (varied, draw) = varied?;
@@ -93,9 +93,10 @@ impl Reader {
             return Some(());
         }
         let message = format!("version {version} of the sweep format is not supported");
-        let diagnostic = Diagnostic::new(Code::Unsupported, node.span, message);
-        self.report(diagnostic.help(format!("this runtime reads version {SWEEP_VERSION}")));
-        None
+        self.refuse(
+            Diagnostic::new(Code::Unsupported, node.span, message)
+                .help(format!("this runtime reads version {SWEEP_VERSION}")),
+        )
     }
 
     fn sample(&mut self, node: &Node) -> Option<(Vec<Varied>, Draw)> {
@@ -129,9 +130,10 @@ impl Reader {
             .collect();
         if varied.is_empty() {
             let message = format!("{what} varies nothing");
-            let diagnostic = Diagnostic::new(Code::BadValue, node.span, message);
-            self.report(diagnostic.help("name a parameter of the script: {\"v\": [10, 20, 50]}"));
-            return None;
+            return self.refuse(
+                Diagnostic::new(Code::BadValue, node.span, message)
+                    .help("name a parameter of the script: {\"v\": [10, 20, 50]}"),
+            );
         }
         varied.into_iter().collect()
     }
@@ -141,8 +143,7 @@ impl Reader {
         match &node.json {
             Json::List(items) if items.is_empty() => {
                 let message = format!("{what} has no values");
-                self.report(Diagnostic::new(Code::BadValue, node.span, message));
-                None
+                self.refuse(Diagnostic::new(Code::BadValue, node.span, message))
             }
             Json::List(items) => self
                 .each(items, |reader, item| reader.number(item, &what))
@@ -150,10 +151,9 @@ impl Reader {
             Json::Map(_) if grid => self.values_between(node, &shape::STEPS),
             Json::Map(_) => self.values_between(node, &shape::RANGE),
             _ => {
-                let diagnostic = self.wrong_type(node, &what, "a list of values or a range");
+                let diagnostic = wrong_type(node, &what, "a list of values or a range");
                 let range = if grid { ", \"count\": 9}" } else { "}" };
-                self.report(diagnostic.help(format!("[10, 20, 50] or {{\"from\": 10, \"to\": 50{range}")));
-                None
+                self.refuse(diagnostic.help(format!("[10, 20, 50] or {{\"from\": 10, \"to\": 50{range}")))
             }
         }
     }
@@ -183,13 +183,11 @@ impl Reader {
                 .find(|(value, _)| *value <= 0.0)
         {
             let message = format!("{value:?} is on no logarithmic scale: it must be more than 0");
-            self.report(Diagnostic::new(Code::BadValue, place, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadValue, place, message));
         }
         if !(to - from).is_finite() || (scale == Scale::Log && !(to / from).is_normal()) {
             let message = "the range is wider than a 64-bit float can step through";
-            self.report(Diagnostic::new(Code::BadValue, to_place, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadValue, to_place, message));
         }
         Some(Values::Range {
             from,
@@ -214,9 +212,10 @@ impl Reader {
             return Some(());
         }
         let message = format!("the grid has more than {CASES_MAX} cases");
-        let diagnostic = Diagnostic::new(Code::TooLarge, root.span, message);
-        self.report(diagnostic.help("a `sample` draws as many of them as you can afford"));
-        None
+        self.refuse(
+            Diagnostic::new(Code::TooLarge, root.span, message)
+                .help("a `sample` draws as many of them as you can afford"),
+        )
     }
 
     fn measures(&mut self, node: &Node) -> Option<Vec<Measure>> {
@@ -236,12 +235,10 @@ impl Reader {
             .filter_map(|(name, take)| fields.get(name).map(|node| (*take, node)));
         let (Some((take, signal)), None) = (taken.next(), taken.next()) else {
             let message = format!("{} takes one thing of one signal", quoted(&key.text));
-            let diagnostic = Diagnostic::new(Code::BadValue, node.span, message);
-            self.report(
-                diagnostic
+            return self.refuse(
+                Diagnostic::new(Code::BadValue, node.span, message)
                     .help("for example {\"abs_max\": \"X.FollowingError\"} or {\"first\": \"move.Done\"}"),
             );
-            return None;
         };
         Some(Measure {
             name: key.text.clone(),

@@ -3,7 +3,7 @@
 use super::json::{Json, Node};
 use super::names::suggestion;
 use super::program::LoadGuest;
-use super::value::Fields;
+use super::value::{Fields, wrong_type};
 use super::{Reader, shape};
 use crate::csv;
 use crate::error::{Code, Diagnostic, quoted};
@@ -29,8 +29,7 @@ impl Reader {
             let help = suggestion(name, self.named_tables.keys().map(String::as_str));
             let help = help.or_else(|| Some("declare it under \"tables\"".to_owned()));
             let message = format!("there is no table {}", quoted(name));
-            self.report(Diagnostic::new(Code::UnknownSignal, node.span, message).maybe_help(help));
-            return None;
+            return self.refuse(Diagnostic::new(Code::UnknownSignal, node.span, message).maybe_help(help));
         };
         if found.name != info.name {
             let message = format!(
@@ -39,8 +38,7 @@ impl Reader {
                 quoted(name),
                 found.name
             );
-            self.report(Diagnostic::new(Code::WrongType, node.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::WrongType, node.span, message));
         }
         // An invalid one was reported at its place.
         place
@@ -84,16 +82,14 @@ impl Reader {
         let Some(info) = csv::table_info(name) else {
             let message = format!("no pin takes a table of {}", quoted(name));
             let help = "the rows of a cam are MC_CAM_POINT";
-            self.report(Diagnostic::new(Code::BadValue, kind.span, message).help(help));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadValue, kind.span, message).help(help));
         };
         let place = match (fields.get("rows"), fields.get("csv")) {
             (Some(rows), None) => self.rows_of_table(rows, info, "`rows`"),
             (None, Some(file)) => self.file_of_table(file, info, load),
             _ => {
                 let message = "a table has either `rows` or `csv`";
-                self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
-                None
+                self.refuse(Diagnostic::new(Code::MissingKey, fields.brace(), message))
             }
         };
         Some((info, place))
@@ -112,8 +108,7 @@ impl Reader {
         match rows {
             Ok(rows) => self.placed(rows),
             Err((message, help)) => {
-                self.report(Diagnostic::new(Code::BadValue, node.span, message).maybe_help(help));
-                None
+                self.refuse(Diagnostic::new(Code::BadValue, node.span, message).maybe_help(help))
             }
         }
     }
@@ -131,14 +126,14 @@ impl Reader {
     /// The records of a list.
     fn rows_of_table(&mut self, node: &Node, info: TableInfo, what: &str) -> Option<TableRef> {
         let Json::List(items) = &node.json else {
-            let diagnostic = self.wrong_type(node, what, "a list of objects");
-            self.report(diagnostic.help("for example [{}]; what is left out of a record is 0 or FALSE"));
-            return None;
+            return self.refuse(
+                wrong_type(node, what, "a list of objects")
+                    .help("for example [{}]; what is left out of a record is 0 or FALSE"),
+            );
         };
         if items.len() > info.most {
             let message = format!("{what} has {} records: {} are the most", items.len(), info.most);
-            self.report(Diagnostic::new(Code::BadValue, node.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadValue, node.span, message));
         }
         let records = self.each(items, |reader, item| reader.record(item, info))?;
         self.placed(records)

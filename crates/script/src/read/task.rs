@@ -52,8 +52,7 @@ impl Reader {
             Some(node) => self.scans(node, "`interval`").and_then(|scans| {
                 if scans == 0 {
                     let message = "`interval` must be at least one cycle";
-                    self.report(Diagnostic::new(Code::BadTime, node.span, message));
-                    return None;
+                    return self.refuse(Diagnostic::new(Code::BadTime, node.span, message));
                 }
                 Some(Some(scans))
             }),
@@ -72,11 +71,10 @@ impl Reader {
         };
         if fields.get("interval").is_none() && fields.get("single").is_none() {
             let message = format!("the task {} would never run", quoted(name));
-            self.report(
+            return self.refuse(
                 Diagnostic::new(Code::MissingKey, fields.brace(), message)
                     .help("give it an `interval`, a `single` or both"),
             );
-            return None;
         }
         Some(Task {
             name: name.to_owned(),

@@ -4,7 +4,7 @@ use super::json::{Json, Node};
 use super::names::{Entity, suggestion};
 use super::program::{FAULT, LoadGuest};
 use super::task::MAIN;
-use super::value::Fields;
+use super::value::{Fields, wrong_type};
 use super::{Reader, is_note};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::model::{Call, Doubt, Place, Point, Program, ProgramText, Span, Symbol, Task, Variable};
@@ -81,8 +81,7 @@ impl Reader {
             Ok(guest) => guest,
             Err(why) => {
                 let message = format!("the program {} cannot run: {why}", quoted(name));
-                self.report(Diagnostic::new(Code::BadProgram, fields.get("st")?.span, message));
-                return None;
+                return self.refuse(Diagnostic::new(Code::BadProgram, fields.get("st")?.span, message));
             }
         };
         let symbols = self.columns(name, fields, &compiled.symbols)?;
@@ -120,22 +119,18 @@ impl Reader {
         };
         if items.is_empty() || items.len() > FILES_MAX {
             let message = format!("`st` names 1 to {FILES_MAX} files");
-            self.report(Diagnostic::new(Code::BadValue, node.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadValue, node.span, message));
         }
         let folder = self.folder.clone();
         self.each(items, |reader, item| {
             let Json::Text(path) = &item.json else {
-                let wrong = reader.wrong_type(item, "`st`", "a path or a list of paths");
-                reader.report(wrong);
-                return None;
+                return reader.refuse(wrong_type(item, "`st`", "a path or a list of paths"));
             };
             match load(path) {
                 Ok(bytes) => Some((format!("{folder}{path}"), bytes)),
                 Err(why) => {
                     let message = format!("{} cannot be read: {why}", quoted(path));
-                    reader.report(Diagnostic::new(Code::BadProgram, item.span, message));
-                    None
+                    reader.refuse(Diagnostic::new(Code::BadProgram, item.span, message))
                 }
             }
         })
@@ -180,11 +175,10 @@ impl Reader {
                 _ => None,
             };
             let span = key.map_or(fields.brace(), |(key, _)| key.span);
-            self.report(
+            return self.refuse(
                 Diagnostic::new(Code::UnknownSignal, span, wrong.message.clone())
                     .maybe_help(wrong.help.clone()),
             );
-            return None;
         }
         let count = report.diagnostics().iter();
         let count = count.filter(|it| it.severity == st::Severity::Error).count() + report.hidden();
@@ -219,8 +213,7 @@ impl Reader {
                 quoted(name)
             );
             let help = "name those that matter: \"trace\": [\"State\", \"Mv\"]";
-            self.report(Diagnostic::new(Code::TooLarge, fields.brace(), message).help(help));
-            return None;
+            return self.refuse(Diagnostic::new(Code::TooLarge, fields.brace(), message).help(help));
         }
         let mut columns = vec![fault_symbol()];
         for symbol in &found {
@@ -357,8 +350,7 @@ impl Reader {
             let (interval, cycle) = (super::time::literal(interval_ns), super::time::literal(cycle));
             let message =
                 format!("{title} has an INTERVAL of {interval}, no whole multiple of the cycle {cycle}");
-            self.report(Diagnostic::new(Code::BadTime, span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadTime, span, message));
         }
         let interval = Some((interval_ns / cycle).unsigned_abs());
         let upper = task.name.to_ascii_uppercase();
@@ -388,8 +380,7 @@ impl Reader {
                 super::time::literal(interval_ns)
             );
             let help = "say the same `interval` in `tasks`, or leave the task out there";
-            self.report(Diagnostic::new(Code::BadTime, span, message).help(help));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadTime, span, message).help(help));
         }
         Some(place)
     }

@@ -59,6 +59,12 @@ pub(crate) const NUMBER_WORDS: [(&str, f64); 3] = [
     ("-Infinity", f64::NEG_INFINITY),
 ];
 
+/// The fault of a value that isn't what `what` takes.
+pub(super) fn wrong_type(node: &Node, what: &str, expected: &str) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, node.span, format!("{what} takes {expected}"))
+        .label(format!("this is {}", node.json.kind()))
+}
+
 fn number_word(text: &str) -> Option<f64> {
     NUMBER_WORDS
         .iter()
@@ -67,13 +73,15 @@ fn number_word(text: &str) -> Option<f64> {
 }
 
 impl Reader {
+    /// Adds a fault of the text.
     pub(super) fn report(&mut self, diagnostic: Diagnostic) {
         self.errors.push(diagnostic);
     }
 
-    pub(super) fn wrong_type(&mut self, node: &Node, what: &str, expected: &str) -> Diagnostic {
-        Diagnostic::new(Code::WrongType, node.span, format!("{what} takes {expected}"))
-            .label(format!("this is {}", node.json.kind()))
+    /// The same, for a value that is therefore missing.
+    pub(super) fn refuse<T>(&mut self, diagnostic: Diagnostic) -> Option<T> {
+        self.report(diagnostic);
+        None
     }
 
     pub(super) fn map<'n>(&mut self, node: &'n Node, what: &str) -> Option<Fields<'n>> {
@@ -83,18 +91,14 @@ impl Reader {
                 members,
             });
         }
-        let diagnostic = self.wrong_type(node, what, "an object");
-        self.report(diagnostic);
-        None
+        self.refuse(wrong_type(node, what, "an object"))
     }
 
     pub(super) fn list<'n>(&mut self, node: &'n Node, what: &str) -> Option<&'n [Node]> {
         if let Json::List(items) = &node.json {
             return Some(items);
         }
-        let diagnostic = self.wrong_type(node, what, "a list");
-        self.report(diagnostic);
-        None
+        self.refuse(wrong_type(node, what, "a list"))
     }
 
     /// The members of `node`, every key of which `shape` must have.
@@ -139,22 +143,19 @@ impl Reader {
         if let Json::Text(text) = &node.json {
             return Some(text);
         }
-        let diagnostic = self.wrong_type(node, what, "a string");
-        self.report(diagnostic);
-        None
+        self.refuse(wrong_type(node, what, "a string"))
     }
 
     pub(super) fn boolean(&mut self, node: &Node, what: &str) -> Option<bool> {
         if let Json::Bool(value) = node.json {
             return Some(value);
         }
-        let mut diagnostic = self.wrong_type(node, what, "true or false");
+        let mut diagnostic = wrong_type(node, what, "true or false");
         if let Json::Text(text) = &node.json {
             let help = hints::truth(text).map(str::to_owned);
             diagnostic = diagnostic.maybe_help(help.or_else(|| self.wire_help(text)));
         }
-        self.report(diagnostic);
-        None
+        self.refuse(diagnostic)
     }
 
     /// The remedy for a string that is meant as a wire.
@@ -197,15 +198,14 @@ impl Reader {
             }
             _ => {}
         }
-        let mut diagnostic = self.wrong_type(node, what, "a number");
+        let mut diagnostic = wrong_type(node, what, "a number");
         if let Json::Text(text) = &node.json {
             let help = hints::number(text).or_else(|| self.wire_help(text));
             diagnostic = diagnostic.help(help.unwrap_or_else(|| {
                 "of strings only \"NaN\", \"Infinity\" and \"-Infinity\" are numbers".to_owned()
             }));
         }
-        self.report(diagnostic);
-        None
+        self.refuse(diagnostic)
     }
 
     fn parameter(&mut self, node: &Node) -> Option<f64> {
@@ -235,7 +235,7 @@ impl Reader {
         if value.is_finite() {
             return Some(value);
         }
-        self.report(
+        self.refuse(
             Diagnostic::new(
                 Code::BadValue,
                 node.span,
@@ -244,8 +244,7 @@ impl Reader {
             .help(
                 "NaN and infinities may stand at pins and in conditions only; for no limit leave the key out",
             ),
-        );
-        None
+        )
     }
 
     /// A whole number within `range`.
@@ -260,17 +259,17 @@ impl Reader {
             "{what} is {}: it must be a whole number from {low} to {high}",
             number_text(value)
         );
-        self.report(Diagnostic::new(Code::BadValue, node.span, message));
-        None
+        self.refuse(Diagnostic::new(Code::BadValue, node.span, message))
     }
 
     /// A scan number or a count of scans: a whole number, or a TIME literal that is a multiple of the cycle.
     pub(super) fn scans(&mut self, node: &Node, what: &str) -> Option<u64> {
         let Json::Text(_) = &node.json else {
             if !matches!(&node.json, Json::Number(_) | Json::Map(_)) {
-                let diagnostic = self.wrong_type(node, what, "a count of scans or a TIME literal");
-                self.report(diagnostic.help("for example 501 or \"T#501ms\""));
-                return None;
+                return self.refuse(
+                    wrong_type(node, what, "a count of scans or a TIME literal")
+                        .help("for example 501 or \"T#501ms\""),
+                );
             }
             return self
                 .whole(node, what, 0..=WHOLE_MAX as i64)
@@ -279,8 +278,7 @@ impl Reader {
         let ns = self.time_literal(node, what)?;
         if ns < 0 {
             let message = format!("{what} is negative");
-            self.report(Diagnostic::new(Code::BadTime, node.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadTime, node.span, message));
         }
         let cycle = self.cycle_ns?;
         if ns % cycle == 0 {
@@ -301,25 +299,21 @@ impl Reader {
             "{what} is no whole multiple of the cycle {}",
             time::literal(cycle)
         );
-        self.report(Diagnostic::new(Code::BadTime, node.span, message).help(nearest));
-        None
+        self.refuse(Diagnostic::new(Code::BadTime, node.span, message).help(nearest))
     }
 
     /// A TIME literal, in nanoseconds.
     pub(super) fn time_literal(&mut self, node: &Node, what: &str) -> Option<i64> {
         let Json::Text(text) = &node.json else {
-            let diagnostic = self.wrong_type(node, what, "a TIME literal");
-            self.report(diagnostic.help("for example \"T#1ms\""));
-            return None;
+            return self.refuse(wrong_type(node, what, "a TIME literal").help("for example \"T#1ms\""));
         };
         match time::parse(text) {
             Ok(ns) => Some(ns),
             Err(why) => {
                 let message = format!("{} is no TIME literal: {why}", quoted(text));
-                self.report(
+                self.refuse(
                     Diagnostic::new(Code::BadTime, node.span, message).help("for example \"T#500ms\""),
-                );
-                None
+                )
             }
         }
     }
@@ -327,23 +321,20 @@ impl Reader {
     /// The axis called by the string `node`.
     pub(super) fn axis_index(&mut self, node: &Node, what: &str) -> Option<usize> {
         let Json::Text(name) = &node.json else {
-            let diagnostic = self.wrong_type(node, what, "the name of an axis");
-            self.report(diagnostic);
-            return None;
+            return self.refuse(wrong_type(node, what, "the name of an axis"));
         };
         if let Some(Entity::Axis(index)) = self.names.get(name) {
             return Some(index);
         }
         let help = self.name_help(name, |entity| matches!(entity, Entity::Axis(_)));
-        self.report(
+        self.refuse(
             Diagnostic::new(
                 Code::UnknownAxis,
                 node.span,
                 format!("the script has no axis {}", quoted(name)),
             )
             .maybe_help(help),
-        );
-        None
+        )
     }
 
     /// The remedy for an unknown name among those that `filter` accepts.
@@ -433,14 +424,13 @@ impl Reader {
         if let Some((_, value)) = words.iter().find(|(word, _)| *word == text) {
             return Some(*value);
         }
-        self.report(
+        self.refuse(
             Diagnostic::new(
                 Code::BadValue,
                 node.span,
                 format!("{what} cannot be {}", quoted(text)),
             )
             .maybe_help(suggestion(text, words.iter().map(|(word, _)| *word))),
-        );
-        None
+        )
     }
 }

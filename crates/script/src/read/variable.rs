@@ -31,8 +31,7 @@ impl Reader {
         if !variable.is_settable() {
             let message = format!("{} is not for steps to set", quoted(name));
             let help = "steps set VAR_INPUT, VAR_GLOBAL and variables AT an address";
-            self.report(Diagnostic::new(Code::NotWritable, span, message).help(help));
-            return None;
+            return self.refuse(Diagnostic::new(Code::NotWritable, span, message).help(help));
         }
         let what = format!("{} ({})", quoted(name), variable.type_name());
         let value = self.variable_value(node, variable, &what)?;
@@ -70,8 +69,7 @@ impl Reader {
                 if number.abs() >= WHOLE_MAX && variable.is_wide() {
                     let message = format!("{what} is beyond 2^53, where a number of JSON is not exact");
                     let help = "write its digits in quotes: \"9007199254740993\"";
-                    self.report(Diagnostic::new(Code::BadValue, node.span, message).help(help));
-                    return None;
+                    return self.refuse(Diagnostic::new(Code::BadValue, node.span, message).help(help));
                 }
                 (number == number.trunc()).then_some(number as i128)
             }
@@ -146,8 +144,7 @@ impl Reader {
                     return Some(number);
                 }
                 let message = format!("{what} is a whole number, which is never {number}");
-                self.report(Diagnostic::new(Code::BadValue, node.span, message));
-                None
+                self.refuse(Diagnostic::new(Code::BadValue, node.span, message))
             }
         }
     }
@@ -169,8 +166,7 @@ impl Reader {
             _ => {
                 let message =
                     format!("{what} is compared exactly: with `le`, `ge`, `lt`, `gt`, `ne` and `abs_le`");
-                self.report(Diagnostic::new(Code::BadValue, span, message));
-                return None;
+                return self.refuse(Diagnostic::new(Code::BadValue, span, message));
             }
         };
         let number = self.variable_whole(node, variable, what)?;

@@ -23,24 +23,21 @@ impl Reader {
             .filter(|(key, _)| shape::WIRE_KINDS.contains(&key.text.as_str()));
         let Some((key, value)) = kinds.next() else {
             let message = "a wire says one of `from`, `not`, `any`, `all`";
-            self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::MissingKey, fields.brace(), message));
         };
         if let Some((second, _)) = kinds.next() {
             let message =
                 format!("two writers on {what}: a wire says only one of `from`, `not`, `any`, `all`");
-            self.report(
+            return self.refuse(
                 Diagnostic::new(Code::TwoWriters, second.span, message).related(key.span, "the other one"),
             );
-            return None;
         }
         if key.text == "from" {
             return self.source(value, ty, what).map(Wire::From);
         }
         if ty != PinType::Bool {
             let message = format!("{what} takes a wire with `from`: `{}` gives a BOOL", key.text);
-            self.report(Diagnostic::new(Code::WrongType, key.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::WrongType, key.span, message));
         }
         if key.text == "not" {
             return self.source(value, ty, what).map(Wire::Not);
@@ -48,8 +45,7 @@ impl Reader {
         let items = self.list(value, &quoted(&key.text))?;
         if items.is_empty() {
             let message = format!("`{}` needs at least one source", key.text);
-            self.report(Diagnostic::new(Code::BadValue, value.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::BadValue, value.span, message));
         }
         let points = self.each(items, |reader, item| reader.source(item, ty, what))?;
         Some(if key.text == "any" {
@@ -74,8 +70,7 @@ impl Reader {
                 "{what} cannot be wired from {}, which is {type_name}",
                 quoted(text)
             );
-            self.report(Diagnostic::new(Code::WrongType, node.span, message));
-            return None;
+            return self.refuse(Diagnostic::new(Code::WrongType, node.span, message));
         }
         if found == ty {
             return Some(point);
@@ -85,8 +80,7 @@ impl Reader {
             quoted(text),
             found.iec_name()
         );
-        self.report(Diagnostic::new(Code::WrongType, node.span, message));
-        None
+        self.refuse(Diagnostic::new(Code::WrongType, node.span, message))
     }
 
     /// The variable or pin called `text`, and its type.
@@ -107,11 +101,10 @@ impl Reader {
                     return Some((Point::Pin(index, pin), info.ty));
                 }
                 let message = format!("{} has no pin {}", block.name, quoted(pin_name));
-                self.report(
+                return self.refuse(
                     Diagnostic::new(Code::UnknownPin, span, message)
                         .maybe_help(suggestion(pin_name, block.pins().map(|pin| pin.name))),
                 );
-                return None;
             }
             (Some(Entity::Block(..)), None) => {
                 format!("{} is an instance: which pin? Write `{name}.Pin`", quoted(name))
@@ -137,8 +130,7 @@ impl Reader {
             None => self.name_help(name, |entity| !matches!(entity, Entity::Axis(_))),
             Some(_) => None,
         };
-        self.report(Diagnostic::new(Code::UnknownSignal, span, message).maybe_help(help));
-        None
+        self.refuse(Diagnostic::new(Code::UnknownSignal, span, message).maybe_help(help))
     }
 }
 
