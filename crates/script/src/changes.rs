@@ -3,7 +3,6 @@
 use crate::error::ScriptError;
 use crate::format::format;
 use crate::read::json::{self, Json};
-use crate::read::without_mark;
 use crate::run::Change;
 use std::fmt::Write;
 
@@ -13,9 +12,7 @@ use std::fmt::Write;
 /// # Errors
 /// [`ScriptError`] if the text is no strict JSON.
 pub fn with_changes(text: &str, file_name: &str, changes: &[Change]) -> Result<String, ScriptError> {
-    let plain = without_mark(text);
-    let root =
-        json::parse(plain).map_err(|diagnostic| ScriptError::new(file_name, plain, vec![diagnostic]))?;
+    let (plain, root) = json::file(text, file_name)?;
     let mut steps = String::new();
     // Changes of one scan are one step.
     for (index, same) in changes.chunk_by(|a, b| a.scan == b.scan).enumerate() {
@@ -35,13 +32,8 @@ pub fn with_changes(text: &str, file_name: &str, changes: &[Change]) -> Result<S
         }
         steps.push_str("}}");
     }
-    let members = match &root.json {
-        Json::Map(members) => members.as_slice(),
-        _ => &[],
-    };
-    let own = members.iter().find(|(key, _)| key.text == "steps");
-    let (place, insert) = match own {
-        Some((_, node)) => {
+    let (place, insert) = match root.member("steps") {
+        Some(node) => {
             let empty = matches!(&node.json, Json::List(items) if items.is_empty());
             (
                 node.span.end - 1,

@@ -2,7 +2,6 @@
 
 use crate::error::ScriptError;
 use crate::read::json::{self, Json, Node};
-use crate::read::without_mark;
 use std::fmt::Write;
 
 /// Longest line (characters) for an object or list on one line.
@@ -24,9 +23,7 @@ const ONE_PER_LINE: [&str; 5] = ["axes", "tasks", "blocks", "steps", "expect"];
 /// # Errors
 /// [`ScriptError`] if the text is no strict JSON.
 pub fn format(text: &str, file_name: &str) -> Result<String, ScriptError> {
-    let plain = without_mark(text);
-    let root =
-        json::parse(plain).map_err(|diagnostic| ScriptError::new(file_name, plain, vec![diagnostic]))?;
+    let (_, root) = json::file(text, file_name)?;
     let mut out = String::new();
     match &root.json {
         Json::Map(members) if !members.is_empty() => {

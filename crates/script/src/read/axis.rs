@@ -105,12 +105,8 @@ fn place_of(axis: &Key, node: &Node, path: &str) -> Span {
     let mut place = node;
     for part in path.split('.') {
         let inner = match &place.json {
-            Json::Map(members) => members
-                .iter()
-                .find(|(key, _)| key.text == part)
-                .map(|(_, value)| value),
             Json::List(items) => part.parse::<usize>().ok().and_then(|index| items.get(index)),
-            _ => None,
+            _ => place.member(part),
         };
         match inner {
             Some(inner) => place = inner,

@@ -151,7 +151,7 @@ impl Reader {
 
     fn test(&mut self, node: &Node, kind: Kind, what: &str) -> Option<Test> {
         match &node.json {
-            Json::Map(members) if members.iter().all(|(key, _)| key.text != "param") => {
+            Json::Map(_) if node.member("param").is_none() => {
                 self.comparisons(node, kind, what).map(Test::Compare)
             }
             _ => self.plain(node, kind, what),
@@ -273,9 +273,7 @@ impl Reader {
         what: &str,
     ) -> Option<Comparison> {
         let other = match &near.json {
-            Json::Map(members) if members.iter().all(|(key, _)| key.text != "param") => {
-                Some(self.near_to(near, kind))
-            }
+            Json::Map(_) if near.member("param").is_none() => Some(self.near_to(near, kind)),
             _ => None,
         };
         let near = match other {

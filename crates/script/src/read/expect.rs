@@ -1,6 +1,6 @@
 //! Claims: the author's statements about the run.
 
-use super::json::{Json, Node};
+use super::json::Node;
 use super::names::nearest;
 use super::shape::{self, Shape};
 use super::value::Fields;
@@ -19,16 +19,12 @@ impl Reader {
         let mut index = 0;
         self.each(items, |reader, node| {
             let kind = reader.claim(node);
-            let may_be_vacuous = match &node.json {
-                Json::Map(members) => members.iter().any(|(key, _)| key.text == "vacuous"),
-                _ => false,
-            };
             let path = format!("expect[{index}]");
             index += 1;
             Some(Claim {
                 path,
                 span: node.span,
-                may_be_vacuous,
+                may_be_vacuous: node.member("vacuous").is_some(),
                 window: reader.claim_window(node)?,
                 kind: kind?,
             })
@@ -240,5 +236,5 @@ impl Reader {
 
 /// Whether a window begins or ends here by conditions.
 pub(super) fn is_edge(node: &Node) -> bool {
-    matches!(&node.json, Json::Map(members) if members.iter().any(|(key, _)| key.text == "when"))
+    node.member("when").is_some()
 }

@@ -6,7 +6,7 @@
 
 use super::json::{self, Json, Key, Node};
 use super::value::wrong_type;
-use super::{Reader, shape, without_mark};
+use super::{Reader, SCRIPT_VERSION, VERSION, shape, without_mark};
 use crate::error::{Code, Diagnostic, File, quoted};
 use crate::model::Span;
 use std::collections::btree_map::Entry;
@@ -61,36 +61,31 @@ impl Reader {
 
     /// The members of a script or a machine file, those of the files it includes first.
     fn expanded(&mut self, members: Members, files: &mut Files<'_>) -> Members {
-        let is = |wanted: &'static str| move |(key, _): &&(Key, Node)| key.text == wanted;
-        let paths = members
-            .iter()
-            .find(is("include"))
-            .map(|(_, node)| self.texts(node));
-        let overrides = members
-            .iter()
-            .find(is("override"))
-            .map(|(_, node)| self.texts(node));
+        let mut texts = |wanted: &str| {
+            let found = members.iter().find(|(key, _)| key.text == wanted);
+            found.map_or_else(Vec::new, |(_, node)| self.texts(node))
+        };
+        let (paths, overrides) = (texts("include"), texts("override"));
         let mut below = Members::new();
-        for (path, span) in paths.unwrap_or_default() {
+        for (path, span) in paths {
             for (key, node) in self.machine(&path, span, files) {
                 self.lay(&mut below, key, node, &mut Overrides::new());
             }
         }
         let mut wanted = Overrides::new();
-        for (name, span) in overrides.unwrap_or_default() {
+        for (name, span) in overrides {
             let upper = name.to_ascii_uppercase();
             wanted.entry(upper).or_default().push_back((name, span));
         }
-        let mut overrides = wanted;
         let mut rest = Members::new();
         for (key, node) in members {
             match key.text.as_str() {
                 "include" | "override" => {}
-                section if SECTIONS.contains(&section) => self.lay(&mut below, key, node, &mut overrides),
+                section if SECTIONS.contains(&section) => self.lay(&mut below, key, node, &mut wanted),
                 _ => rest.push((key, node)),
             }
         }
-        for (name, span) in overrides.into_values().flatten() {
+        for (name, span) in wanted.into_values().flatten() {
             let message = format!("nothing overrides {}", quoted(&name));
             self.report(
                 Diagnostic::new(Code::BadOverride, span, message)
@@ -163,7 +158,7 @@ impl Reader {
         move_places(&mut root, start);
         let good = self
             .fields(&root, &shape::MACHINE)
-            .and_then(|fields| self.version(&fields, "a machine file"));
+            .and_then(|fields| self.version(&fields, SCRIPT_VERSION, "a machine file", VERSION));
         let Json::Map(members) = root.json else {
             return Members::new();
         };
@@ -286,14 +281,8 @@ impl Places {
 
 /// The `name` of a block.
 fn name_of(node: &Node) -> Option<(&str, Span)> {
-    let Json::Map(members) = &node.json else {
-        return None;
-    };
-    let (_, node) = members.iter().find(|(key, _)| key.text == "name")?;
-    match &node.json {
-        Json::Text(name) => Some((name.as_str(), node.span)),
-        _ => None,
-    }
+    let node = node.member("name")?;
+    Some((node.text()?, node.span))
 }
 
 /// Keys of `by` replace those of the entry, pins one by one; the others stay.

@@ -125,10 +125,8 @@ impl Reader {
                     .filter(|scans| !(range.0..=range.1).contains(scans))
                     .map(|scans| format!("is {scans} scans: it must be from {} to {}", range.0, range.1)),
                 Holds::Object(object) => {
-                    if let Json::Map(members) = &node.json {
-                        let inner = Fields::of(node, members);
-                        good = self.in_range(&inner, object, of).and(good);
-                    }
+                    let inner = Fields::of(node, node.members());
+                    good = self.in_range(&inner, object, of).and(good);
                     None
                 }
                 Holds::Bool { .. } | Holds::Word { .. } | Holds::Whole { .. } | Holds::List(_) => None,

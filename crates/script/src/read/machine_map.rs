@@ -4,7 +4,7 @@
 use super::names::suggestion;
 use super::shape::machine as shape;
 use super::value::{Fields, wrong_type};
-use super::{Reader, json, without_mark};
+use super::{Reader, read_file};
 use crate::error::{Code, Diagnostic, ScriptError, quoted};
 use crate::read::json::{Json, Key, Node};
 use standstill_trace::foreign::{Layout, Place, Times, Unit};
@@ -41,23 +41,13 @@ pub(crate) const DECIMALS: [(&str, char); 2] = [(".", '.'), (",", ',')];
 /// # Errors
 /// [`ScriptError`] with all faults; after a syntax error only that one.
 pub fn read_map(text: &str, file_name: &str, trace: &Trace) -> Result<Map, ScriptError> {
-    let plain = without_mark(text);
-    let error = |diagnostics| ScriptError::new(file_name, plain, diagnostics);
-    let root = json::parse(plain).map_err(|diagnostic| error(vec![diagnostic]))?;
-    let mut reader = Reader::default();
-    match reader.machine_map(&root, trace) {
-        Some(map) if reader.errors.is_empty() => Ok(map),
-        _ => {
-            debug_assert!(!reader.errors.is_empty(), "refused without a reason");
-            Err(error(reader.errors))
-        }
-    }
+    read_file(text, file_name, |reader, root, _| reader.machine_map(root, trace))
 }
 
 impl Reader {
     fn machine_map(&mut self, root: &Node, trace: &Trace) -> Option<Map> {
         let fields = self.fields(root, &shape::MAP)?;
-        self.map_version(&fields)?;
+        self.version(&fields, ("standstill_compare", "map"), "a map", MAP_VERSION)?;
         let layout = match self.require(&fields, "recording", "a map") {
             Some(node) => self.recording(node),
             None => None,
@@ -82,20 +72,6 @@ impl Reader {
             window,
             signals: signals?,
         })
-    }
-
-    fn map_version(&mut self, fields: &Fields<'_>) -> Option<()> {
-        let node = self.require(fields, "standstill_compare", "a map")?;
-        let what = "`standstill_compare`, the version of the format,";
-        let version = self.whole(node, what, 1..=i64::from(u32::MAX))?;
-        if version == i64::from(MAP_VERSION) {
-            return Some(());
-        }
-        let message = format!("version {version} of the map format is not supported");
-        self.refuse(
-            Diagnostic::new(Code::Unsupported, node.span, message)
-                .help(format!("this runtime reads version {MAP_VERSION}")),
-        )
     }
 
     fn recording(&mut self, node: &Node) -> Option<Layout> {
@@ -316,12 +292,12 @@ impl Reader {
         if let Json::Text(_) = &node.json {
             return self.time_literal(node, "`offset`").map(Offset::Fixed);
         }
-        let Json::Map(members) = &node.json else {
+        let Json::Map(_) = &node.json else {
             return self.refuse(wrong_type(node, "`offset`", "a TIME literal or an object").help(
                 "\"T#20ms\", {\"edge\": \"move.Done\", \"to\": true} or {\"fit\": \"X.Position\", \"from\": \"T#-1s\", \"to\": \"T#1s\"}",
             ));
         };
-        if members.iter().any(|(key, _)| key.text == "fit") {
+        if node.member("fit").is_some() {
             return self.fit(node, signals, trace);
         }
         let fields = self.fields(node, &shape::EDGE)?;

@@ -66,6 +66,9 @@ pub const ENTITIES_MAX: usize = 65_000;
 /// The version of the format that is read.
 pub const VERSION: u32 = 1;
 
+/// The key with the version of a script or a machine file, and the name of their format.
+const SCRIPT_VERSION: (&str, &str) = ("standstill", "script");
+
 /// The data collected while a script is read.
 #[derive(Default)]
 struct Reader {
@@ -205,9 +208,7 @@ impl Parsed {
         file_name: &str,
         load: &mut dyn FnMut(&str) -> Result<String, String>,
     ) -> Result<Self, ScriptError> {
-        let plain = without_mark(text);
-        let root =
-            json::parse(plain).map_err(|diagnostic| ScriptError::new(file_name, plain, vec![diagnostic]))?;
+        let (plain, root) = json::file(text, file_name)?;
         let mut reader = Reader::default();
         let mut files = include::Files::new(file_name, plain, load);
         let root = reader.with_includes(root, &mut files);
@@ -264,6 +265,23 @@ impl Parsed {
     }
 }
 
+/// Reads a file that is no script by `read`, which gets its value and its text without a byte order mark.
+fn read_file<T>(
+    text: &str,
+    file_name: &str,
+    read: impl FnOnce(&mut Reader, &Node, &str) -> Option<T>,
+) -> Result<T, ScriptError> {
+    let (plain, root) = json::file(text, file_name)?;
+    let mut reader = Reader::default();
+    match read(&mut reader, &root, plain) {
+        Some(it) if reader.errors.is_empty() => Ok(it),
+        _ => {
+            debug_assert!(!reader.errors.is_empty(), "refused without a reason");
+            Err(ScriptError::new(file_name, plain, reader.errors))
+        }
+    }
+}
+
 /// `text` without a byte order mark.
 pub(crate) fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
@@ -278,7 +296,11 @@ impl Reader {
     ) -> Option<Script> {
         let fields = self.fields(root, &shape::SCRIPT)?;
         // There may be other faults beside a missing key.
-        if self.version(&fields, "a script").is_none() && fields.get("standstill").is_some() {
+        if self
+            .version(&fields, SCRIPT_VERSION, "a script", VERSION)
+            .is_none()
+            && fields.get("standstill").is_some()
+        {
             return None;
         }
         if let Some(node) = fields.get("$schema") {
@@ -305,11 +327,7 @@ impl Reader {
         let steps = self.steps(&fields);
         let claims = self
             .claims(&fields)
-            .zip(self.fault_claims(&fields))
-            .map(|(mut claims, more)| {
-                claims.extend(more);
-                claims
-            });
+            .map(|claims| [claims, self.fault_claims(&fields)].concat());
         let stop_when = self.stop_when(&fields);
         let golden = fields
             .get("golden")
@@ -350,23 +368,24 @@ impl Reader {
         Some(script)
     }
 
-    fn version(&mut self, fields: &Fields<'_>, what: &str) -> Option<()> {
-        let node = self.require(fields, "standstill", what)?;
-        let version = self.whole(
-            node,
-            "`standstill`, the version of the format,",
-            1..=i64::from(u32::MAX),
-        )?;
-        if version == i64::from(VERSION) {
+    /// Checks the version of a format; `key` says it, `what` is the object that has it.
+    fn version(
+        &mut self,
+        fields: &Fields<'_>,
+        (key, format): (&str, &str),
+        what: &str,
+        read: u32,
+    ) -> Option<()> {
+        let node = self.require(fields, key, what)?;
+        let called = format!("`{key}`, the version of the format,");
+        let version = self.whole(node, &called, 1..=i64::from(u32::MAX))?;
+        if version == i64::from(read) {
             return Some(());
         }
+        let message = format!("version {version} of the {format} format is not supported");
         self.refuse(
-            Diagnostic::new(
-                Code::Unsupported,
-                node.span,
-                format!("version {version} of the script format is not supported"),
-            )
-            .help(format!("this runtime reads version {VERSION}")),
+            Diagnostic::new(Code::Unsupported, node.span, message)
+                .help(format!("this runtime reads version {read}")),
         )
     }
 
@@ -461,8 +480,8 @@ impl Reader {
             matches!(node, Some(Json::Map(_) | Json::List(_)))
         };
         let lacks = |key: &str| {
-            let node = fields.get(key).map(|node| &node.json);
-            node.is_some_and(|json| !matches!(json, Json::Map(_)))
+            let node = fields.get(key);
+            node.is_some_and(|node| !matches!(node.json, Json::Map(_)))
         };
         let is_slip = |key: &str| {
             !shape::SCRIPT.has(key) && names::nearest(key, ["inputs", "programs"].into_iter()).is_some()
@@ -473,75 +492,63 @@ impl Reader {
             || lacks("programs")
             || fields.iter().any(|(key, _)| is_slip(&key.text));
         let mut places: BTreeMap<String, Span> = BTreeMap::new();
-        if let Some(Json::Map(members)) = fields.get("axes").map(|node| &node.json) {
-            self.axis_names = members.iter().map(|(key, _)| key.text.clone()).collect();
-            for (index, (key, _)) in members.iter().enumerate() {
-                self.declare_name(&mut places, &key.text, key.span, Entity::Axis(index));
-            }
+        for (index, (key, _)) in fields.members("axes").iter().enumerate() {
+            self.axis_names.push(key.text.clone());
+            self.declare_name(&mut places, &key.text, key.span, Entity::Axis(index));
         }
-        if let Some(Json::Map(members)) = fields.get("inputs").map(|node| &node.json) {
-            for (index, (key, node)) in members.iter().enumerate() {
-                let ty = match &node.json {
-                    Json::Bool(_) => Some(PinType::Bool),
-                    Json::Map(_) => match initial_of(node).map(|node| &node.json) {
-                        Some(Json::Bool(_)) => Some(PinType::Bool),
-                        _ => Some(PinType::Lreal),
-                    },
-                    Json::Number(_) | Json::Text(_) => Some(PinType::Lreal),
-                    Json::Null | Json::List(_) => None,
-                };
-                self.declare_name(&mut places, &key.text, key.span, Entity::Input(index, ty));
-            }
+        for (index, (key, node)) in fields.members("inputs").iter().enumerate() {
+            let ty = match (&node.json, node.member("value").map(|node| &node.json)) {
+                (Json::Bool(_), _) | (_, Some(Json::Bool(_))) => Some(PinType::Bool),
+                (Json::Null | Json::List(_), _) => None,
+                _ => Some(PinType::Lreal),
+            };
+            self.declare_name(&mut places, &key.text, key.span, Entity::Input(index, ty));
         }
-        self.declare_programs(fields, &mut places);
+        for (index, (key, _)) in fields.members("programs").iter().enumerate() {
+            self.declare_name(&mut places, &key.text, key.span, Entity::Program(index));
+        }
         if let Some(Json::List(items)) = fields.get("blocks").map(|node| &node.json) {
             for (index, node) in items.iter().enumerate() {
-                let member = |name: &str| match &node.json {
-                    Json::Map(members) => members
-                        .iter()
-                        .find(|(key, _)| key.text == name)
-                        .map(|(_, node)| node),
-                    _ => None,
-                };
-                if let Some(pins) = member("pins")
-                    && let Some(slave) = self.axis_at(pins, "Slave")
-                {
-                    let masters = if pin_of(pins, "Master2").is_some() { 2 } else { 1 };
-                    let most = self.slaves.entry(slave).or_default();
-                    *most = masters.max(*most);
-                }
-                let info = match member("type").map(|node| &node.json) {
-                    Some(Json::Text(name)) => standstill_blocks::registry::find(name),
-                    _ => None,
-                };
-                if info.is_some_and(|info| info.name == "MC_CamIn") {
-                    let slave = member("pins").and_then(|pins| self.axis_at(pins, "Slave"));
-                    self.on_cams.extend(slave);
-                }
-                if info.is_some_and(|info| info.name == "MC_MoveSuperimposed") {
-                    let axis = member("pins").and_then(|pins| self.axis_at(pins, "Axis"));
-                    self.superimposed.extend(axis);
-                }
-                if let Some(Node {
-                    span,
-                    json: Json::Text(name),
-                }) = member("name")
-                {
-                    self.declare_name(&mut places, name, *span, Entity::Block(index, info));
-                } else {
-                    self.lacks_names = true;
-                }
+                self.declare_block(&mut places, index, node);
             }
+        }
+    }
+
+    /// Declares the name of a block, and what its pins say about axes.
+    fn declare_block(&mut self, places: &mut BTreeMap<String, Span>, index: usize, node: &Node) {
+        let pins = node.member("pins");
+        if let Some(slave) = pins.and_then(|pins| self.axis_at(pins, "Slave")) {
+            let second = pins.and_then(|pins| pin_of(pins, "Master2"));
+            let masters = if second.is_some() { 2 } else { 1 };
+            let most = self.slaves.entry(slave).or_default();
+            *most = masters.max(*most);
+        }
+        let name = node.member("type").and_then(Node::text);
+        let info = name.and_then(standstill_blocks::registry::find);
+        match info.map(|info| info.name) {
+            Some("MC_CamIn") => {
+                let slave = pins.and_then(|pins| self.axis_at(pins, "Slave"));
+                self.on_cams.extend(slave);
+            }
+            Some("MC_MoveSuperimposed") => {
+                let axis = pins.and_then(|pins| self.axis_at(pins, "Axis"));
+                self.superimposed.extend(axis);
+            }
+            _ => {}
+        }
+        match node.member("name") {
+            Some(Node {
+                span,
+                json: Json::Text(name),
+            }) => self.declare_name(places, name, *span, Entity::Block(index, info)),
+            _ => self.lacks_names = true,
         }
     }
 
     /// The axis at this pin, if there is one.
     fn axis_at(&self, pins: &Node, pin: &str) -> Option<usize> {
-        match &pin_of(pins, pin)?.json {
-            Json::Text(name) => match self.names.get(name)? {
-                Entity::Axis(axis) => Some(axis),
-                _ => None,
-            },
+        match self.names.get(pin_of(pins, pin)?.text()?)? {
+            Entity::Axis(axis) => Some(axis),
             _ => None,
         }
     }
@@ -572,14 +579,6 @@ impl Reader {
     /// Whether it has a master, and motions may be superimposed on it.
     fn is_superimposed(&self, axis: usize) -> bool {
         self.masters_of(axis) > 0 && self.superimposed.contains(&axis)
-    }
-
-    fn declare_programs(&mut self, fields: &Fields<'_>, places: &mut BTreeMap<String, Span>) {
-        if let Some(Json::Map(members)) = fields.get("programs").map(|node| &node.json) {
-            for (index, (key, _)) in members.iter().enumerate() {
-                self.declare_name(places, &key.text, key.span, Entity::Program(index));
-            }
-        }
     }
 
     fn declare_name(&mut self, places: &mut BTreeMap<String, Span>, name: &str, span: Span, entity: Entity) {
@@ -624,7 +623,7 @@ impl Reader {
                 may_be_vacuous: false,
             };
             let mut node = node;
-            if let Some(inner) = initial_of(node) {
+            if let Some(inner) = node.member("value") {
                 let fields = self.fields(node, &shape::INPUT);
                 place.may_be_vacuous = fields.is_some_and(|fields| self.may_be_vacuous(&fields));
                 node = inner;
@@ -730,15 +729,6 @@ impl Reader {
 /// The permitted values of `clamps`.
 pub(crate) const CLAMPS: [(&str, bool); 1] = [("expected", true)];
 
-/// The initial value of an input variable that is declared by an object.
-fn initial_of(node: &Node) -> Option<&Node> {
-    let Json::Map(members) = &node.json else {
-        return None;
-    };
-    let mut members = members.iter();
-    members.find(|(key, _)| key.text == "value").map(|(_, node)| node)
-}
-
 /// Whether this is the note of a map of names, which is not a name. By the contract any object may have one.
 fn is_note(key: &Key, node: &Node) -> bool {
     key.text == "note" && matches!(node.json, Json::Text(_))
@@ -746,10 +736,7 @@ fn is_note(key: &Key, node: &Node) -> bool {
 
 /// The value at a pin of a block.
 fn pin_of<'a>(pins: &'a Node, pin: &str) -> Option<&'a Node> {
-    let Json::Map(members) = &pins.json else {
-        return None;
-    };
-    let mut pins = members.iter();
+    let mut pins = pins.members().iter();
     pins.find(|(key, _)| key.text.eq_ignore_ascii_case(pin))
         .map(|(_, node)| node)
 }

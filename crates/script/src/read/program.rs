@@ -80,18 +80,12 @@ impl Reader {
     /// The memory of a program that does not state its need (bytes): the usual amount, or an equal share of the
     /// rest. All together may have no more than the caller permits.
     fn memory_share(&mut self, members: &Fields<'_>, node: &Node) -> Option<u64> {
-        let said = |node: &Node| match &node.json {
-            Json::Map(inner) => inner
-                .iter()
-                .find(|(key, _)| key.text == "memory")
-                .map(|(_, node)| {
-                    // An invalid number of bytes is reported where the program is read.
-                    match node.json {
-                        Json::Number(bytes) if (0.0..=MEMORY_MAX as f64).contains(&bytes) => bytes as u64,
-                        _ => 0,
-                    }
-                }),
-            _ => None,
+        let said = |node: &Node| {
+            // An invalid number of bytes is reported where the program is read.
+            node.member("memory").map(|node| match node.json {
+                Json::Number(bytes) if (0.0..=MEMORY_MAX as f64).contains(&bytes) => bytes as u64,
+                _ => 0,
+            })
         };
         let all: Vec<_> = members.iter().map(|(_, node)| said(node)).collect();
         let total = all.iter().flatten().copied().fold(0, u64::saturating_add);
@@ -217,13 +211,7 @@ impl Reader {
             }
             let mut names = vec![FAULT.to_ascii_uppercase()];
             for (key, node) in members.iter() {
-                if is_note(key, node)
-                    && SymbolType::find(match &node.json {
-                        Json::Text(text) => text,
-                        _ => "",
-                    })
-                    .is_none()
-                {
+                if is_note(key, node) && node.text().and_then(SymbolType::find).is_none() {
                     continue;
                 }
                 if let Some(why) = identifier_error(&key.text) {
@@ -304,14 +292,9 @@ impl Reader {
     }
 
     /// For each program that may not fault: a claim that it does not.
-    pub(super) fn fault_claims(&mut self, fields: &Fields<'_>) -> Option<Vec<Claim>> {
-        let Some(Json::Map(members)) = fields.get("programs").map(|node| &node.json) else {
-            return Some(Vec::new());
-        };
+    pub(super) fn fault_claims(&self, fields: &Fields<'_>) -> Vec<Claim> {
         let may = |node: &Node| match &node.json {
-            Json::Map(inner) => inner
-                .iter()
-                .any(|(key, node)| key.text == "may_fault" && matches!(node.json, Json::Bool(true))),
+            Json::Map(_) => matches!(node.member("may_fault"), Some(node) if node.json == Json::Bool(true)),
             _ => true,
         };
         let claim = |index: usize, name: &str, span: Span| Claim {
@@ -330,14 +313,11 @@ impl Reader {
                 }],
             },
         };
-        Some(
-            members
-                .iter()
-                .enumerate()
-                .filter(|(_, (_, node))| !may(node))
-                .map(|(index, (key, _))| claim(index, &key.text, key.span))
-                .collect(),
-        )
+        let programs = fields.members("programs").iter().enumerate();
+        programs
+            .filter(|(_, (_, node))| !may(node))
+            .map(|(index, (key, _))| claim(index, &key.text, key.span))
+            .collect()
     }
 
     /// The variable of a program with this `name`.

@@ -1,7 +1,7 @@
 //! Claims about events: answers, durations, counts, and windows by condition.
 
 use super::expect::is_edge;
-use super::json::{Json, Node};
+use super::json::Node;
 use super::value::{Fields, WHOLE_MAX};
 use super::{Reader, shape};
 use crate::error::{Code, Diagnostic};
@@ -141,14 +141,8 @@ impl Reader {
 
     /// The conditions at which the scans of a claim begin and end.
     pub(super) fn claim_window(&mut self, claim: &Node) -> Option<Window> {
-        let Json::Map(members) = &claim.json else {
-            return Some(Window::default());
-        };
         let mut edge = |name: &str| {
-            let found = members
-                .iter()
-                .find(|(key, node)| key.text == name && is_edge(node));
-            let Some((_, node)) = found else {
+            let Some(node) = claim.member(name).filter(|node| is_edge(node)) else {
                 return Some(None);
             };
             let fields = self.fields(node, &shape::WINDOW_EDGE)?;

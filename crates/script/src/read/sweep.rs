@@ -1,8 +1,8 @@
 //! From text to a checked [`Sweep`]: which parameters of a script vary, and how.
 
 use super::shape::sweep as shape;
-use super::value::{Fields, WHOLE_MAX, wrong_type};
-use super::{Reader, is_note, json, without_mark};
+use super::value::{WHOLE_MAX, wrong_type};
+use super::{Reader, is_note, read_file};
 use crate::error::{Code, Diagnostic, ScriptError, quoted};
 use crate::read::json::{Json, Key, Node};
 use crate::sweep::{CASES_MAX, Draw, Measure, Scale, Sweep, TAKES, Values, Varied};
@@ -20,23 +20,15 @@ pub(crate) const SCALES: [(&str, Scale); 2] = [("linear", Scale::Linear), ("log"
 /// # Errors
 /// [`ScriptError`] with all faults; after a syntax error only that one.
 pub fn read_sweep(text: &str, file_name: &str) -> Result<Sweep, ScriptError> {
-    let plain = without_mark(text);
-    let error = |diagnostics| ScriptError::new(file_name, plain, diagnostics);
-    let root = json::parse(plain).map_err(|diagnostic| error(vec![diagnostic]))?;
-    let mut reader = Reader::default();
-    match reader.sweep(&root, (file_name.to_owned(), plain.to_owned())) {
-        Some(sweep) if reader.errors.is_empty() => Ok(sweep),
-        _ => {
-            debug_assert!(!reader.errors.is_empty(), "refused without a reason");
-            Err(error(reader.errors))
-        }
-    }
+    read_file(text, file_name, |reader, root, plain| {
+        reader.sweep(root, (file_name.to_owned(), plain.to_owned()))
+    })
 }
 
 impl Reader {
     fn sweep(&mut self, root: &Node, file: (String, String)) -> Option<Sweep> {
         let fields = self.fields(root, &shape::SWEEP)?;
-        self.sweep_version(&fields)?;
+        self.version(&fields, ("standstill_sweep", "sweep"), "a sweep", SWEEP_VERSION)?;
         for key in ["$schema", "title"] {
             if let Some(node) = fields.get(key) {
                 self.text(node, &quoted(key))?;
@@ -83,20 +75,6 @@ impl Reader {
             measures: measures?,
             has_digest: has_digest?,
         })
-    }
-
-    fn sweep_version(&mut self, fields: &Fields<'_>) -> Option<()> {
-        let node = self.require(fields, "standstill_sweep", "a sweep")?;
-        let what = "`standstill_sweep`, the version of the format,";
-        let version = self.whole(node, what, 1..=i64::from(u32::MAX))?;
-        if version == i64::from(SWEEP_VERSION) {
-            return Some(());
-        }
-        let message = format!("version {version} of the sweep format is not supported");
-        self.refuse(
-            Diagnostic::new(Code::Unsupported, node.span, message)
-                .help(format!("this runtime reads version {SWEEP_VERSION}")),
-        )
     }
 
     fn sample(&mut self, node: &Node) -> Option<(Vec<Varied>, Draw)> {

@@ -167,13 +167,8 @@ impl Reader {
         };
         let unbound = |it: &&st::Diagnostic| it.code == st::Code::UnknownBinding;
         if let Some(wrong) = report.diagnostics().iter().find(unbound) {
-            let members = fields.get("axes").map(|node| &node.json);
-            let key = match members {
-                Some(Json::Map(members)) => members
-                    .iter()
-                    .find(|(key, _)| wrong.message.contains(&format!("`{}`", key.text))),
-                _ => None,
-            };
+            let mut bound = fields.members("axes").iter();
+            let key = bound.find(|(key, _)| wrong.message.contains(&format!("`{}`", key.text)));
             let span = key.map_or(fields.brace(), |(key, _)| key.span);
             return self.refuse(
                 Diagnostic::new(Code::UnknownSignal, span, wrong.message.clone())
@@ -284,26 +279,25 @@ impl Reader {
     /// The times at which the programs run. The tasks of a CONFIGURATION become tasks of the script, and its
     /// programs without one run after all of them.
     pub(super) fn program_calls(&mut self, fields: &Fields<'_>, tasks: &mut Option<Vec<Task>>) {
-        let Some(Json::Map(members)) = fields.get("programs").map(|node| &node.json) else {
-            return;
-        };
-        for (index, (key, node)) in members.iter().enumerate() {
-            let Json::Map(inner) = &node.json else { continue };
-            let task = inner.iter().find(|(key, _)| key.text == "task");
+        for (index, (key, node)) in fields.members("programs").iter().enumerate() {
+            if !matches!(node.json, Json::Map(_)) {
+                continue;
+            }
+            let task = node.member("task");
             let text = self
                 .programs
                 .get(index)
                 .and_then(|program| program.as_ref()?.text.clone());
             let symbols = text.as_ref().map(|text| &text.symbols);
             let listed = symbols.filter(|symbols| symbols.is_configured());
-            if let (Some(_), Some((_, node))) = (listed, task) {
+            if let (Some(_), Some(node)) = (listed, task) {
                 let message = "the CONFIGURATION of the sources says which tasks there are";
                 self.report(Diagnostic::new(Code::BadValue, node.span, message).help("leave `task` out"));
             }
             let own = |reader: &mut Self, tasks: &Option<Vec<Task>>| {
                 let (name, span) = match task {
                     None => (MAIN, key.span),
-                    Some((_, node)) => (reader.text(node, "`task`")?, node.span),
+                    Some(node) => (reader.text(node, "`task`")?, node.span),
                 };
                 reader.task_index(name, span, tasks.as_deref())
             };

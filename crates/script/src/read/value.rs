@@ -39,6 +39,11 @@ impl<'n> Fields<'n> {
         self.entry(key).map(|(_, node)| node)
     }
 
+    /// The members of the object of a key; none if it has no such object.
+    pub(super) fn members(&self, key: &str) -> &'n [(Key, Node)] {
+        self.get(key).map_or(&[], Node::members)
+    }
+
     pub(super) fn iter(&self) -> impl Iterator<Item = (&'n Key, &'n Node)> + use<'n> {
         self.members.iter().map(|(key, node)| (key, node))
     }
@@ -193,9 +198,7 @@ impl Reader {
                     return Some(value);
                 }
             }
-            Json::Map(members) if members.iter().any(|(key, _)| key.text == "param") => {
-                return self.parameter(node);
-            }
+            Json::Map(_) if node.member("param").is_some() => return self.parameter(node),
             _ => {}
         }
         let mut diagnostic = wrong_type(node, what, "a number");

@@ -10,10 +10,8 @@ impl Parsed {
     /// The names of the parameters that are used outside `axes`.
     pub(crate) fn parameters_beside_axes(&self) -> BTreeSet<String> {
         let mut names = BTreeSet::new();
-        if let Json::Map(members) = &self.root.json {
-            let beside = members.iter().filter(|(key, _)| key.text != "axes");
-            beside.for_each(|(_, node)| add_parameters(node, &mut names));
-        }
+        let beside = self.root.members().iter().filter(|(key, _)| key.text != "axes");
+        beside.for_each(|(_, node)| add_parameters(node, &mut names));
         names
     }
 
@@ -21,9 +19,6 @@ impl Parsed {
     /// The rest of the script depends on the keys of an axis and not on its numbers, so nothing else changes.
     /// Returns FALSE if these values are invalid; `script` is then unusable until it gets valid ones.
     pub(crate) fn vary_axes(&self, script: &mut Script, parameters: &[(String, f64)]) -> bool {
-        let Json::Map(members) = &self.root.json else {
-            return false;
-        };
         let mut reader = Reader {
             parameters: std::mem::take(&mut script.parameters),
             cycle_ns: Some(script.cycle_ns),
@@ -36,7 +31,7 @@ impl Parsed {
                 None => are_known = false,
             }
         }
-        let axes = reader.axes(&Fields::of(&self.root, members));
+        let axes = reader.axes(&Fields::of(&self.root, self.root.members()));
         script.parameters = reader.parameters;
         let Some(axes) = axes.filter(|_| are_known && reader.errors.is_empty()) else {
             return false;

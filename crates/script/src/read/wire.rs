@@ -136,6 +136,9 @@ impl Reader {
 
 /// Objects at a pin are wires, except for the use of a parameter; so are expressions.
 pub(super) fn is_wire(node: &Node) -> bool {
-    matches!(&node.json, Json::Text(text) if expression(text).is_some())
-        || matches!(&node.json, Json::Map(members) if members.iter().all(|(key, _)| key.text != "param" && key.text != "table"))
+    match &node.json {
+        Json::Text(text) => expression(text).is_some(),
+        Json::Map(_) => node.member("param").is_none() && node.member("table").is_none(),
+        _ => false,
+    }
 }

@@ -5,9 +5,9 @@
 
 mod string;
 
-use crate::error::{Code, Diagnostic, quoted};
+use crate::error::{Code, Diagnostic, ScriptError, quoted};
 use crate::model::Span;
-use crate::read::hints;
+use crate::read::{hints, without_mark};
 use std::collections::BTreeMap;
 
 /// Deepest nesting of objects and lists; scripts need about 8. It bounds the recursion of the reader.
@@ -38,6 +38,30 @@ pub(crate) struct Key {
     pub(crate) text: String,
 }
 
+impl Node {
+    /// Its members; none if it is no object.
+    pub(crate) fn members(&self) -> &[(Key, Self)] {
+        match &self.json {
+            Json::Map(members) => members,
+            _ => &[],
+        }
+    }
+
+    /// The value of a key, if it is an object that has it.
+    pub(crate) fn member(&self, key: &str) -> Option<&Self> {
+        let mut members = self.members().iter();
+        members.find(|(known, _)| known.text == key).map(|(_, node)| node)
+    }
+
+    /// Its text, if it is a string.
+    pub(crate) fn text(&self) -> Option<&str> {
+        match &self.json {
+            Json::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+}
+
 impl Json {
     /// Its kind in words.
     pub(crate) fn kind(&self) -> &'static str {
@@ -49,6 +73,16 @@ impl Json {
             Self::List(_) => "a list",
             Self::Map(_) => "an object",
         }
+    }
+}
+
+/// Reads a file, which must hold exactly one value. Also returns its text without a byte order mark: places count from
+/// there.
+pub(crate) fn file<'t>(text: &'t str, file_name: &str) -> Result<(&'t str, Node), ScriptError> {
+    let plain = without_mark(text);
+    match parse(plain) {
+        Ok(root) => Ok((plain, root)),
+        Err(diagnostic) => Err(ScriptError::new(file_name, plain, vec![diagnostic])),
     }
 }
 
