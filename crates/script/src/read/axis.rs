@@ -30,9 +30,7 @@ impl Reader {
             return None;
         };
         let fields = Fields::of(node, members);
-        let unit = fields
-            .get("unit")
-            .map_or(Some(""), |node| self.text(node, "`unit`"));
+        let unit = self.optional(&fields, "unit", "", Self::text);
         let place = self.stands_at(key.span, &fields);
         let drive = self.drive(&fields, config.scaling.is_some());
         self.drives

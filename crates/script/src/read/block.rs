@@ -39,9 +39,7 @@ impl Reader {
 
     fn block(&mut self, index: usize, node: &Node, tasks: Option<&[Task]>) -> Option<Instance> {
         let fields = self.fields(node, &shape::BLOCK)?;
-        let name = self
-            .require(&fields, "name", "a block")
-            .and_then(|node| self.text(node, "`name`"));
+        let name = self.needed(&fields, "name", "a block", Self::text);
         let task = self.task_of(&fields, tasks);
         let block = self
             .require(&fields, "type", "a block")
@@ -63,10 +61,7 @@ impl Reader {
     /// Reads the pins of instance `index` into `instance`.
     fn pins(&mut self, index: usize, fields: &Fields<'_>, instance: &mut Instance) -> Option<()> {
         let block = instance.block;
-        let members = match fields.get("pins") {
-            Some(node) => Some(self.map(node, "`pins`")?),
-            None => None,
-        };
+        let members = self.optional(fields, "pins", None, |it, node, key| it.map(node, key).map(Some))?;
         let mut seen: BTreeMap<usize, Span> = BTreeMap::new();
         let mut good = true;
         for (key, node) in members.iter().flat_map(Fields::iter) {

@@ -99,9 +99,7 @@ impl Reader {
             _ => {
                 let range = self.range(&fields);
                 let that = self.conditions(value, &quoted(key));
-                let during = fields
-                    .get("while")
-                    .map_or(Some(Vec::new()), |node| self.conditions(node, "`while`"));
+                let during = self.optional(&fields, "while", Vec::new(), Self::conditions);
                 let (range, that, during) = (range?, that?, during?);
                 if let (Some(node), "never") = (fields.get("for"), key) {
                     let scans = self.at_least_one(node, "`for`")?;
@@ -122,8 +120,7 @@ impl Reader {
     }
 
     fn that(&mut self, fields: &Fields<'_>, what: &str) -> Option<Conditions> {
-        let node = self.require(fields, "that", what)?;
-        self.conditions(node, "`that`")
+        self.needed(fields, "that", what, Self::conditions)
     }
 
     fn from(&mut self, fields: &Fields<'_>) -> Option<u64> {
@@ -167,17 +164,16 @@ impl Reader {
     fn follows(&mut self, node: &Node) -> Option<(Follow, Conditions)> {
         let fields = self.fields(node, &shape::FOLLOWS)?;
         let what = shape::FOLLOWS.what;
-        let slave = self.require(&fields, "slave", what);
-        let slave = slave.and_then(|node| self.axis_index(node, "`slave`"));
+        let slave = self.needed(&fields, "slave", what, Self::axis_index);
         let leader = self.require(&fields, "master", what);
         let master = leader.and_then(|node| self.axis_index(node, "`master`"));
-        let num = self.require(&fields, "num", what);
-        let num = num.and_then(|node| self.whole(node, "`num`", i16::MIN.into()..=i16::MAX.into()));
-        let den = self.require(&fields, "den", what);
-        let den = den.and_then(|node| self.whole(node, "`den`", 1..=u16::MAX.into()));
-        let during = fields
-            .get("while")
-            .map_or(Some(Vec::new()), |node| self.conditions(node, "`while`"));
+        let num = self.needed(&fields, "num", what, |it, node, key| {
+            it.whole(node, key, i16::MIN.into()..=i16::MAX.into())
+        });
+        let den = self.needed(&fields, "den", what, |it, node, key| {
+            it.whole(node, key, 1..=u16::MAX.into())
+        });
+        let during = self.optional(&fields, "while", Vec::new(), Self::conditions);
         let anchor = fields
             .get("anchor")
             .map_or(Some(None), |node| self.anchor(node).map(Some));
@@ -200,10 +196,8 @@ impl Reader {
     /// A position of the master, and the position of the slave then.
     fn anchor(&mut self, node: &Node) -> Option<[f64; 2]> {
         let fields = self.fields(node, &shape::ANCHOR)?;
-        let master = self.require(&fields, "master", shape::ANCHOR.what);
-        let master = master.and_then(|node| self.finite(node, "`master`"));
-        let slave = self.require(&fields, "slave", shape::ANCHOR.what);
-        let slave = slave.and_then(|node| self.finite(node, "`slave`"));
+        let master = self.needed(&fields, "master", shape::ANCHOR.what, Self::finite);
+        let slave = self.needed(&fields, "slave", shape::ANCHOR.what, Self::finite);
         Some([master?, slave?])
     }
 

@@ -48,22 +48,12 @@ impl Reader {
     fn machine_map(&mut self, root: &Node, trace: &Trace) -> Option<Map> {
         let fields = self.fields(root, &shape::MAP)?;
         self.version(&fields, ("standstill_compare", "map"), "a map", MAP_VERSION)?;
-        let layout = match self.require(&fields, "recording", "a map") {
-            Some(node) => self.recording(node),
-            None => None,
-        };
-        let time_tolerance = match fields.get("time_tolerance") {
-            Some(node) => self.not_negative_time(node, "`time_tolerance`")?,
-            None => 0,
-        };
-        let signals = match self.require(&fields, "signals", "a map") {
-            Some(node) => self.signals(node, trace, time_tolerance),
-            None => None,
-        };
-        let window = match fields.get("window") {
-            Some(node) => Some(self.window(node)?),
-            None => None,
-        };
+        let layout = self.require(&fields, "recording", "a map");
+        let layout = layout.and_then(|node| self.recording(node));
+        let time_tolerance = self.optional(&fields, "time_tolerance", 0, Self::not_negative_time)?;
+        let signals = self.require(&fields, "signals", "a map");
+        let signals = signals.and_then(|node| self.signals(node, trace, time_tolerance));
+        let window = self.optional(&fields, "window", None, Self::window)?;
         let node = self.require(&fields, "offset", "a map")?;
         let offset = self.offset(node, signals.as_deref()?, trace);
         Some(Map {
@@ -76,14 +66,12 @@ impl Reader {
 
     fn recording(&mut self, node: &Node) -> Option<Layout> {
         let fields = self.fields(node, &shape::RECORDING)?;
-        let delimiter = match fields.get("delimiter") {
-            Some(node) => Some(self.choice(node, "`delimiter`", &DELIMITERS)?),
-            None => None,
-        };
-        let decimal = match fields.get("decimal") {
-            Some(node) => Some(self.choice(node, "`decimal`", &DECIMALS)?),
-            None => None,
-        };
+        let delimiter = self.optional(&fields, "delimiter", None, |it, node, key| {
+            it.choice(node, key, &DELIMITERS).map(Some)
+        })?;
+        let decimal = self.optional(&fields, "decimal", None, |it, node, key| {
+            it.choice(node, key, &DECIMALS).map(Some)
+        })?;
         let node = self.require(&fields, "time", "`recording`")?;
         let time = self.fields(node, &shape::TIME)?;
         let times = if let Some(every) = time.get("every") {
@@ -100,8 +88,9 @@ impl Reader {
         } else {
             let node = self.require(&time, "column", "`time`")?;
             let place = self.place(node)?;
-            let node = self.require(&time, "unit", "`time`")?;
-            let unit = self.choice(node, "`unit`", &UNITS)?;
+            let unit = self.needed(&time, "unit", "`time`", |it, node, key| {
+                it.choice(node, key, &UNITS)
+            })?;
             Times::Column { place, unit }
         };
         Some(Layout {
@@ -143,11 +132,11 @@ impl Reader {
         self.refuse(Diagnostic::new(Code::BadTime, node.span, message))
     }
 
-    fn window(&mut self, node: &Node) -> Option<(i64, i64)> {
+    fn window(&mut self, node: &Node, what: &str) -> Option<Option<(i64, i64)>> {
         let fields = self.fields(node, &shape::WINDOW)?;
-        let (from, to) = self.limits_of_time(&fields, "`window`")?;
+        let (from, to) = self.limits_of_time(&fields, what)?;
         if from >= 0 {
-            return Some((from, to));
+            return Some(Some((from, to)));
         }
         let message = "`window` begins before scan 0";
         self.refuse(Diagnostic::new(Code::BadTime, node.span, message))
@@ -213,10 +202,7 @@ impl Reader {
         let measure = match column.kind {
             Kind::Real => self.curve(&fields),
             Kind::Bool => {
-                let invert = match fields.get("invert") {
-                    Some(node) => self.boolean(node, "`invert`")?,
-                    None => false,
-                };
+                let invert = self.optional(&fields, "invert", false, Self::boolean)?;
                 Some(Measure::Bool { invert })
             }
             Kind::Integer => Some(Measure::Whole),
@@ -224,10 +210,8 @@ impl Reader {
         };
         let place = self.require(&fields, "column", shape.what)?;
         let place = self.place(place);
-        let time_tolerance = match fields.get("time_tolerance") {
-            Some(node) => self.not_negative_time(node, "`time_tolerance`")?,
-            None => time_tolerance,
-        };
+        let time_tolerance =
+            self.optional(&fields, "time_tolerance", time_tolerance, Self::not_negative_time)?;
         Some(Signal {
             name: key.text.clone(),
             place: place?,
@@ -237,20 +221,13 @@ impl Reader {
     }
 
     fn curve(&mut self, fields: &Fields<'_>) -> Option<Measure> {
-        let number = |reader: &mut Self, key: &str, default: f64| match fields.get(key) {
-            Some(node) => reader.finite(node, &quoted(key)),
-            None => Some(default),
-        };
-        let factor = number(self, "factor", 1.0)?;
+        let factor = self.optional(fields, "factor", 1.0, Self::finite)?;
         if let (0.0, Some(node)) = (factor, fields.get("factor")) {
             let message = "`factor` is 0: everything recorded would be the same";
             return self.refuse(Diagnostic::new(Code::BadValue, node.span, message));
         }
-        let sign = match fields.get("sign") {
-            Some(node) => self.sign(node)?,
-            None => 1.0,
-        };
-        let zero = number(self, "zero", 0.0)?;
+        let sign = self.optional(fields, "sign", 1.0, Self::sign)?;
+        let zero = self.optional(fields, "zero", 0.0, Self::finite)?;
         let node = self.require(fields, "tolerance", shape::CURVE.what)?;
         let tolerance = self.finite(node, "`tolerance`")?;
         if tolerance < 0.0 {
@@ -264,12 +241,12 @@ impl Reader {
         })
     }
 
-    fn sign(&mut self, node: &Node) -> Option<f64> {
-        let sign = self.finite(node, "`sign`")?;
+    fn sign(&mut self, node: &Node, what: &str) -> Option<f64> {
+        let sign = self.finite(node, what)?;
         if sign.abs() == 1.0 {
             return Some(sign);
         }
-        let message = format!("`sign` is {sign:?}: it must be 1 or -1");
+        let message = format!("{what} is {sign:?}: it must be 1 or -1");
         self.refuse(Diagnostic::new(Code::BadValue, node.span, message).help("other numbers go to `factor`"))
     }
 
@@ -322,10 +299,9 @@ impl Reader {
             }
             (Measure::Word(_), _) => self.text(node, "`to`")?.to_owned(),
         };
-        let number = match fields.get("number") {
-            Some(node) => self.whole(node, "`number`", 1..=1_000_000)?,
-            None => 1,
-        };
+        let number = self.optional(&fields, "number", 1, |it, node, key| {
+            it.whole(node, key, 1..=1_000_000)
+        })?;
         Some(Offset::Edge {
             signal: signal.name.clone(),
             to,

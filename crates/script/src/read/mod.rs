@@ -311,9 +311,7 @@ impl Reader {
         self.declare(&fields);
         let scans = self.scan_number(&fields);
 
-        let title = fields
-            .get("title")
-            .map_or(Some(""), |node| self.text(node, "`title`"));
+        let title = self.optional(&fields, "title", "", Self::text);
         let covers = self.covers(&fields);
         let axes = self.axes(&fields);
         let inputs = self.inputs(&fields);
@@ -329,12 +327,10 @@ impl Reader {
             .claims(&fields)
             .map(|claims| [claims, self.fault_claims(&fields)].concat());
         let stop_when = self.stop_when(&fields);
-        let golden = fields
-            .get("golden")
-            .map_or(Some(true), |node| self.boolean(node, "`golden`"));
-        let clamps = fields
-            .get("clamps")
-            .map_or(Some(false), |node| self.choice(node, "`clamps`", &CLAMPS));
+        let golden = self.optional(&fields, "golden", true, Self::boolean);
+        let clamps = self.optional(&fields, "clamps", false, |it, node, key| {
+            it.choice(node, key, &CLAMPS)
+        });
         programs?;
         tables?;
         let programs: Option<Vec<Program>> = std::mem::take(&mut self.programs).into_iter().collect();
@@ -564,12 +560,11 @@ impl Reader {
             return Some((CAM_SLOTS, CAM_PIECES));
         };
         let fields = self.fields(node, &shape::CAMS)?;
-        let mut number = |key: &str, most: usize, usual: usize| match fields.get(key) {
-            None => Some(usual),
-            Some(node) => {
-                let value = self.whole(node, &quoted(key), 0..=most as i64)?;
+        let mut number = |key: &str, most: usize, usual: usize| {
+            self.optional(&fields, key, usual, |it, node, key| {
+                let value = it.whole(node, key, 0..=most as i64)?;
                 usize::try_from(value).ok()
-            }
+            })
         };
         let slots = number("slots", CAM_SLOTS_MOST, CAM_SLOTS);
         let pieces = number("stretches", CAM_PIECES_MOST, CAM_PIECES);
@@ -658,10 +653,7 @@ impl Reader {
     }
 
     fn stop_when(&mut self, fields: &Fields<'_>) -> Option<Option<(Conditions, u64)>> {
-        let after = match fields.get("after") {
-            None => Some(0),
-            Some(node) => self.scans(node, "`after`"),
-        };
+        let after = self.optional(fields, "after", 0, Self::scans);
         match (fields.get("stop_when"), fields.entry("after")) {
             (Some(node), _) => Some(Some((self.conditions(node, "`stop_when`")?, after?))),
             (None, None) => Some(None),

@@ -116,19 +116,13 @@ impl Reader {
             return self.refuse(Diagnostic::new(Code::BadProgram, node.span, message));
         }
         let defaults = Settings::default();
-        let fuel = match fields.get("fuel") {
-            None => Some(defaults.fuel),
-            Some(node) => self.whole(node, "`fuel`", 1..=FUEL_MAX).map(i64::cast_unsigned),
-        };
-        let memory = match fields.get("memory") {
-            None => Some(share),
-            Some(node) => self
-                .whole(node, "`memory`", 1..=MEMORY_MAX)
-                .map(i64::cast_unsigned),
-        };
-        if let Some(node) = fields.get("may_fault") {
-            self.boolean(node, "`may_fault`");
-        }
+        let fuel = self.optional(&fields, "fuel", defaults.fuel, |it, node, key| {
+            it.whole(node, key, 1..=FUEL_MAX).map(i64::cast_unsigned)
+        });
+        let memory = self.optional(&fields, "memory", share, |it, node, key| {
+            it.whole(node, key, 1..=MEMORY_MAX).map(i64::cast_unsigned)
+        });
+        self.optional(&fields, "may_fault", false, Self::boolean);
         let place = self.stands_at(node.span, &fields);
         let settings = Settings {
             fuel: fuel?,
@@ -200,11 +194,8 @@ impl Reader {
 
     fn symbols(&mut self, fields: &Fields<'_>) -> Option<Vec<Symbol>> {
         let mut symbols = vec![Some(fault_symbol())];
-        let members = match fields.get("symbols") {
-            None => None,
-            Some(node) => Some((self.map(node, "`symbols`")?, node)),
-        };
-        if let Some((members, node)) = members {
+        if let Some(node) = fields.get("symbols") {
+            let members = self.map(node, "`symbols`")?;
             if members.iter().count() > SYMBOLS_MAX {
                 let message = format!("a program has at most {SYMBOLS_MAX} symbols");
                 return self.refuse(Diagnostic::new(Code::TooLarge, node.span, message));
@@ -236,19 +227,16 @@ impl Reader {
         let (ty, address, export) = match &node.json {
             Json::Map(_) => {
                 let fields = self.fields(node, &shape::SYMBOL)?;
-                let address = match fields.get("address") {
-                    None => None,
-                    Some(node) => Some(self.whole(node, "`address`", 0..=i64::from(u32::MAX))?),
-                };
-                let export = match fields.get("export") {
-                    None => None,
-                    Some(node) => Some((node, self.text(node, "`export`")?.to_owned())),
-                };
-                if let (Some(_), Some((node, _))) = (address, &export) {
+                let address = self.optional(&fields, "address", None, |it, node, key| {
+                    it.whole(node, key, 0..=i64::from(u32::MAX)).map(Some)
+                })?;
+                let export = self.optional(&fields, "export", None, |it, node, key| {
+                    Some(Some(it.text(node, key)?.to_owned()))
+                })?;
+                if let (Some(_), Some(node)) = (address, fields.get("export")) {
                     let message = "a symbol stands at an `address` or where an `export` says, not both";
                     self.report(Diagnostic::new(Code::BadValue, node.span, message));
                 }
-                let export = export.map(|(_, name)| name);
                 (self.require(&fields, "type", "a symbol")?, address, export)
             }
             _ => (node, None, None),

@@ -17,16 +17,12 @@ impl Reader {
         what: &str,
     ) -> Option<ClaimKind> {
         let range = self.range(fields);
-        let during = fields
-            .get("while")
-            .map_or(Some(Vec::new()), |node| self.conditions(node, "`while`"));
+        let during = self.optional(fields, "while", Vec::new(), Self::conditions);
         match key {
             "duration" => {
                 let ends = self.ends(value);
                 let bounds = self.bounds(fields, what, |reader, node, key| reader.scans(node, key));
-                let each = fields
-                    .get("each")
-                    .map_or(Some(false), |node| self.boolean(node, "`each`"));
+                let each = self.optional(fields, "each", false, Self::boolean);
                 Some(ClaimKind::Duration {
                     range: range?,
                     during: during?,
@@ -55,9 +51,7 @@ impl Reader {
                 let within = self
                     .require(fields, limit, what)
                     .and_then(|node| self.scans(node, if first { "`by`" } else { "`within`" }));
-                let that = self
-                    .require(fields, "that", what)
-                    .and_then(|node| self.conditions(node, "`that`"));
+                let that = self.needed(fields, "that", what, Self::conditions);
                 Some(ClaimKind::Answered {
                     range: range?,
                     during: during?,

@@ -67,12 +67,8 @@ impl Reader {
             }
             (None, Some((_, node))) => {
                 let conditions = self.conditions(node, "`when`");
-                let after = fields
-                    .get("after")
-                    .map_or(Some(0), |node| self.scans(node, "`after`"));
-                let every = fields
-                    .get("every")
-                    .map_or(Some(false), |node| self.boolean(node, "`every`"));
+                let after = self.optional(fields, "after", 0, Self::scans);
+                let every = self.optional(fields, "every", false, Self::boolean);
                 Some(When::Holds {
                     conditions: conditions?,
                     after: after?,
@@ -168,11 +164,11 @@ impl Reader {
     fn fault(&mut self, node: &Node) -> Option<Action> {
         let fields = self.fields(node, &shape::FAULT)?;
         let axis = self.axis_of(&fields, "`fault`");
-        let kind = self
-            .require(&fields, "kind", "`fault`")
-            .and_then(|node| self.choice(node, "`kind`", &FAULT_KINDS));
-        let code = fields.get("code").map_or(Some(0), |node| {
-            self.whole(node, "`code`", 0..=i64::from(u16::MAX))
+        let kind = self.needed(&fields, "kind", "`fault`", |it, node, key| {
+            it.choice(node, key, &FAULT_KINDS)
+        });
+        let code = self.optional(&fields, "code", 0, |it, node, key| {
+            it.whole(node, key, 0..=i64::from(u16::MAX))
         });
         Some(Action::Fault {
             axis: axis?,
@@ -227,12 +223,10 @@ impl Reader {
     fn input(&mut self, node: &Node) -> Option<DriveChange> {
         let fields = self.fields(node, &shape::DRIVE_INPUT)?;
         let last = i64::from(DIGITAL) - 1;
-        let number = self
-            .require(&fields, "number", "`input`")
-            .and_then(|node| self.whole(node, "`number`", 0..=last));
-        let level = self
-            .require(&fields, "value", "`input`")
-            .and_then(|node| self.boolean(node, "`value`"));
+        let number = self.needed(&fields, "number", "`input`", |it, node, key| {
+            it.whole(node, key, 0..=last)
+        });
+        let level = self.needed(&fields, "value", "`input`", Self::boolean);
         Some(DriveChange::Input {
             number: u32::try_from(number?).ok()?,
             level: level?,
@@ -242,15 +236,11 @@ impl Reader {
     fn probe(&mut self, node: &Node) -> Option<DriveChange> {
         let fields = self.fields(node, &shape::DRIVE_PROBE)?;
         let last = PROBES as i64;
-        let number = self
-            .require(&fields, "number", "`probe`")
-            .and_then(|node| self.whole(node, "`number`", 1..=last));
-        let at = fields
-            .get("at")
-            .map_or(Some(1.0), |node| self.finite(node, "`at`"));
-        let level = self
-            .require(&fields, "value", "`probe`")
-            .and_then(|node| self.boolean(node, "`value`"));
+        let number = self.needed(&fields, "number", "`probe`", |it, node, key| {
+            it.whole(node, key, 1..=last)
+        });
+        let at = self.optional(&fields, "at", 1.0, Self::finite);
+        let level = self.needed(&fields, "value", "`probe`", Self::boolean);
         let (number, at, level) = (number?, at?, level?);
         if !(0.0..=1.0).contains(&at) {
             let message = format!("`at` is {at:?}, a part of a scan is from 0 to 1");

@@ -30,22 +30,13 @@ impl Reader {
         let fields = self.fields(root, &shape::SWEEP)?;
         self.version(&fields, ("standstill_sweep", "sweep"), "a sweep", SWEEP_VERSION)?;
         for key in ["$schema", "title"] {
-            if let Some(node) = fields.get(key) {
-                self.text(node, &quoted(key))?;
-            }
+            self.optional(&fields, key, "", Self::text)?;
         }
-        let script = match self.require(&fields, "script", "a sweep") {
-            Some(node) => self.text(node, "`script`").map(|text| (text, node.span)),
-            None => None,
-        };
-        let measures = match fields.get("measure") {
-            Some(node) => self.measures(node),
-            None => Some(Vec::new()),
-        };
-        let has_digest = match fields.get("digest") {
-            Some(node) => self.boolean(node, "`digest`"),
-            None => Some(true),
-        };
+        let script = self.needed(&fields, "script", "a sweep", |it, node, key| {
+            Some((it.text(node, key)?, node.span))
+        });
+        let measures = self.optional(&fields, "measure", Vec::new(), Self::measures);
+        let has_digest = self.optional(&fields, "digest", true, Self::boolean);
         let varied = match (fields.get("grid"), fields.entry("sample")) {
             (Some(_), Some((key, _))) => {
                 let message = "a sweep has a `grid` or a `sample`, not both";
@@ -79,12 +70,15 @@ impl Reader {
 
     fn sample(&mut self, node: &Node) -> Option<(Vec<Varied>, Draw)> {
         let fields = self.fields(node, &shape::SAMPLE)?;
-        let seed = self.require(&fields, "seed", "`sample`");
-        let seed = seed.and_then(|node| self.whole(node, "`seed`", 0..=WHOLE_MAX as i64));
-        let count = self.require(&fields, "count", "`sample`");
-        let count = count.and_then(|node| self.whole(node, "`count`", 1..=CASES_MAX as i64));
-        let of = self.require(&fields, "of", "`sample`");
-        let varied = of.and_then(|node| self.varied(node, "`of`", false));
+        let seed = self.needed(&fields, "seed", "`sample`", |it, node, key| {
+            it.whole(node, key, 0..=WHOLE_MAX as i64)
+        });
+        let count = self.needed(&fields, "count", "`sample`", |it, node, key| {
+            it.whole(node, key, 1..=CASES_MAX as i64)
+        });
+        let varied = self.needed(&fields, "of", "`sample`", |it, node, key| {
+            it.varied(node, key, false)
+        });
         let draw = Draw::Sample {
             seed: seed?.unsigned_abs(),
             count: count?.unsigned_abs(),
@@ -150,10 +144,9 @@ impl Reader {
         } else {
             1
         };
-        let scale = match fields.get("scale") {
-            Some(node) => self.choice(node, "`scale`", &SCALES)?,
-            None => Scale::Linear,
-        };
+        let scale = self.optional(&fields, "scale", Scale::Linear, |it, node, key| {
+            it.choice(node, key, &SCALES)
+        })?;
         let ((from, from_place), (to, to_place)) = (from?, to?);
         if scale == Scale::Log
             && let Some((value, place)) = [(from, from_place), (to, to_place)]
@@ -196,8 +189,8 @@ impl Reader {
         )
     }
 
-    fn measures(&mut self, node: &Node) -> Option<Vec<Measure>> {
-        let members = self.map(node, "`measure`")?;
+    fn measures(&mut self, node: &Node, what: &str) -> Option<Vec<Measure>> {
+        let members = self.map(node, what)?;
         let measures: Vec<_> = members
             .iter()
             .filter(|(key, node)| !is_note(key, node))

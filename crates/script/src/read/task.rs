@@ -57,18 +57,15 @@ impl Reader {
                 Some(Some(scans))
             }),
         };
-        let priority = match fields.get("priority") {
-            None => Some(0),
-            Some(node) => self.whole(node, "`priority`", 0..=i64::from(u32::MAX)),
-        };
-        let single = match fields.get("single") {
-            None => Some(None),
-            Some(node) => self.wire(node, PinType::Bool, "`single`").map(Some),
-        };
-        let watchdog = match fields.get("watchdog") {
-            None => Some(None),
-            Some(node) => self.whole(node, "`watchdog`", 1..=i64::from(u32::MAX)).map(Some),
-        };
+        let priority = self.optional(&fields, "priority", 0, |it, node, key| {
+            it.whole(node, key, 0..=i64::from(u32::MAX))
+        });
+        let single = self.optional(&fields, "single", None, |it, node, key| {
+            it.wire(node, PinType::Bool, key).map(Some)
+        });
+        let watchdog = self.optional(&fields, "watchdog", None, |it, node, key| {
+            it.whole(node, key, 1..=i64::from(u32::MAX)).map(Some)
+        });
         if fields.get("interval").is_none() && fields.get("single").is_none() {
             let message = format!("the task {} would never run", quoted(name));
             return self.refuse(

@@ -61,10 +61,9 @@ impl Reader {
     ) -> Option<Program> {
         let files = self.sources(fields.get("st")?, load);
         let bindings = self.bindings(fields);
-        let program = match fields.get("program") {
-            None => Some(None),
-            Some(node) => self.text(node, "`program`").map(|text| Some(text.to_owned())),
-        };
+        let program = self.optional(fields, "program", None, |it, node, key| {
+            Some(Some(it.text(node, key)?.to_owned()))
+        });
         let options = Options {
             program: program?,
             coverage: self.terms.coverage,

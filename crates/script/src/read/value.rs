@@ -144,6 +144,32 @@ impl Reader {
         node
     }
 
+    /// The value of a required key by `read`, which gets the key's name in messages.
+    pub(super) fn needed<'n, T>(
+        &mut self,
+        fields: &Fields<'n>,
+        key: &str,
+        what: &str,
+        read: impl FnOnce(&mut Self, &'n Node, &str) -> Option<T>,
+    ) -> Option<T> {
+        let node = self.require(fields, key, what)?;
+        read(self, node, &quoted(key))
+    }
+
+    /// The same for a key that may be missing; its value is then `absent`.
+    pub(super) fn optional<'n, T>(
+        &mut self,
+        fields: &Fields<'n>,
+        key: &str,
+        absent: T,
+        read: impl FnOnce(&mut Self, &'n Node, &str) -> Option<T>,
+    ) -> Option<T> {
+        match fields.get(key) {
+            Some(node) => read(self, node, &quoted(key)),
+            None => Some(absent),
+        }
+    }
+
     pub(super) fn text<'n>(&mut self, node: &'n Node, what: &str) -> Option<&'n str> {
         if let Json::Text(text) = &node.json {
             return Some(text);
