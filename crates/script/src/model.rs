@@ -571,8 +571,12 @@ pub struct Claim {
     pub span: Span,
     /// `"vacuous": "allowed"`
     pub may_be_vacuous: bool,
+    /// The scans it covers, as far as numbers define them.
+    pub range: Range,
     /// The scans it covers, if conditions define them.
     pub window: Window,
+    /// `while`: scans in which these do not hold are not judged; rising edges in them do not count.
+    pub during: Conditions,
     /// Its statement.
     pub kind: ClaimKind,
 }
@@ -626,59 +630,32 @@ pub struct Follow {
     pub anchor: Option<[f64; 2]>,
 }
 
-/// The statement of a claim.
+/// The statement of a claim about the scans that it covers.
 #[derive(Clone, Debug)]
 pub enum ClaimKind {
-    /// Holds in this scan.
-    At(u64, Conditions),
-    /// Holds at least once within the range.
-    By(Range, Conditions),
-    /// Holds in every scan of the range in which `during` holds.
-    Always {
-        /// Scans.
-        range: Range,
-        /// `while`
-        during: Conditions,
-        /// The conditions that hold.
-        that: Conditions,
-    },
-    /// Holds in no scan of the range in which `during` holds.
-    Never {
-        /// Scans.
-        range: Range,
-        /// `while`
-        during: Conditions,
-        /// The conditions that do not hold together.
-        that: Conditions,
-    },
-    /// Holds in exactly one scan of the range.
-    Once(Range, Conditions),
-    /// At most one of these is TRUE in every scan of the range.
-    Exclusive(Range, Vec<(String, Point)>),
+    /// Holds in the only scan.
+    At(Conditions),
+    /// Holds at least once.
+    By(Conditions),
+    /// Holds in every scan.
+    Always(Conditions),
+    /// Holds in no scan together.
+    Never(Conditions),
+    /// Holds in exactly one scan.
+    Once(Conditions),
+    /// At most one of these is TRUE in every scan.
+    Exclusive(Vec<(String, Point)>),
     /// d1..d4 of the axis stay inside its limits times the factor.
     WithinLimits {
-        /// Scans.
-        range: Range,
         /// Index of the axis.
         axis: usize,
         /// Factor on every limit.
         factor: f64,
     },
     /// The slave is at the position of the law, to the bit.
-    Follows {
-        /// Scans.
-        range: Range,
-        /// `while`
-        during: Conditions,
-        /// The law.
-        follow: Follow,
-    },
+    Follows(Follow),
     /// After each rising edge (or the first) `that` holds in some row, at most `within` scans later.
     Answered {
-        /// Scans in which rising edges count.
-        range: Range,
-        /// `while`
-        during: Conditions,
         /// The conditions whose rising edge counts.
         when: Conditions,
         /// Largest number of scans until the answer.
@@ -688,23 +665,15 @@ pub enum ClaimKind {
         /// Only the first rising edge.
         first: bool,
     },
-    /// Does not hold in `scans` rows in a row.
+    /// Does not hold together in `scans` rows in a row.
     NeverFor {
-        /// Scans.
-        range: Range,
-        /// `while`
-        during: Conditions,
-        /// The conditions that do not hold together.
+        /// The conditions.
         that: Conditions,
         /// Rows.
         scans: u64,
     },
     /// The scans from a rising edge of the first to the next one of the second are within the bounds.
     Duration {
-        /// Scans in which rising edges of the first count.
-        range: Range,
-        /// `while`
-        during: Conditions,
         /// The begin and the end.
         ends: [Conditions; 2],
         /// Scans.
@@ -714,10 +683,6 @@ pub enum ClaimKind {
     },
     /// The number of rising edges is within the bounds.
     Count {
-        /// Scans.
-        range: Range,
-        /// `while`
-        during: Conditions,
         /// The conditions whose rising edge counts.
         that: Conditions,
         /// Times.
@@ -735,70 +700,46 @@ impl Comparison {
     }
 }
 
-impl ClaimKind {
-    /// Every condition in it.
-    pub fn conditions(&self) -> Vec<&Condition> {
-        match self {
-            Self::At(_, that) | Self::By(_, that) | Self::Once(_, that) => that.iter().collect(),
-            Self::Always { during, that, .. } | Self::Never { during, that, .. } => {
-                during.iter().chain(that).collect()
-            }
-            Self::Answered {
-                during, when, that, ..
-            } => during.iter().chain(when).chain(that).collect(),
-            Self::NeverFor { during, that, .. } | Self::Count { during, that, .. } => {
-                during.iter().chain(that).collect()
-            }
-            Self::Duration {
-                during,
-                ends: [first, second],
-                ..
-            } => during.iter().chain(first).chain(second).collect(),
-            Self::Follows { during, .. } => during.iter().collect(),
-            Self::Exclusive(..) | Self::WithinLimits { .. } => Vec::new(),
-        }
-    }
-
-    /// The scans that it covers.
-    pub fn range_mut(&mut self) -> Option<&mut Range> {
-        match self {
-            Self::At(..) => None,
-            Self::By(range, _)
-            | Self::Once(range, _)
-            | Self::Exclusive(range, _)
-            | Self::Always { range, .. }
-            | Self::Never { range, .. }
-            | Self::WithinLimits { range, .. }
-            | Self::Follows { range, .. }
-            | Self::Answered { range, .. }
-            | Self::NeverFor { range, .. }
-            | Self::Duration { range, .. }
-            | Self::Count { range, .. } => Some(range),
-        }
+impl Claim {
+    /// Every condition in it, except those of its window.
+    pub fn conditions(&self) -> impl Iterator<Item = &Condition> {
+        let [first, second]: [&[Condition]; 2] = match &self.kind {
+            ClaimKind::At(that)
+            | ClaimKind::By(that)
+            | ClaimKind::Always(that)
+            | ClaimKind::Never(that)
+            | ClaimKind::Once(that)
+            | ClaimKind::NeverFor { that, .. }
+            | ClaimKind::Count { that, .. } => [that, &[]],
+            ClaimKind::Answered { when, that, .. } => [when, that],
+            ClaimKind::Duration { ends, .. } => ends.each_ref().map(Vec::as_slice),
+            ClaimKind::Exclusive(_) | ClaimKind::WithinLimits { .. } | ClaimKind::Follows(_) => [&[], &[]],
+        };
+        self.during.iter().chain(first).chain(second)
     }
 
     /// The largest number of reads of a row that judging takes in a scan.
     pub(crate) fn looks(&self) -> u64 {
-        let looks = match self {
-            Self::At(_, that) | Self::By(_, that) | Self::Once(_, that) => that.len(),
-            Self::Always { during, that, .. } => that.len().saturating_mul(1 + during.len()),
-            Self::Never { during, that, .. } => during.len() + that.len(),
-            Self::Exclusive(_, points) => points.len(),
+        let during = self.during.len();
+        let looks = match &self.kind {
+            ClaimKind::At(that)
+            | ClaimKind::By(that)
+            | ClaimKind::Once(that)
+            | ClaimKind::Never(that)
+            | ClaimKind::NeverFor { that, .. } => during + that.len(),
+            ClaimKind::Always(that) => that.len().saturating_mul(1 + during),
+            ClaimKind::Exclusive(points) => points.len(),
             // The rows before decide whether a condition rises.
-            Self::Answered {
-                during, when, that, ..
-            } => during.len() + 2 * when.len() + that.len(),
-            Self::NeverFor { during, that, .. } => during.len() + that.len(),
-            Self::Count { during, that, .. } => during.len() + 2 * that.len(),
-            Self::Duration {
-                during,
+            ClaimKind::Answered { when, that, .. } => during + 2 * when.len() + that.len(),
+            ClaimKind::Count { that, .. } => during + 2 * that.len(),
+            ClaimKind::Duration {
                 ends: [first, second],
                 ..
-            } => during.len() + 2 * (first.len() + second.len()),
+            } => during + 2 * (first.len() + second.len()),
             // Positions of four differences.
-            Self::WithinLimits { .. } => 14,
+            ClaimKind::WithinLimits { .. } => 14,
             // Two positions and the phase, and the arithmetic, which counts as further ones.
-            Self::Follows { during, .. } => during.len() + 14,
+            ClaimKind::Follows(_) => during + 14,
         };
         looks as u64
     }

@@ -1,110 +1,55 @@
 //! Claims and conditions as text.
 
-use crate::model::{Bounds, ClaimKind, Comparison, Condition, Follow, Range, Relation, Signal, Test};
+use crate::model::{Bounds, Claim, ClaimKind, Comparison, Condition, Follow, Range, Relation, Signal, Test};
 use crate::run::Rows;
 use crate::run::cells::value_text;
 use standstill_trace::{cell_text, shortest};
 
 /// A claim in one line of text.
-pub(super) fn claim(rows: &Rows<'_>, kind: &ClaimKind) -> String {
-    match kind {
-        ClaimKind::At(scan, that) => format!("at {scan}: {}", conditions(rows, that)),
-        ClaimKind::By(range, that) => {
-            format!("once at least{}: {}", scans(*range), conditions(rows, that))
-        }
-        ClaimKind::Always { range, during, that } => {
-            format!(
-                "always{}{}: {}",
-                scans(*range),
-                whenever(rows, during),
-                conditions(rows, that)
-            )
-        }
-        ClaimKind::Never { range, during, that } => {
-            format!(
-                "never{}{}: {}",
-                scans(*range),
-                whenever(rows, during),
-                conditions(rows, that)
-            )
-        }
-        ClaimKind::Once(range, that) => {
-            format!("exactly once{}: {}", scans(*range), conditions(rows, that))
-        }
-        ClaimKind::Exclusive(range, points) => {
+pub(super) fn claim(rows: &Rows<'_>, claim: &Claim) -> String {
+    let all = |that: &[Condition]| conditions(rows, that);
+    let covered = format!("{}{}", scans(claim.range), whenever(rows, &claim.during));
+    match &claim.kind {
+        ClaimKind::At(that) => format!("at {}: {}", claim.range.from, all(that)),
+        ClaimKind::By(that) => format!("once at least{covered}: {}", all(that)),
+        ClaimKind::Always(that) => format!("always{covered}: {}", all(that)),
+        ClaimKind::Never(that) => format!("never{covered}: {}", all(that)),
+        ClaimKind::Once(that) => format!("exactly once{covered}: {}", all(that)),
+        ClaimKind::Exclusive(points) => {
             let names: Vec<_> = points.iter().map(|(name, _)| name.as_str()).collect();
-            format!("at most one{}: {}", scans(*range), names.join(", "))
+            format!("at most one{covered}: {}", names.join(", "))
         }
-        ClaimKind::WithinLimits { range, axis, factor } => {
+        ClaimKind::WithinLimits { axis, factor } => {
             let axis = axis_name(rows, *axis);
             let factor = match factor {
                 1.0 => String::new(),
                 factor => format!(" times {}", shortest(*factor)),
             };
-            format!("{axis} within its limits{factor}{}", scans(*range))
+            format!("{axis} within its limits{factor}{covered}")
         }
-        ClaimKind::Follows {
-            range,
-            during,
-            follow,
-        } => format!("{}{}{}", law(rows, follow), scans(*range), whenever(rows, during)),
+        ClaimKind::Follows(follow) => format!("{}{covered}", law(rows, follow)),
         ClaimKind::Answered {
-            range,
-            during,
             when,
             within,
             that,
             first,
-        } => format!(
-            "{} {}{}{}: within {within} scans {}",
-            if *first {
-                "after the first rising of"
-            } else {
-                "after each rising of"
-            },
-            conditions(rows, when),
-            scans(*range),
-            whenever(rows, during),
-            conditions(rows, that)
-        ),
-        ClaimKind::NeverFor {
-            range,
-            during,
-            that,
-            scans: most,
-        } => format!(
-            "never for {most} scans on end{}{}: {}",
-            scans(*range),
-            whenever(rows, during),
-            conditions(rows, that)
-        ),
-        ClaimKind::Duration {
-            range,
-            during,
-            ends: [begin, end],
-            bounds,
-            each,
-        } => format!(
-            "{} from {} to {}{}{}: {} scans",
-            if *each { "each time" } else { "the first time" },
-            conditions(rows, begin),
-            conditions(rows, end),
-            scans(*range),
-            whenever(rows, during),
-            bounded(*bounds)
-        ),
-        ClaimKind::Count {
-            range,
-            during,
-            that,
-            bounds,
-        } => format!(
-            "{} risings{}{}: {}",
-            bounded(*bounds),
-            scans(*range),
-            whenever(rows, during),
-            conditions(rows, that)
-        ),
+        } => {
+            let which = if *first { "the first" } else { "each" };
+            let (when, that) = (all(when), all(that));
+            format!("after {which} rising of {when}{covered}: within {within} scans {that}")
+        }
+        ClaimKind::NeverFor { that, scans: most } => {
+            format!("never for {most} scans on end{covered}: {}", all(that))
+        }
+        ClaimKind::Duration { ends, bounds, each } => {
+            let which = if *each { "each time" } else { "the first time" };
+            let [begin, end] = ends.each_ref().map(|end| all(end));
+            let bounds = bounded(*bounds);
+            format!("{which} from {begin} to {end}{covered}: {bounds} scans")
+        }
+        ClaimKind::Count { that, bounds } => {
+            format!("{} risings{covered}: {}", bounded(*bounds), all(that))
+        }
     }
 }
 

@@ -71,53 +71,42 @@ impl Standings {
 
 /// The state after `scan` of a claim that was open before.
 fn after(rows: &Rows<'_>, claim: &Claim, scan: u64, times: &mut u32) -> Standing {
-    let inside = |range: &Range| range.from <= scan && range.to.is_none_or(|to| scan <= to);
-    // A range that ends before it begins is judged at the end.
-    let ends = |range: &Range| range.to == Some(scan) && range.from <= scan;
-    // A claim that may fail in every scan of its range, and is fulfilled at the end of the range.
-    let unless = |range: &Range, fails: bool| match (fails, ends(range)) {
-        (true, _) => Standing::Failed(scan),
-        (false, true) => Standing::Held(scan),
-        (false, false) => Standing::Open,
-    };
     // The first scan of its range may be still to come.
     if claim.window != Window::default() {
         return Standing::Open;
     }
+    let Range { from, to } = claim.range;
+    let is_inside = from <= scan && to.is_none_or(|to| scan <= to);
+    // A range that ends before it begins is judged at the end.
+    let ends = to == Some(scan) && from <= scan;
+    // A claim that may fail in every scan of its range, and is fulfilled at the end of the range.
+    let unless = |fails: bool| match (fails, ends) {
+        (true, _) => Standing::Failed(scan),
+        (false, true) => Standing::Held(scan),
+        (false, false) => Standing::Open,
+    };
+    let is_asked = || is_inside && rows.hold(&claim.during, scan);
     match &claim.kind {
-        ClaimKind::At(at, that) if *at == scan => match rows.hold(that, scan) {
-            true => Standing::Held(scan),
-            false => Standing::Failed(scan),
-        },
-        ClaimKind::At(..) => Standing::Open,
-        ClaimKind::By(range, that) => match (inside(range) && rows.hold(that, scan), ends(range)) {
+        ClaimKind::At(that) | ClaimKind::By(that) => match (is_inside && rows.hold(that, scan), ends) {
             (true, _) => Standing::Held(scan),
             (false, true) => Standing::Failed(scan),
             (false, false) => Standing::Open,
         },
-        ClaimKind::Always { range, during, that } => {
-            let asked = inside(range) && rows.hold(during, scan);
-            unless(range, asked && !rows.hold(that, scan))
-        }
-        ClaimKind::Never { range, during, that } => {
-            let asked = inside(range) && rows.hold(during, scan);
-            unless(range, asked && rows.hold(that, scan))
-        }
-        ClaimKind::Once(range, that) => {
-            *times += u32::from(inside(range) && rows.hold(that, scan));
-            match (*times, ends(range)) {
+        ClaimKind::Always(that) => unless(is_asked() && !rows.hold(that, scan)),
+        ClaimKind::Never(that) => unless(is_asked() && rows.hold(that, scan)),
+        ClaimKind::Once(that) => {
+            *times += u32::from(is_inside && rows.hold(that, scan));
+            match (*times, ends) {
                 (2.., _) | (0, true) => Standing::Failed(scan),
                 (1, true) => Standing::Held(scan),
                 (0 | 1, false) => Standing::Open,
             }
         }
-        ClaimKind::Exclusive(range, points) => {
-            unless(range, inside(range) && raised(rows, points, scan).len() > 1)
-        }
+        ClaimKind::Exclusive(points) => unless(is_inside && raised(rows, points, scan).len() > 1),
         // The resolution of positions depends on the largest one, which may be still to come. A row of `follows` is
         // judged when the next one has arrived. The others are judged at the end.
         ClaimKind::WithinLimits { .. }
-        | ClaimKind::Follows { .. }
+        | ClaimKind::Follows(_)
         | ClaimKind::Answered { .. }
         | ClaimKind::NeverFor { .. }
         | ClaimKind::Duration { .. }

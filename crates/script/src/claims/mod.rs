@@ -116,7 +116,7 @@ impl<'a> Judges<'a> {
         let claims = script.claims.iter().map(|claim| Judged {
             claim,
             place: Place::new(claim),
-            judge: judge_of(&claim.kind),
+            judge: judge_of(claim),
             reason: None,
         });
         let faults = script.formulas.iter().map(|formula| {
@@ -159,7 +159,7 @@ impl<'a> Judges<'a> {
     pub(crate) fn verdicts(&self, rows: &Rows<'_>) -> Vec<Verdict> {
         let mut verdicts = self.untold(rows);
         for (verdict, judged) in verdicts.iter_mut().zip(&self.claims) {
-            verdict.says = describe::claim(rows, &judged.claim.kind);
+            verdict.says = describe::claim(rows, judged.claim);
         }
         verdicts
     }
@@ -257,7 +257,7 @@ fn fault_reason(rows: &Rows<'_>, path: &str) -> Option<String> {
 /// Every claim in one line of text.
 pub(crate) fn say(rows: &Rows<'_>) -> Vec<String> {
     let claims = rows.script.claims.iter();
-    claims.map(|claim| describe::claim(rows, &claim.kind)).collect()
+    claims.map(|claim| describe::claim(rows, claim)).collect()
 }
 
 /// Conditions in words.
@@ -266,41 +266,32 @@ pub(crate) fn conditions_text(rows: &Rows<'_>, conditions: &[Condition]) -> Stri
 }
 
 /// Whether a claim that a slave follows has a row to judge.
-pub(crate) fn judges_a_row(rows: &Rows<'_>, range: &Range, during: &[Condition]) -> bool {
-    let last = range.to.unwrap_or(u64::MAX).min(rows.count().saturating_sub(1));
-    follows::judged(rows, range.from..=last, during).next().is_some()
+pub(crate) fn judges_a_row(rows: &Rows<'_>, claim: &Claim) -> bool {
+    let scans = relative::scans_of(rows, claim.range);
+    follows::judged(rows, scans, &claim.during).next().is_some()
 }
 
-fn judge_of(kind: &ClaimKind) -> Box<dyn Judge + Send + Sync + '_> {
-    match kind {
-        ClaimKind::At(scan, that) => Box::new(judge::At::new(*scan, that)),
-        ClaimKind::By(_, that) => Box::new(judge::By::new(that)),
-        ClaimKind::Always { during, that, .. } => Box::new(judge::Always::new(during, that)),
-        ClaimKind::Never { during, that, .. } => Box::new(judge::Never::new(during, that)),
-        ClaimKind::Once(_, that) => Box::new(judge::Once::new(that)),
-        ClaimKind::Exclusive(_, points) => Box::new(judge::Exclusive::new(points)),
-        ClaimKind::WithinLimits { axis, factor, .. } => Box::new(limits::WithinLimits::new(*axis, *factor)),
-        ClaimKind::Follows { during, follow, .. } => Box::new(follows::Follows::new(during, follow)),
+fn judge_of(claim: &Claim) -> Box<dyn Judge + Send + Sync + '_> {
+    let during = &claim.during;
+    match &claim.kind {
+        ClaimKind::At(that) => Box::new(judge::At::new(claim.range.from, that)),
+        ClaimKind::By(that) => Box::new(judge::By::new(that)),
+        ClaimKind::Always(that) => Box::new(judge::Always::new(during, that)),
+        ClaimKind::Never(that) => Box::new(judge::Never::new(during, that)),
+        ClaimKind::Once(that) => Box::new(judge::Once::new(that)),
+        ClaimKind::Exclusive(points) => Box::new(judge::Exclusive::new(points)),
+        ClaimKind::WithinLimits { axis, factor } => Box::new(limits::WithinLimits::new(*axis, *factor)),
+        ClaimKind::Follows(follow) => Box::new(follows::Follows::new(during, follow)),
         ClaimKind::Answered {
-            during,
             when,
             within,
             that,
             first,
-            ..
         } => Box::new(relative::Answered::new((during, when), *within, that, *first)),
-        ClaimKind::NeverFor {
-            during, that, scans, ..
-        } => Box::new(relative::NeverFor::new(during, that, *scans)),
-        ClaimKind::Duration {
-            during,
-            ends,
-            bounds,
-            each,
-            ..
-        } => Box::new(relative::Duration::new(during, ends, *bounds, *each)),
-        ClaimKind::Count {
-            during, that, bounds, ..
-        } => Box::new(relative::Count::new(during, that, *bounds)),
+        ClaimKind::NeverFor { that, scans } => Box::new(relative::NeverFor::new(during, that, *scans)),
+        ClaimKind::Duration { ends, bounds, each } => {
+            Box::new(relative::Duration::new(during, ends, *bounds, *each))
+        }
+        ClaimKind::Count { that, bounds } => Box::new(relative::Count::new(during, that, *bounds)),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::judge::beyond;
 use super::{Failure, judge};
-use crate::model::{Claim, ClaimKind, Range};
+use crate::model::{Claim, Range};
 use crate::run::Rows;
 use std::ops::{self, RangeInclusive};
 
@@ -17,10 +17,9 @@ pub(super) struct Place {
 
 impl Place {
     pub(super) fn new(claim: &Claim) -> Self {
-        let range = range(&claim.kind);
         Self {
-            from: claim.window.from.is_none().then_some(range.from),
-            to: range.to.filter(|_| claim.window.to.is_none()),
+            from: claim.window.from.is_none().then_some(claim.range.from),
+            to: claim.range.to.filter(|_| claim.window.to.is_none()),
         }
     }
 
@@ -77,27 +76,6 @@ pub(super) struct Stretch {
     pub(super) from: Option<u64>,
     /// The last scan that the claim covers, if it is not the end of the run, as far as it is known.
     pub(super) deadline: Option<u64>,
-}
-
-/// The scans that the claim itself names.
-fn range(kind: &ClaimKind) -> Range {
-    match kind {
-        ClaimKind::At(scan, _) => Range {
-            from: *scan,
-            to: Some(*scan),
-        },
-        ClaimKind::By(range, _)
-        | ClaimKind::Once(range, _)
-        | ClaimKind::Exclusive(range, _)
-        | ClaimKind::Always { range, .. }
-        | ClaimKind::Never { range, .. }
-        | ClaimKind::WithinLimits { range, .. }
-        | ClaimKind::Follows { range, .. }
-        | ClaimKind::Answered { range, .. }
-        | ClaimKind::NeverFor { range, .. }
-        | ClaimKind::Duration { range, .. }
-        | ClaimKind::Count { range, .. } => *range,
-    }
 }
 
 /// The scans of the run that a claim covers.

@@ -41,17 +41,14 @@ pub(crate) fn asks_nothing(rows: &Rows<'_>, claim: &Claim) -> Option<String> {
     {
         return Some("the `when` of its `to` held in no scan".to_owned());
     }
-    let nothing = |during: &[Condition], what: &[Condition]| {
+    let during = &claim.during;
+    let nothing = |what: &[Condition]| {
         !scans_of(rows, range).any(|scan| rises(rows, what, scan) && rows.hold(during, scan))
     };
     match &claim.kind {
-        ClaimKind::Answered { during, when, .. } => nothing(during, when),
-        ClaimKind::Duration {
-            during,
-            ends: [begin, _],
-            ..
-        } => nothing(during, begin),
-        ClaimKind::NeverFor { during, scans, .. } => {
+        ClaimKind::Answered { when, .. } => nothing(when),
+        ClaimKind::Duration { ends: [begin, _], .. } => nothing(begin),
+        ClaimKind::NeverFor { scans, .. } => {
             let longest = longest_run(scans_of(rows, range), |scan| rows.hold(during, scan));
             return (longest < *scans).then(|| {
                 format!("the claim asks for nothing: it is judged in {longest} rows on end at most, fewer than `for`")
@@ -73,7 +70,7 @@ fn longest_run(scans: RangeInclusive<u64>, holds: impl Fn(u64) -> bool) -> u64 {
 }
 
 /// The scans of a range that the run has.
-fn scans_of(rows: &Rows<'_>, range: Range) -> RangeInclusive<u64> {
+pub(crate) fn scans_of(rows: &Rows<'_>, range: Range) -> RangeInclusive<u64> {
     let last = rows.count().saturating_sub(1);
     range.from..=range.to.map_or(last, |to| to.min(last))
 }

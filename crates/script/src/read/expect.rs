@@ -18,20 +18,25 @@ impl Reader {
         let items = self.list(node, "`expect`")?;
         let mut index = 0;
         self.each(items, |reader, node| {
-            let kind = reader.claim(node);
+            let claim = reader.claim(node);
+            let window = reader.claim_window(node);
             let path = format!("expect[{index}]");
             index += 1;
+            let (range, during, kind) = claim?;
             Some(Claim {
                 path,
                 span: node.span,
                 may_be_vacuous: node.member("vacuous").is_some(),
-                window: reader.claim_window(node)?,
-                kind: kind?,
+                range,
+                window: window?,
+                during,
+                kind,
             })
         })
     }
 
-    fn claim(&mut self, node: &Node) -> Option<ClaimKind> {
+    /// The range of a claim, its `while`, and its statement.
+    fn claim(&mut self, node: &Node) -> Option<(Range, Conditions, ClaimKind)> {
         let members = self.map(node, "a claim")?;
         let kind = |shape: &&Shape| {
             members
@@ -54,73 +59,59 @@ impl Reader {
         self.may_be_vacuous(&fields);
         let key = shape.names().next()?;
         let value = fields.get(key)?;
-        match key {
-            "at" => {
-                let scan = self.scan_in_run(value, "`at`");
-                let that = self.that(&fields, shape.what);
-                Some(ClaimKind::At(scan?, that?))
+        let range = match key {
+            "at" => self.scan_in_run(value, "`at`").map(|scan| Range {
+                from: scan,
+                to: Some(scan),
+            }),
+            "by" => self.range_to(&fields, value, "`by`"),
+            _ => self.range(&fields),
+        };
+        let (during, kind) = match key {
+            "at" => (Some(Vec::new()), self.that(&fields, shape).map(ClaimKind::At)),
+            "by" => (Some(Vec::new()), self.that(&fields, shape).map(ClaimKind::By)),
+            "when" | "after" | "duration" | "count" => {
+                let during = self.during(&fields);
+                (during, self.relative(key, value, &fields, shape))
             }
-            "by" => {
-                let to = self.scan_in_run(value, "`by`");
-                let from = self.from(&fields);
-                let that = self.that(&fields, shape.what);
-                let range = Range {
-                    from: from?,
-                    to: Some(to?),
-                };
-                self.check_range(range, value)?;
-                Some(ClaimKind::By(range, that?))
-            }
-            "when" | "after" | "duration" | "count" => self.relative(key, value, &fields, shape.what),
             "exclusive" => {
-                let range = self.range(&fields);
                 let points = self.exclusive(value);
-                Some(ClaimKind::Exclusive(range?, points?))
+                (Some(Vec::new()), points.map(ClaimKind::Exclusive))
             }
             "within_limits" => {
-                let range = self.range(&fields);
                 let axis = self.axis_index(value, "`within_limits`");
-                let factor = fields.get("factor").map_or(Some(1.0), |node| self.factor(node));
-                Some(ClaimKind::WithinLimits {
-                    range: range?,
-                    axis: axis?,
-                    factor: factor?,
-                })
+                let factor = self.optional(&fields, "factor", 1.0, Self::factor);
+                let kind = axis.zip(factor);
+                let kind = kind.map(|(axis, factor)| ClaimKind::WithinLimits { axis, factor });
+                (Some(Vec::new()), kind)
             }
-            "follows" => {
-                let range = self.range(&fields);
-                let (follow, during) = self.follows(value)?;
-                Some(ClaimKind::Follows {
-                    range: range?,
-                    during,
-                    follow,
-                })
-            }
+            "follows" => self.follows(value).unzip(),
             _ => {
-                let range = self.range(&fields);
                 let that = self.conditions(value, &quoted(key));
-                let during = self.optional(&fields, "while", Vec::new(), Self::conditions);
-                let (range, that, during) = (range?, that?, during?);
-                if let (Some(node), "never") = (fields.get("for"), key) {
-                    let scans = self.at_least_one(node, "`for`")?;
-                    return Some(ClaimKind::NeverFor {
-                        range,
-                        during,
-                        that,
-                        scans,
-                    });
-                }
-                Some(match key {
-                    "always" => ClaimKind::Always { range, during, that },
-                    "never" => ClaimKind::Never { range, during, that },
-                    _ => ClaimKind::Once(range, that),
-                })
+                let during = self.during(&fields);
+                range?;
+                let (that, during) = (that?, during?);
+                let kind = match (key, fields.get("for")) {
+                    ("always", _) => ClaimKind::Always(that),
+                    ("once", _) => ClaimKind::Once(that),
+                    (_, None) => ClaimKind::Never(that),
+                    (_, Some(node)) => {
+                        let scans = self.at_least_one(node, "`for`")?;
+                        ClaimKind::NeverFor { that, scans }
+                    }
+                };
+                (Some(during), Some(kind))
             }
-        }
+        };
+        Some((range?, during?, kind?))
     }
 
-    fn that(&mut self, fields: &Fields<'_>, what: &str) -> Option<Conditions> {
-        self.needed(fields, "that", what, Self::conditions)
+    pub(super) fn that(&mut self, fields: &Fields<'_>, shape: &Shape) -> Option<Conditions> {
+        self.needed(fields, "that", shape.what, Self::conditions)
+    }
+
+    fn during(&mut self, fields: &Fields<'_>) -> Option<Conditions> {
+        self.optional(fields, "while", Vec::new(), Self::conditions)
     }
 
     fn from(&mut self, fields: &Fields<'_>) -> Option<u64> {
@@ -130,38 +121,30 @@ impl Reader {
             .map_or(Some(0), |node| self.scan_in_run(node, "`from`"))
     }
 
-    pub(super) fn range(&mut self, fields: &Fields<'_>) -> Option<Range> {
-        let from = self.from(fields);
-        let Some(node) = fields.get("to").filter(|node| !is_edge(node)) else {
-            return Some(Range {
-                from: from?,
+    fn range(&mut self, fields: &Fields<'_>) -> Option<Range> {
+        match fields.get("to").filter(|node| !is_edge(node)) {
+            Some(end) => self.range_to(fields, end, "`to`"),
+            None => Some(Range {
+                from: self.from(fields)?,
                 to: None,
-            });
-        };
-        let to = self.scan_in_run(node, "`to`");
-        let range = Range {
-            from: from?,
-            to: Some(to?),
-        };
-        self.check_range(range, node)?;
-        Some(range)
-    }
-
-    fn check_range(&mut self, range: Range, end: &Node) -> Option<()> {
-        match range.to {
-            Some(to) if to < range.from => {
-                let message = format!(
-                    "the range ends with scan {to}, before it begins with scan {}",
-                    range.from
-                );
-                self.refuse(Diagnostic::new(Code::BadValue, end.span, message))
-            }
-            _ => Some(()),
+            }),
         }
     }
 
-    /// The law of a slave, and the conditions under which it holds.
-    fn follows(&mut self, node: &Node) -> Option<(Follow, Conditions)> {
+    /// The range up to the scan in `end`.
+    fn range_to(&mut self, fields: &Fields<'_>, end: &Node, what: &str) -> Option<Range> {
+        let from = self.from(fields);
+        let to = self.scan_in_run(end, what)?;
+        let from = from?;
+        if from <= to {
+            return Some(Range { from, to: Some(to) });
+        }
+        let message = format!("the range ends with scan {to}, before it begins with scan {from}");
+        self.refuse(Diagnostic::new(Code::BadValue, end.span, message))
+    }
+
+    /// The conditions under which a slave follows, and the law.
+    fn follows(&mut self, node: &Node) -> Option<(Conditions, ClaimKind)> {
         let fields = self.fields(node, &shape::FOLLOWS)?;
         let what = shape::FOLLOWS.what;
         let slave = self.needed(&fields, "slave", what, Self::axis_index);
@@ -173,7 +156,7 @@ impl Reader {
         let den = self.needed(&fields, "den", what, |it, node, key| {
             it.whole(node, key, 1..=u16::MAX.into())
         });
-        let during = self.optional(&fields, "while", Vec::new(), Self::conditions);
+        let during = self.during(&fields);
         let anchor = fields
             .get("anchor")
             .map_or(Some(None), |node| self.anchor(node).map(Some));
@@ -190,7 +173,7 @@ impl Reader {
             den: den?.try_into().ok()?,
             anchor: anchor?,
         };
-        Some((follow, during?))
+        Some((during?, ClaimKind::Follows(follow)))
     }
 
     /// A position of the master, and the position of the slave then.
@@ -201,12 +184,12 @@ impl Reader {
         Some([master?, slave?])
     }
 
-    fn factor(&mut self, node: &Node) -> Option<f64> {
-        let factor = self.finite(node, "`factor`")?;
+    fn factor(&mut self, node: &Node, what: &str) -> Option<f64> {
+        let factor = self.finite(node, what)?;
         if factor > 0.0 {
             return Some(factor);
         }
-        let message = format!("`factor` is {}: it must be above 0", number_text(factor));
+        let message = format!("{what} is {}: it must be above 0", number_text(factor));
         self.refuse(Diagnostic::new(Code::BadValue, node.span, message))
     }
 

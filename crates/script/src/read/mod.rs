@@ -33,7 +33,7 @@ mod wire;
 
 use crate::error::{Code, Diagnostic, File, ScriptError, quoted};
 use crate::format::number_text;
-use crate::model::{Conditions, DriveSetup, Formula, Input, Place, Program, Script, Span};
+use crate::model::{Claim, Conditions, DriveSetup, Formula, Input, Place, Program, Script, Span};
 use json::{Json, Key, Node};
 use names::{Entity, Names, identifier_error};
 pub use program::GUEST_MEMORY;
@@ -703,7 +703,7 @@ impl Reader {
     }
 
     fn check_looks(&mut self, script: &Script, span: Span) {
-        let claims = script.claims.iter().map(|claim| claim.kind.looks());
+        let claims = script.claims.iter().map(Claim::looks);
         let steps = script.steps.iter().map(|step| step.when.looks());
         let looks = claims.chain(steps).fold(0, u64::saturating_add);
         let looks = looks.saturating_mul(script.scans);

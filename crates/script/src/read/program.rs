@@ -289,17 +289,15 @@ impl Reader {
             path: format!("programs.{name}"),
             span,
             may_be_vacuous: false,
+            range: Range { from: 0, to: None },
             window: Window::default(),
-            kind: ClaimKind::Never {
-                range: Range { from: 0, to: None },
-                during: Vec::new(),
-                that: vec![Condition {
-                    text: format!("{name}.{FAULT}"),
-                    signal: Signal::Point(Point::Symbol(index, 0)),
-                    test: Test::Bool(true),
-                    span,
-                }],
-            },
+            during: Vec::new(),
+            kind: ClaimKind::Never(vec![Condition {
+                text: format!("{name}.{FAULT}"),
+                signal: Signal::Point(Point::Symbol(index, 0)),
+                test: Test::Bool(true),
+                span,
+            }]),
         };
         let programs = fields.members("programs").iter().enumerate();
         programs

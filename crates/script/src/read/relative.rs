@@ -1,9 +1,10 @@
 //! Claims about events: answers, durations, counts, and windows by condition.
 
+use super::Reader;
 use super::expect::is_edge;
 use super::json::Node;
+use super::shape::{self, Shape};
 use super::value::{Fields, WHOLE_MAX};
-use super::{Reader, shape};
 use crate::error::{Code, Diagnostic};
 use crate::model::{Bounds, ClaimKind, Conditions, Window};
 
@@ -14,18 +15,15 @@ impl Reader {
         key: &str,
         value: &Node,
         fields: &Fields<'_>,
-        what: &str,
+        shape: &Shape,
     ) -> Option<ClaimKind> {
-        let range = self.range(fields);
-        let during = self.optional(fields, "while", Vec::new(), Self::conditions);
+        let what = shape.what;
         match key {
             "duration" => {
                 let ends = self.ends(value);
                 let bounds = self.bounds(fields, what, |reader, node, key| reader.scans(node, key));
                 let each = self.optional(fields, "each", false, Self::boolean);
                 Some(ClaimKind::Duration {
-                    range: range?,
-                    during: during?,
                     ends: ends?,
                     bounds: bounds?,
                     each: each?,
@@ -38,8 +36,6 @@ impl Reader {
                     Some(number.unsigned_abs())
                 });
                 Some(ClaimKind::Count {
-                    range: range?,
-                    during: during?,
                     that: that?,
                     bounds: bounds?,
                 })
@@ -51,10 +47,8 @@ impl Reader {
                 let within = self
                     .require(fields, limit, what)
                     .and_then(|node| self.scans(node, if first { "`by`" } else { "`within`" }));
-                let that = self.needed(fields, "that", what, Self::conditions);
+                let that = self.that(fields, shape);
                 Some(ClaimKind::Answered {
-                    range: range?,
-                    during: during?,
                     when: when?,
                     within: within?,
                     that: that?,

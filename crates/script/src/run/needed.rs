@@ -21,7 +21,7 @@ pub(super) fn columns(script: &Script, all: &[Column], names: &[String]) -> BTre
     for claim in &script.claims {
         read.extend(signals(claim));
         // If a recording lacks these, they are 0.
-        if let ClaimKind::Follows { follow, .. } = &claim.kind {
+        if let ClaimKind::Follows(follow) = &claim.kind {
             let numbers = [AxisNumber::Phase, AxisNumber::Superimposed];
             read.extend(numbers.map(|number| Signal::Axis(follow.slave, number)));
         }
@@ -64,17 +64,17 @@ pub(super) fn column(layout: &Layout, signal: &Signal) -> Option<usize> {
 pub(super) fn signals(claim: &Claim) -> Vec<Signal> {
     let mut found = Vec::new();
     match &claim.kind {
-        ClaimKind::Exclusive(_, points) => {
+        ClaimKind::Exclusive(points) => {
             found.extend(points.iter().map(|(_, point): &(_, Point)| Signal::Point(*point)));
         }
         ClaimKind::WithinLimits { axis, .. } => found.push(Signal::Axis(*axis, AxisNumber::Position)),
-        ClaimKind::Follows { follow, .. } => {
+        ClaimKind::Follows(follow) => {
             found.extend([follow.slave, follow.master].map(|axis| Signal::Axis(axis, AxisNumber::Position)));
         }
         _ => {}
     }
     let window = claim.window.from.iter().chain(&claim.window.to).flatten();
-    all_of(claim.kind.conditions().into_iter().chain(window), &mut found);
+    all_of(claim.conditions().chain(window), &mut found);
     found
 }
 

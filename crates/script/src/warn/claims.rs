@@ -1,8 +1,9 @@
 //! Claims that test nothing.
 
 use super::Warning;
+use crate::claims::relative::scans_of;
 use crate::claims::{judges_a_row, relative};
-use crate::model::{Action, Claim, ClaimKind, Comparison, Condition, Point, Range, Script, Signal, Test};
+use crate::model::{Action, Claim, ClaimKind, Comparison, Condition, Point, Script, Signal, Test};
 use crate::run::Rows;
 use standstill_trace::{Cell, shortest};
 
@@ -30,15 +31,14 @@ pub(super) fn look(rows: &Rows<'_>, all: &mut Vec<Warning>) {
 
 /// The reason why a claim is never checked.
 fn never_asked(rows: &Rows<'_>, claim: &Claim) -> Option<String> {
-    let last = rows.count().saturating_sub(1);
-    let scans = |range: &Range| range.from..=range.to.unwrap_or(last).min(last);
+    let during = &claim.during;
     match &claim.kind {
-        ClaimKind::Always { range, during, .. } | ClaimKind::Never { range, during, .. }
-            if !during.is_empty() && !scans(range).any(|scan| rows.hold(during, scan)) =>
+        ClaimKind::Always(_) | ClaimKind::Never(_)
+            if !during.is_empty() && !scans_of(rows, claim.range).any(|scan| rows.hold(during, scan)) =>
         {
             Some("the claim asks for nothing: its `while` held in no scan".to_owned())
         }
-        ClaimKind::Follows { range, during, .. } if !judges_a_row(rows, range, during) => {
+        ClaimKind::Follows(_) if !judges_a_row(rows, claim) => {
             Some("the claim asks for nothing: its `while` held in no two scans on end".to_owned())
         }
         _ => None,
@@ -48,17 +48,17 @@ fn never_asked(rows: &Rows<'_>, claim: &Claim) -> Option<String> {
 /// All conditions that a claim checks, without those that say when.
 fn conditions(kind: &ClaimKind) -> &[Condition] {
     match kind {
-        ClaimKind::At(_, that)
-        | ClaimKind::By(_, that)
-        | ClaimKind::Once(_, that)
-        | ClaimKind::Always { that, .. }
-        | ClaimKind::Never { that, .. } => that,
-        ClaimKind::Answered { that, .. }
+        ClaimKind::At(that)
+        | ClaimKind::By(that)
+        | ClaimKind::Once(that)
+        | ClaimKind::Always(that)
+        | ClaimKind::Never(that)
+        | ClaimKind::Answered { that, .. }
         | ClaimKind::NeverFor { that, .. }
         | ClaimKind::Count { that, .. } => that,
-        ClaimKind::Exclusive(..)
+        ClaimKind::Exclusive(_)
         | ClaimKind::WithinLimits { .. }
-        | ClaimKind::Follows { .. }
+        | ClaimKind::Follows(_)
         | ClaimKind::Duration { .. } => &[],
     }
 }

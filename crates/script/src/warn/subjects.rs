@@ -109,8 +109,8 @@ fn points(condition: &Condition) -> Vec<Point> {
 
 fn claimed(claim: &Claim) -> Vec<Point> {
     match &claim.kind {
-        ClaimKind::Exclusive(_, named) => named.iter().map(|(_, point)| *point).collect(),
-        kind => kind.conditions().into_iter().flat_map(points).collect(),
+        ClaimKind::Exclusive(named) => named.iter().map(|(_, point)| *point).collect(),
+        _ => claim.conditions().flat_map(points).collect(),
     }
 }
 

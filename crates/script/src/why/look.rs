@@ -296,15 +296,15 @@ fn counted_on(rows: &Rows<'_>, verdicts: &[Verdict]) -> Vec<(Point, u64)> {
     };
     for (claim, verdict) in rows.script.claims.iter().zip(verdicts) {
         match (&claim.kind, verdict.scans) {
-            (ClaimKind::At(_, that) | ClaimKind::By(_, that) | ClaimKind::Once(_, that), Some(_)) => {
+            (ClaimKind::At(that) | ClaimKind::By(that) | ClaimKind::Once(that), Some(_)) => {
                 if let Some(held) = verdict.held {
                     add(that, held);
                 }
             }
-            (ClaimKind::Always { during, that, .. }, Some([from, to])) if verdict.passed() => {
-                if let Some(scan) = (from..=to).find(|&scan| rows.hold(during, scan)) {
+            (ClaimKind::Always(that), Some([from, to])) if verdict.passed() => {
+                if let Some(scan) = (from..=to).find(|&scan| rows.hold(&claim.during, scan)) {
                     add(that, scan);
-                    add(during, scan);
+                    add(&claim.during, scan);
                 }
             }
             _ => {}

@@ -14,7 +14,7 @@ mod standard;
 mod words;
 
 use crate::claims::Verdict;
-use crate::model::{Claim, ClaimKind, Condition, Follow, Point, Range, Signal};
+use crate::model::{Claim, ClaimKind, Condition, Follow, Point, Signal};
 use crate::run::Rows;
 use look::Look;
 use std::collections::BTreeSet;
@@ -285,17 +285,18 @@ fn targets<'c>(rows: &Rows<'_>, claim: &'c Claim, verdict: &Verdict) -> Vec<(Ask
         each.map(|condition| (Asked::HoldsNot(condition), 0, scan))
             .collect()
     };
-    let end = |range: &Range| range.to.unwrap_or(last).min(last);
+    let from = claim.range.from;
+    let end = claim.range.to.unwrap_or(last).min(last);
     match &claim.kind {
-        ClaimKind::At(scan, that) => unmet(that, 0, (*scan).min(last)),
-        ClaimKind::By(range, that) => unmet(that, range.from, end(range)),
-        ClaimKind::Always { that, .. } => unmet(that, 0, shown.unwrap_or(last)),
-        ClaimKind::Never { that, .. } => met(that, shown.unwrap_or(last)),
-        ClaimKind::Once(range, that) => match shown {
+        ClaimKind::At(that) => unmet(that, 0, end),
+        ClaimKind::By(that) => unmet(that, from, end),
+        ClaimKind::Always(that) => unmet(that, 0, shown.unwrap_or(last)),
+        ClaimKind::Never(that) => met(that, shown.unwrap_or(last)),
+        ClaimKind::Once(that) => match shown {
             Some(second) => met(that, second),
-            None => unmet(that, range.from, end(range)),
+            None => unmet(that, from, end),
         },
-        ClaimKind::Exclusive(_, points) => {
+        ClaimKind::Exclusive(points) => {
             let scan = shown.unwrap_or(last);
             let points = points.iter().map(|(_, point)| (Asked::Low(*point), 0, scan));
             points.collect()
@@ -309,10 +310,8 @@ fn targets<'c>(rows: &Rows<'_>, claim: &'c Claim, verdict: &Verdict) -> Vec<(Ask
             ends: [_, end_of], ..
         } => unmet(end_of, 0, shown.unwrap_or(last).min(last)),
         ClaimKind::Count { that, .. } => unmet(that, 0, shown.unwrap_or(last).min(last)),
-        ClaimKind::WithinLimits { axis: of, .. }
-        | ClaimKind::Follows {
-            follow: Follow { slave: of, .. },
-            ..
-        } => vec![(Asked::Within(*of), 0, shown.unwrap_or(last))],
+        ClaimKind::WithinLimits { axis: of, .. } | ClaimKind::Follows(Follow { slave: of, .. }) => {
+            vec![(Asked::Within(*of), 0, shown.unwrap_or(last))]
+        }
     }
 }

@@ -2,9 +2,7 @@
 
 use standstill_axis::{AxisState, Limits, StartState};
 use standstill_fb::Value;
-use standstill_script::model::{
-    Action, ClaimKind, Comparison, DriveSetup, Point, Range, Signal, Test, When, Wire,
-};
+use standstill_script::model::{Action, ClaimKind, Comparison, DriveSetup, Point, Signal, Test, When, Wire};
 use standstill_script::read;
 
 const EXAMPLE: &str = include_str!("contract_example.scan.json");
@@ -78,29 +76,21 @@ fn every_value_of_the_example_arrives_in_the_model() {
 
     let kinds: Vec<_> = script.claims.iter().map(|claim| &claim.kind).collect();
     assert_eq!(script.claims[4].path, "expect[4]");
-    assert!(matches!(kinds[0], ClaimKind::At(502, that) if that.len() == 3));
-    assert!(
-        matches!(kinds[1], ClaimKind::By(Range { from: 0, to: Some(1590) }, that)
-        if that[1].test == Test::Exactly(20.0))
-    );
-    assert!(matches!(
-        kinds[2],
-        ClaimKind::Never {
-            range: Range { from: 0, to: None },
-            ..
-        }
-    ));
-    assert!(matches!(kinds[3], ClaimKind::Always { that, .. }
+    let range = |claim: usize| (script.claims[claim].range.from, script.claims[claim].range.to);
+    assert!(matches!(kinds[0], ClaimKind::At(that) if that.len() == 3));
+    assert_eq!(range(0), (502, Some(502)));
+    let ClaimKind::By(that) = kinds[1] else {
+        panic!("{:?}", kinds[1])
+    };
+    assert_eq!((range(1), &that[1].test), ((0, Some(1590)), &Test::Exactly(20.0)));
+    assert!(matches!(kinds[2], ClaimKind::Never(_)) && range(2) == (0, None));
+    assert!(matches!(kinds[3], ClaimKind::Always(that)
         if that[1].signal == Signal::Difference(0, 3)
         && that[1].test == Test::Compare(vec![Comparison::AbsLe(2000.1)])));
-    assert!(
-        matches!(kinds[4], ClaimKind::Always { range: Range { from: 600, to: Some(700) }, that, .. }
-        if that[0].test == Test::State(AxisState::DiscreteMotion))
-    );
-    let span = match kinds[1] {
-        ClaimKind::By(_, that) => that[1].span,
-        _ => unreachable!(),
-    };
+    assert!(matches!(kinds[4], ClaimKind::Always(that)
+        if that[0].test == Test::State(AxisState::DiscreteMotion)));
+    assert_eq!(range(4), (600, Some(700)));
+    let span = that[1].span;
     assert_eq!(&EXAMPLE[span.start..span.end], "\"X.Position\": 20");
 }
 

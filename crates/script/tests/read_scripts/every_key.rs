@@ -11,7 +11,7 @@ use standstill_drives::switches::{Marker, Switches};
 use standstill_fb::Value;
 use standstill_script::model::{
     Action, Cia402Setup, ClaimKind, Comparison, DriveChange, DriveSetup, FaultKind, IdealDriveSetup,
-    MotorSetup, PlantSetup, Point, Range, Script, Test, When, Wire,
+    MotorSetup, PlantSetup, Point, Script, Test, When, Wire,
 };
 use standstill_script::{format, read};
 
@@ -322,37 +322,39 @@ fn steps_and_claims_take_all_their_forms() {
         [of_z(counted), of_z(DriveChange::ReportTorque(f64::INFINITY))]
     );
 
+    let ranges = script
+        .claims
+        .iter()
+        .map(|claim| (claim.range.from, claim.range.to, claim.during.len()));
+    assert_eq!(
+        ranges.collect::<Vec<_>>()[..8],
+        [
+            (40, Some(40), 0),
+            (10, Some(1990), 0),
+            (3, None, 1),
+            (3, Some(3), 1),
+            (0, Some(60), 0),
+            (0, None, 0),
+            (0, None, 0),
+            (1, Some(100), 0)
+        ]
+    );
     let kinds: Vec<_> = script.claims.iter().map(|claim| &claim.kind).collect();
-    assert!(matches!(kinds[0], ClaimKind::At(40, that) if that.len() == 3
+    assert!(matches!(kinds[0], ClaimKind::At(that) if that.len() == 3
         && that[0].test == Test::Named(Value::Enum(1))
         && that[1].test == Test::Named(Value::Enum(17))
         && that[2].test == Test::Named(Value::Axis(AxisId::new(0)))));
-    assert!(
-        matches!(kinds[1], ClaimKind::By(Range { from: 10, to: Some(1990) }, that)
+    assert!(matches!(kinds[1], ClaimKind::By(that)
         if that[0].test == Test::Compare(vec![Comparison::Ne(Box::new(Test::Bool(false)))])
-        && that[1].test == Test::Compare(vec![Comparison::Ge(1.0), Comparison::Lt(100.0)]))
-    );
-    assert!(
-        matches!(kinds[2], ClaimKind::Always { range: Range { from: 3, to: None }, during, .. }
-        if during.len() == 1)
-    );
-    assert!(
-        matches!(kinds[3], ClaimKind::Never { range: Range { from: 3, to: Some(3) }, during, .. }
-        if during.len() == 1)
-    );
-    assert!(
-        matches!(kinds[4], ClaimKind::Once(Range { from: 0, to: Some(60) }, that)
-        if that[0].test == Test::Compare(vec![Comparison::Near { near: 0.5, within: 1e-9 }]))
-    );
-    assert!(matches!(kinds[5], ClaimKind::Always { that, .. }
+        && that[1].test == Test::Compare(vec![Comparison::Ge(1.0), Comparison::Lt(100.0)])));
+    assert!(matches!(kinds[2], ClaimKind::Always(_)));
+    assert!(matches!(kinds[3], ClaimKind::Never(_)));
+    assert!(matches!(kinds[4], ClaimKind::Once(that)
+        if that[0].test == Test::Compare(vec![Comparison::Near { near: 0.5, within: 1e-9 }])));
+    assert!(matches!(kinds[5], ClaimKind::Always(that)
         if matches!(that[1].test, Test::Exactly(value) if value.is_nan())));
-    assert!(
-        matches!(kinds[6], ClaimKind::Exclusive(Range { from: 0, to: None }, points) if points.len() == 3)
-    );
-    assert!(
-        matches!(kinds[7], ClaimKind::WithinLimits { range: Range { from: 1, to: Some(100) }, axis: 0, factor }
-        if *factor == 1.0001)
-    );
+    assert!(matches!(kinds[6], ClaimKind::Exclusive(points) if points.len() == 3));
+    assert!(matches!(kinds[7], ClaimKind::WithinLimits { axis: 0, factor } if *factor == 1.0001));
     assert!(matches!(&script.stop_when, Some((conditions, 10)) if conditions.len() == 1));
 }
 
