@@ -58,6 +58,32 @@ pub struct Script {
     pub hash: u64,
 }
 
+impl Script {
+    /// The variable of a guest program at a point.
+    pub(crate) fn symbol(&self, point: Point) -> Option<&Symbol> {
+        match point {
+            Point::Symbol(program, symbol) => self.programs.get(program)?.symbols.get(symbol),
+            Point::Input(_) | Point::Pin(..) | Point::Formula(_) => None,
+        }
+    }
+
+    /// The variable of Structured Text at a point.
+    pub(crate) fn variable(&self, point: Point) -> Option<&Variable> {
+        self.symbol(point)?.variable.as_ref()
+    }
+
+    /// The type of a pin, or of the signal of a guest's variable.
+    pub(crate) fn type_of(&self, point: Point) -> Option<PinType> {
+        match point {
+            Point::Pin(instance, pin) => {
+                let instance = self.blocks.get(instance)?;
+                instance.block.pins().nth(pin).map(|pin| pin.ty)
+            }
+            point => self.symbol(point).map(|symbol| symbol.ty),
+        }
+    }
+}
+
 /// The place of an item in a script, and whether it may test nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Place {
@@ -479,6 +505,18 @@ pub struct Condition {
     pub span: Span,
 }
 
+impl Condition {
+    /// The signals that it reads.
+    pub(crate) fn signals(&self) -> impl Iterator<Item = &Signal> {
+        let comparisons = match &self.test {
+            Test::Compare(comparisons) => comparisons.as_slice(),
+            _ => &[],
+        };
+        let others = comparisons.iter().filter_map(Comparison::other);
+        std::iter::once(&self.signal).chain(others)
+    }
+}
+
 /// The required value of a signal.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Test {
@@ -525,7 +563,7 @@ pub enum Comparison {
     Lt(f64),
     /// `>`
     Gt(f64),
-    /// Different: the test inside must not hold.
+    /// Different: the test inside, on a plain value, must not hold.
     Ne(Box<Test>),
     /// Magnitude `<=`
     AbsLe(f64),

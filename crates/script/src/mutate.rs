@@ -5,7 +5,8 @@
 //! `docs/mutants.md` lists the changes.
 
 use crate::claims::Verdict;
-use crate::model::{Script, Wire};
+use crate::model::{Point, Script, Wire};
+use crate::run::cells::point_name;
 use crate::run::{Outcome, run};
 use standstill_axis::Limits;
 use standstill_fb::{PinType, TableInfo, TableRef, Value};
@@ -319,9 +320,7 @@ impl Mutant {
     fn own_column(&self, script: &Script) -> Option<String> {
         match self.change {
             Change::Constant(instance, pin, _) | Change::Wire(instance, pin, _) => {
-                let instance = script.blocks.get(instance)?;
-                let pin = instance.block.pins().nth(pin)?;
-                Some(format!("{}.{}", instance.name, pin.name))
+                Some(point_name(script, Point::Pin(instance, pin)))
             }
             // A table is no column.
             Change::Cell(..) | Change::Limits(..) | Change::LeftOut(_) => None,

@@ -88,7 +88,7 @@ impl Reader {
                 instance.constants.extend(value.map(|value| (pin_index, value)));
             } else if let Some(wire) = self.wire(node, pin.ty, &what) {
                 self.wires
-                    .insert((index, pin_index), (circle::sources(&wire), key.span));
+                    .insert((index, pin_index), (wire.points().to_vec(), key.span));
                 instance.wires.push((pin_index, wire));
             } else {
                 good = false;

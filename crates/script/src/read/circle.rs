@@ -5,7 +5,7 @@
 //! circle of inputs that read nothing else is neither: it never gets a value.
 
 use crate::error::{Code, Diagnostic};
-use crate::model::{Instance, Point, Span, Wire};
+use crate::model::{Instance, Point, Span};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// An input pin: instance and pin index.
@@ -13,14 +13,6 @@ type Place = (usize, usize);
 
 /// The wired inputs, their sources, and the place of their name.
 pub(super) type Wires = BTreeMap<Place, (Vec<Point>, Span)>;
-
-/// The points that a wire reads.
-pub(super) fn sources(wire: &Wire) -> Vec<Point> {
-    match wire {
-        Wire::From(point) | Wire::Not(point) => vec![*point],
-        Wire::Any(points) | Wire::All(points) => points.clone(),
-    }
-}
 
 /// The first circle of inputs that nothing feeds, in the direction of reading. Every wire is followed
 /// once.

@@ -14,7 +14,7 @@ use super::row::{RowWriter, Source};
 use super::rows::{ROWS_KEPT, Rows, Shift};
 use super::schedule::Schedule;
 use super::values::Values;
-use crate::model::{Action, AxisNumber, FaultKind, FormulaInput, Point, Script, Signal, Variable, Wire};
+use crate::model::{Action, AxisNumber, FaultKind, FormulaInput, Point, Script, Signal, Wire};
 use standstill_axis::{Axis, AxisId, AxisState, ErrorId, InstanceId, Standard};
 use standstill_fb::{Context, Value};
 use standstill_scan::{Machine, ProgramFault, ProgramId, Programs, RUNTIME, ScanTime, TaskId};
@@ -112,25 +112,11 @@ fn reading(axis: &Axis<Standard>) -> Reading {
     }
 }
 
-/// The variable of Structured Text at a point.
-fn variable(script: &Script, point: Point) -> Option<&Variable> {
-    let Point::Symbol(program, symbol) = point else {
-        return None;
-    };
-    script
-        .programs
-        .get(program)?
-        .symbols
-        .get(symbol)?
-        .variable
-        .as_ref()
-}
-
 /// A script that is running.
 pub(crate) struct Bench<'a> {
     script: &'a Script,
     layout: Arc<Layout>,
-    values: Values,
+    pub(super) values: Values,
     /// The instances and calls of each task, then those without one, in file order.
     tasks: Vec<OfTask>,
     writer: RowWriter,
@@ -138,18 +124,18 @@ pub(crate) struct Bench<'a> {
     /// Whether the programs are idle; none if they may do something new in any scan.
     rest: Option<Rest>,
     /// An event occurred that could not be foreseen, while the programs were assumed to be idle.
-    rest_broken: bool,
+    pub(super) rest_broken: bool,
     /// Axis states after all blocks were called, before the motion step.
     states: Vec<AxisState>,
     notes: Notes,
-    guests: Guests,
+    pub(super) guests: Guests,
     formulas: Formulas,
     truths: Truths,
     /// The values of the axes that expressions in a task's wire read: those latched.
     readings: Vec<Reading>,
     /// The current scan.
     time: ScanTime,
-    trace: Trace,
+    pub(super) trace: Trace,
     /// The columns of a whole trace.
     columns: usize,
     /// The shifts of coordinates, for differences of positions.
@@ -157,7 +143,7 @@ pub(crate) struct Bench<'a> {
     /// The positions of the cams that axes are on.
     cams: Cams,
     /// The values that the next latch writes after its steps.
-    changes: Vec<(Point, Value)>,
+    pub(super) changes: Vec<(Point, Value)>,
     /// The faults that the next latch raises or clears after its steps.
     faults: Vec<Action>,
     /// Last scan of the run, once `stop_when` has held.
@@ -215,16 +201,6 @@ impl<'a> Bench<'a> {
         self.error.take().map_or(Ok(()), Err)
     }
 
-    /// The variables of a program in Structured Text.
-    pub(crate) fn variables(&self, program: usize) -> Vec<super::Shown> {
-        self.guests.variables(self.script, program)
-    }
-
-    /// How often statements of the guests were executed.
-    pub(crate) fn counted(&self) -> Vec<super::Counted> {
-        self.guests.counted(self.script)
-    }
-
     /// Whether a guest program, or an expression in a wire, has had a fault.
     pub(crate) fn has_fault(&self) -> bool {
         self.guests.has_fault() || self.wire_fault
@@ -243,7 +219,7 @@ impl<'a> Bench<'a> {
             let source = |input: &FormulaInput| match input.signal {
                 Signal::Point(point) => {
                     let value = values.read(point)?;
-                    let whole = variable(script, point).and_then(|variable| variable.whole(value));
+                    let whole = script.variable(point).and_then(|variable| variable.whole(value));
                     Some(formulas::of_value(input, value, whole))
                 }
                 Signal::State(axis) | Signal::Axis(axis, _) => formulas::of_reading(input, &reading(axis)?),
@@ -282,22 +258,12 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// The value at a point.
-    pub(crate) fn value(&self, point: Point) -> Option<Value> {
-        self.values.read(point)
-    }
-
     /// Makes an axis or its drive fail at the next latch, after its steps. Without a fault it removes the cause.
     pub(crate) fn fail(&mut self, axis: usize, fault: Option<(FaultKind, u16)>) {
         self.faults.push(match fault {
             Some((kind, code)) => Action::Fault { axis, kind, code },
             None => Action::Clear { axis },
         });
-    }
-
-    /// Writes a value at the next latch, after its steps.
-    pub(crate) fn change(&mut self, point: Point, value: Value) {
-        self.changes.push((point, value));
     }
 
     /// The data for judging claims.
@@ -366,26 +332,6 @@ impl<'a> Bench<'a> {
         self.writer.write_along(scans, first, machine, &mut self.trace);
         // The reports of drives for another scan cannot be corrected.
         self.rest_broken |= !self.rest.as_ref().is_some_and(|rest| rest.lasts(machine));
-    }
-
-    /// Adds rows that are equal to the last one.
-    pub(crate) fn repeat_row(&mut self, scans: u64) {
-        self.trace.push_next(usize::try_from(scans).unwrap_or_default());
-    }
-
-    /// Whether an event occurred in scans without the programs that they should have processed.
-    pub(crate) const fn is_rest_broken(&self) -> bool {
-        self.rest_broken
-    }
-
-    /// Reserves memory for `scans` more rows.
-    pub(crate) fn reserve(&mut self, scans: usize) {
-        self.trace.reserve(scans);
-    }
-
-    /// See [`Trace::keep_up`].
-    pub(crate) fn keep_up(&mut self) {
-        self.trace.keep_up();
     }
 
     /// Adds a note at the last scan.

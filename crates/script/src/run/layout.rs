@@ -1,7 +1,7 @@
 //! The columns of a script's signals in a row of a trace, and the header of its own trace.
 
 use super::cells;
-use crate::model::{Action, AxisNumber, Point, Program, Script, Symbol, Variable, WhichMaster};
+use crate::model::{Action, AxisNumber, Point, Program, Script, Signal, Symbol, Variable, WhichMaster};
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Direction, PinType, Value};
 use standstill_record::told;
@@ -120,6 +120,17 @@ impl Layout {
         match &self.elsewhere {
             None => Some(column),
             Some(places) => places.get(column).copied().flatten(),
+        }
+    }
+
+    /// Column of a signal; none for one that depends on more than a row.
+    pub(crate) fn column(&self, signal: &Signal) -> Option<usize> {
+        match *signal {
+            Signal::Point(point) => self.point(point),
+            Signal::State(axis) => self.state(axis),
+            Signal::Master(axis, which) => self.master(axis, which),
+            Signal::Axis(axis, number) => self.number(axis, number),
+            Signal::Difference(..) | Signal::Formula(_) => None,
         }
     }
 

@@ -2,7 +2,7 @@
 //! no others.
 
 use super::layout::Layout;
-use crate::model::{AxisNumber, Claim, ClaimKind, Comparison, Condition, Point, Script, Signal, Test, When};
+use crate::model::{AxisNumber, Claim, ClaimKind, Condition, Point, Script, Signal, When};
 use standstill_trace::Column;
 use std::collections::BTreeSet;
 
@@ -12,11 +12,11 @@ pub(super) fn columns(script: &Script, all: &[Column], names: &[String]) -> BTre
     let mut read = Vec::new();
     for step in &script.steps {
         if let When::Holds { conditions, .. } = &step.when {
-            all_of(conditions, &mut read);
+            read.extend(conditions.iter().flat_map(Condition::signals).cloned());
         }
     }
     if let Some((conditions, _)) = &script.stop_when {
-        all_of(conditions, &mut read);
+        read.extend(conditions.iter().flat_map(Condition::signals).cloned());
     }
     for claim in &script.claims {
         read.extend(signals(claim));
@@ -40,23 +40,11 @@ pub(super) fn columns(script: &Script, all: &[Column], names: &[String]) -> BTre
     columns
 }
 
-/// All signals that conditions read.
-fn all_of<'c>(conditions: impl IntoIterator<Item = &'c Condition>, found: &mut Vec<Signal>) {
-    for condition in conditions {
-        found.push(condition.signal.clone());
-        compared(&condition.test, found);
-    }
-}
-
-/// The column of a signal.
+/// The column from which a signal is read.
 pub(super) fn column(layout: &Layout, signal: &Signal) -> Option<usize> {
     match *signal {
-        Signal::Point(point) => layout.point(point),
-        Signal::State(axis) => layout.state(axis),
-        Signal::Master(axis, which) => layout.master(axis, which),
-        Signal::Axis(axis, number) => layout.number(axis, number),
         Signal::Difference(axis, _) => layout.number(axis, AxisNumber::Position),
-        Signal::Formula(_) => None,
+        _ => layout.column(signal),
     }
 }
 
@@ -74,27 +62,7 @@ pub(super) fn signals(claim: &Claim) -> Vec<Signal> {
         _ => {}
     }
     let window = claim.window.from.iter().chain(&claim.window.to).flatten();
-    all_of(claim.conditions().chain(window), &mut found);
+    let conditions = claim.conditions().chain(window);
+    found.extend(conditions.flat_map(Condition::signals).cloned());
     found
-}
-
-/// The signals that a test compares with.
-fn compared(test: &Test, found: &mut Vec<Signal>) {
-    let Test::Compare(comparisons) = test else {
-        return;
-    };
-    for comparison in comparisons {
-        match comparison {
-            Comparison::SameAs(_, other) | Comparison::NearTo { of: other, .. } => found.push(other.clone()),
-            // A script's nesting is bounded by its reader.
-            Comparison::Ne(inner) => compared(inner, found),
-            Comparison::Near { .. }
-            | Comparison::Le(_)
-            | Comparison::Ge(_)
-            | Comparison::Lt(_)
-            | Comparison::Gt(_)
-            | Comparison::AbsLe(_)
-            | Comparison::Whole(..) => {}
-        }
-    }
 }

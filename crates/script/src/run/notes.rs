@@ -106,7 +106,6 @@ impl Notes {
 
 /// The shifts of coordinates in a scan, which claims need. They come from the axes themselves: a step with more
 /// records than the ring holds loses some.
-/// holds loses some.
 pub(crate) fn shifts_of(machine: &ScriptMachine, scan: usize) -> impl Iterator<Item = Shift> {
     let axes = machine.axes().iter().enumerate();
     axes.filter_map(move |(index, axis)| {

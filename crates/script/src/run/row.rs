@@ -5,7 +5,7 @@ use super::bench::ScriptMachine;
 use super::cells;
 use super::layout::Layout;
 use super::values::Values;
-use crate::model::Script;
+use crate::model::{Point, Script};
 use standstill_axis::{AxisId, AxisState};
 use standstill_fb::{AnyInstance, PinType, Value};
 use standstill_record::told::Cells;
@@ -295,8 +295,7 @@ impl Source<'_> {
 
     /// Calls `take` with the cell of a symbol.
     fn symbol<T>(&self, program: usize, place: usize, take: impl FnOnce(Cell<'_>) -> T) -> T {
-        let declared = self.script.programs.get(program);
-        let variable = declared.and_then(|program| program.symbols.get(place)?.variable.as_ref());
+        let variable = self.script.variable(Point::Symbol(program, place));
         let value = self
             .symbols(program)
             .get(place)

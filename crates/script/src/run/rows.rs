@@ -42,18 +42,17 @@ impl<'a> Rows<'a> {
 
     /// The value of a signal in a scan; `None` outside the run.
     pub(crate) fn cell(&self, signal: &Signal, scan: u64) -> Option<Cell<'a>> {
-        let column = match *signal {
-            Signal::Point(point) => self.layout.point(point)?,
-            Signal::State(axis) => self.layout.state(axis)?,
-            Signal::Master(axis, which) => self.layout.master(axis, which)?,
-            Signal::Axis(axis, number) => self.layout.number(axis, number)?,
+        match *signal {
             Signal::Difference(axis, order) => {
                 let [.., last] = self.differences(axis, scan, order)?;
-                return Some(Cell::Real(last));
+                Some(Cell::Real(last))
             }
-            Signal::Formula(formula) => return self.truths.get(formula, scan).map(Cell::Bool),
-        };
-        self.trace.cell(usize::try_from(scan).ok()?, column)
+            Signal::Formula(formula) => self.truths.get(formula, scan).map(Cell::Bool),
+            _ => {
+                let column = self.layout.column(signal)?;
+                self.trace.cell(usize::try_from(scan).ok()?, column)
+            }
+        }
     }
 
     /// Whether a scan is too near to the begin of a recording for the value of a signal, because the
@@ -181,7 +180,7 @@ impl<'a> Rows<'a> {
         }
         let first = usize::try_from(scans.start).unwrap_or(usize::MAX);
         let are_last = first >= self.trace.first() && scans.end == self.count();
-        let column = self.column(&condition.signal).filter(|_| are_last);
+        let column = self.layout.column(&condition.signal).filter(|_| are_last);
         match (&condition.test, column) {
             (Test::Bool(value), Some(column)) => match self.trace.bools_from(column, first) {
                 Some(values) => between(scans, values, |found| (found == *value) == wanted),
@@ -202,21 +201,7 @@ impl<'a> Rows<'a> {
 
     /// A scan from which on a condition reads the same in all rows so far. The number of rows if that is not known.
     pub(crate) fn same_since(&self, condition: &Condition) -> u64 {
-        let own = self.signal_same_since(&condition.signal);
-        own.max(self.test_same_since(&condition.test))
-    }
-
-    fn test_same_since(&self, test: &Test) -> u64 {
-        let Test::Compare(comparisons) = test else {
-            return 0;
-        };
-        let each = comparisons.iter().map(|comparison| match comparison {
-            Comparison::SameAs(_, other) | Comparison::NearTo { of: other, .. } => {
-                self.signal_same_since(other)
-            }
-            Comparison::Ne(test) => self.test_same_since(test),
-            _ => 0,
-        });
+        let each = condition.signals().map(|signal| self.signal_same_since(signal));
         each.max().unwrap_or(0)
     }
 
@@ -226,19 +211,8 @@ impl<'a> Rows<'a> {
     }
 
     fn signal_same_since(&self, signal: &Signal) -> u64 {
-        let column = self.column(signal);
+        let column = self.layout.column(signal);
         column.map_or(self.count(), |column| self.trace.same_since(column) as u64)
-    }
-
-    /// The column of a signal; none for one that depends on more than a row.
-    fn column(&self, signal: &Signal) -> Option<usize> {
-        match *signal {
-            Signal::Point(point) => self.layout.point(point),
-            Signal::State(axis) => self.layout.state(axis),
-            Signal::Master(axis, which) => self.layout.master(axis, which),
-            Signal::Axis(axis, number) => self.layout.number(axis, number),
-            Signal::Difference(..) | Signal::Formula(_) => None,
-        }
     }
 
     /// Whether all conditions hold on the row of `scan`.
@@ -318,30 +292,17 @@ impl<'a> Rows<'a> {
 
     /// The variable of Structured Text behind a signal, if it is one.
     fn variable(&self, signal: &Signal) -> Option<&'a Variable> {
-        let Signal::Point(Point::Symbol(program, symbol)) = *signal else {
-            return None;
-        };
-        let program = self.script.programs.get(program)?;
-        program.symbols.get(symbol)?.variable.as_ref()
+        match *signal {
+            Signal::Point(point) => self.script.variable(point),
+            _ => None,
+        }
     }
 
     /// Type of the pin behind a signal, if it is one.
     pub(crate) fn pin_type(&self, signal: &Signal) -> Option<PinType> {
         match *signal {
-            Signal::Point(Point::Pin(instance, pin)) => {
-                let instance = self.script.blocks.get(instance)?;
-                instance.block.pins().nth(pin).map(|pin| pin.ty)
-            }
-            Signal::Point(Point::Symbol(program, symbol)) => {
-                let program = self.script.programs.get(program)?;
-                program.symbols.get(symbol).map(|symbol| symbol.ty)
-            }
-            Signal::Point(Point::Input(_) | Point::Formula(_))
-            | Signal::State(_)
-            | Signal::Axis(..)
-            | Signal::Master(..)
-            | Signal::Difference(..)
-            | Signal::Formula(_) => None,
+            Signal::Point(point) => self.script.type_of(point),
+            _ => None,
         }
     }
 }

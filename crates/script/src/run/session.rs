@@ -7,7 +7,7 @@ use super::kept::Kept;
 use super::{Outcome, RunError, executor, told};
 use crate::CELLS_MAX;
 use crate::claims::{self, Judges, Standing, Standings, Verdict};
-use crate::model::{FaultKind, Point, Script, Variable};
+use crate::model::{FaultKind, Point, Script};
 use crate::read::time;
 use crate::why;
 use standstill_fb::{Direction, PinType, Value};
@@ -200,7 +200,7 @@ impl<'a> Session<'a> {
         self.bench.went_on(done);
         self.scans += done;
         self.over = self.bench.is_over(self.scans - 1) || self.scans >= self.script.scans;
-        if self.bench.is_rest_broken() {
+        if self.bench.rest_broken {
             self.over = true;
             return Ok(Ahead::Broken);
         }
@@ -239,7 +239,9 @@ impl<'a> Session<'a> {
             return done;
         }
         let stood = self.executor.stand(scans - done);
-        self.bench.repeat_row(stood);
+        // Rows that are equal to the last one.
+        let rows = usize::try_from(stood).unwrap_or_default();
+        self.bench.trace.push_next(rows);
         done + stood
     }
 
@@ -261,13 +263,14 @@ impl<'a> Session<'a> {
     /// cells of at most 8 bytes.
     pub fn reserve(&mut self) {
         let left = self.script.scans.saturating_sub(self.scans);
-        self.bench.reserve(usize::try_from(left).unwrap_or_default());
+        let rows = usize::try_from(left).unwrap_or_default();
+        self.bench.trace.reserve(rows);
     }
 
     /// Call it between two scans of a paced run: it does postponed work of the trace in small parts, so that no
     /// scan has much of it. Cost: at most as many cells as the trace has columns.
     pub fn keep_up(&mut self) {
-        self.bench.keep_up();
+        self.bench.trace.keep_up();
     }
 
     /// Stops the programs for good: from the next scan on none is called, and every axis stops and
@@ -296,14 +299,14 @@ impl<'a> Session<'a> {
     /// program. Cost: linear in their number.
     #[must_use]
     pub fn variables(&self, program: usize) -> Vec<super::Shown> {
-        self.bench.variables(program)
+        self.bench.guests.variables(self.script, program)
     }
 
     /// The execution counts of statements of Structured Text, if the script was read with counting. Cost:
     /// linear in the statements.
     #[must_use]
     pub fn counted(&self) -> Vec<super::Counted> {
-        self.bench.counted()
+        self.bench.guests.counted(self.script)
     }
 
     /// Scans done so far.
@@ -327,7 +330,7 @@ impl<'a> Session<'a> {
     /// The rows so far; [`Session::finish`] adds the verdicts of claims.
     #[must_use]
     pub fn trace(&self) -> &Trace {
-        self.bench.rows().trace
+        &self.bench.trace
     }
 
     /// The state of every claim, in file order. Cost: proportional to the scans since the last call; at
@@ -339,30 +342,19 @@ impl<'a> Session<'a> {
     /// The value at a point.
     #[must_use]
     pub fn value(&self, point: Point) -> Option<Value> {
-        self.bench.value(point)
+        self.bench.values.read(point)
     }
 
     /// The value at a point in the form of a trace; a TIME as a literal.
     #[must_use]
     pub fn text(&self, point: Point) -> Option<String> {
         let value = self.value(point)?;
-        if let Some(variable) = self
-            .variable(point)
-            .filter(|_| !matches!(value, Value::Time(_)) || self.is_wide(point))
-        {
-            return Some(variable.text(value));
-        }
-        let ty = match point {
-            Point::Input(_) | Point::Symbol(..) | Point::Formula(_) => None,
-            Point::Pin(instance, pin) => {
-                let instance = self.script.blocks.get(instance)?;
-                instance.block.pins().nth(pin).map(|pin| pin.ty)
-            }
-        };
-        match value {
-            Value::Time(ns) => Some(time::literal(ns)),
-            value => Some(cells::value_text(self.script, ty, value)),
-        }
+        Some(match (self.script.variable(point), value) {
+            (Some(variable), _) if variable.is_wide() => variable.text(value),
+            (_, Value::Time(ns)) => time::literal(ns),
+            (Some(variable), _) => variable.text(value),
+            (None, _) => cells::value_text(self.script, self.script.type_of(point), value),
+        })
     }
 
     /// The text of every claim, in file order.
@@ -394,7 +386,7 @@ impl<'a> Session<'a> {
     }
 
     fn enter(&mut self, (value, change): (Value, Change)) {
-        self.bench.change(change.point, value);
+        self.bench.changes.push((change.point, value));
         self.changes.push(change);
     }
 
@@ -407,9 +399,7 @@ impl<'a> Session<'a> {
         let (value, json) = self
             .parse(point, text.trim())
             .map_err(|why| format!("{name}: {why}"))?;
-        if let Point::Symbol(program, symbol) = point
-            && let Some(symbol) =
-                (self.script.programs.get(program)).and_then(|program| program.symbols.get(symbol))
+        if let Some(symbol) = self.script.symbol(point)
             && symbol.variable.is_none()
             && !symbol.own.holds(value)
         {
@@ -433,7 +423,10 @@ impl<'a> Session<'a> {
             Point::Formula(_) => return Some("it is an expression"),
             Point::Symbol(_, 0) => return Some("the runtime writes it"),
             Point::Symbol(..) => {
-                let variable = self.variable(point).filter(|variable| !variable.is_settable());
+                let variable = self
+                    .script
+                    .variable(point)
+                    .filter(|variable| !variable.is_settable());
                 return variable.map(|_| "only inputs, global variables and those AT an address are set");
             }
             Point::Pin(instance, pin) => (instance, pin),
@@ -452,36 +445,19 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// The variable of Structured Text at a point.
-    fn variable(&self, point: Point) -> Option<&'a Variable> {
-        let Point::Symbol(program, symbol) = point else {
-            return None;
-        };
-        let program = self.script.programs.get(program)?;
-        program.symbols.get(symbol)?.variable.as_ref()
-    }
-
-    fn is_wide(&self, point: Point) -> bool {
-        self.variable(point).is_some_and(Variable::is_wide)
-    }
-
     /// The value of a text at a point, and as JSON.
     fn parse(&self, point: Point, text: &str) -> Result<(Value, String), String> {
         if let Some(obstacle) = self.obstacle(point) {
             return Err(obstacle.to_owned());
         }
-        if let Some(whole) = self.variable(point).and_then(|variable| variable.parse(text)) {
+        if let Some(whole) = self
+            .script
+            .variable(point)
+            .and_then(|variable| variable.parse(text))
+        {
             return whole;
         }
-        let ty = match point {
-            Point::Input(_) | Point::Symbol(..) | Point::Formula(_) => None,
-            Point::Pin(instance, pin) => self
-                .script
-                .blocks
-                .get(instance)
-                .and_then(|instance| instance.block.pins().nth(pin))
-                .map(|pin| pin.ty),
-        };
+        let ty = self.script.type_of(point);
         let now = self.value(point).ok_or("there is no such pin")?;
         let number = || -> Result<f64, String> {
             let word = matches!(text, "NaN" | "Infinity" | "-Infinity");

@@ -1,7 +1,7 @@
 //! Inputs without a reader, blocks without effect, axes without commands.
 
 use super::Warning;
-use crate::model::{Action, Claim, ClaimKind, Condition, Instance, Point, Script, Signal, Test, When, Wire};
+use crate::model::{Action, Claim, ClaimKind, Condition, Instance, Point, Script, Signal, When, Wire};
 use crate::run::Rows;
 use standstill_trace::Cell;
 use std::collections::BTreeSet;
@@ -93,18 +93,11 @@ fn read_inputs(script: &Script) -> BTreeSet<usize> {
 }
 
 /// The points that a condition reads.
-fn points(condition: &Condition) -> Vec<Point> {
-    let mut signals = vec![&condition.signal];
-    if let Test::Compare(comparisons) = &condition.test {
-        signals.extend(comparisons.iter().filter_map(|comparison| comparison.other()));
-    }
-    signals
-        .into_iter()
-        .filter_map(|signal| match signal {
-            Signal::Point(point) => Some(*point),
-            _ => None,
-        })
-        .collect()
+fn points(condition: &Condition) -> impl Iterator<Item = Point> {
+    condition.signals().filter_map(|signal| match signal {
+        Signal::Point(point) => Some(*point),
+        _ => None,
+    })
 }
 
 fn claimed(claim: &Claim) -> Vec<Point> {
