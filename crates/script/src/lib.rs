@@ -40,8 +40,8 @@ pub use read::{
     CELLS_MAX, ENTITIES_MAX, GUEST_MEMORY, LOOKS_MAX, SCANS_MAX, VERSION, read, read_with, read_with_programs,
 };
 pub use run::{
-    Ahead, Change, Counted, Kept, Ordered, Outcome, ROWS_MAX, RecordingError, RunError, Session, Shown,
-    judge_recording, keeps_rows, run, run_with,
+    Advance, Ahead, Change, Counted, Kept, Ordered, Outcome, ROWS_MAX, RecordingError, RunError, Session,
+    Shown, far_or_by_scan, judge_recording, keeps_rows, run, run_with,
 };
 pub use schema::schema;
 pub use schema_machine::machine_schema;

@@ -4,7 +4,9 @@ use crate::figure::Figure;
 use standstill_script::model::Script;
 use standstill_script::suite::{self, Allowed, SuiteError, Texts};
 use standstill_script::sweep::Sweep;
-use standstill_script::{Ahead, Failure, Kept, RunError, ScriptError, Session, Verdict, read_sweep, run};
+use standstill_script::{
+    Advance, Ahead, Failure, Kept, RunError, ScriptError, Session, Verdict, far_or_by_scan, read_sweep, run,
+};
 use standstill_trace::{Extremes, digest, shortest};
 use std::path::{Path, PathBuf};
 
@@ -213,7 +215,7 @@ impl Job {
         if let Err(error) = self.texts.vary(&mut bench.script, &parameters) {
             return Ok(refused(first_of(&error)));
         }
-        let ran = match self.ran(bench) {
+        let ran = match far_or_by_scan(|advance| self.take(bench, advance)) {
             Ok(ran) => ran,
             Err(source @ RunError::Internal(_)) => {
                 let path = self.path.clone();
@@ -235,24 +237,9 @@ impl Job {
         })
     }
 
-    /// Runs the script and takes the values for a table.
-    fn ran(&self, bench: &mut Bench) -> Result<Ran, RunError> {
-        let far = |session: &mut Session<'_>, most| session.advance_far(most);
-        if let Some(ran) = self.take(bench, far)? {
-            return Ok(ran);
-        }
-        let by_scan = |session: &mut Session<'_>, _| Ok(Ahead::Scans(session.advance()?.into()));
-        let ran = self.take(bench, by_scan)?;
-        ran.ok_or_else(|| RunError::Internal("a run scan by scan did not go on".to_owned()))
-    }
-
-    /// Takes the values for a table; rows are dropped on the way. None if `advance`, which receives the largest
-    /// number of scans, cannot run this script.
-    fn take(
-        &self,
-        bench: &mut Bench,
-        advance: impl Fn(&mut Session<'_>, u64) -> Result<Ahead, RunError>,
-    ) -> Result<Option<Ran>, RunError> {
+    /// Runs the script and takes the values for a table; rows are dropped on the way. None if `advance` cannot run this
+    /// script.
+    fn take(&self, bench: &mut Bench, advance: Advance) -> Result<Option<Ran>, RunError> {
         let kept = bench.kept.take().unwrap_or_else(|| self.kept.clone());
         let mut session = Session::keeping(&bench.script, kept)?;
         let mut digest = self.sweep.has_digest.then(digest::Whole::default);

@@ -142,26 +142,35 @@ pub fn run(script: &Script) -> Result<Outcome, RunError> {
 /// # Errors
 /// Those of [`run`].
 pub fn run_with(script: &Script, mut progress: impl FnMut(u64)) -> Result<Outcome, RunError> {
-    if let Some(outcome) = run_by(script, &mut progress, |session| {
-        session.advance_far(PROGRESS_EVERY)
-    })? {
+    far_or_by_scan(|advance| run_by(script, &mut progress, advance))
+}
+
+/// How a run goes on, by at most so many scans: [`Session::advance_far`], or scan by scan.
+pub type Advance = fn(&mut Session<'_>, u64) -> Result<Ahead, RunError>;
+
+/// The result of a run that `run` continues by what it gets; it is called a second time, for a run scan by scan, if the
+/// first one is [`Ahead::Broken`] and it returns none.
+///
+/// # Errors
+/// Those of `run`.
+pub fn far_or_by_scan<T>(mut run: impl FnMut(Advance) -> Result<Option<T>, RunError>) -> Result<T, RunError> {
+    if let Some(outcome) = run(|session, most| session.advance_far(most))? {
         return Ok(outcome);
     }
-    let by_scan = |session: &mut Session<'_>| Ok(Ahead::Scans(session.advance()?.into()));
-    let outcome = run_by(script, &mut progress, by_scan)?;
+    let outcome = run(|session, _| Ok(Ahead::Scans(session.advance()?.into())))?;
     outcome.ok_or_else(|| RunError::Internal("a run scan by scan did not go on".to_owned()))
 }
 
 /// A run that `advance` continues; none if that cannot run the script.
-fn run_by<'s>(
-    script: &'s Script,
+fn run_by(
+    script: &Script,
     progress: &mut impl FnMut(u64),
-    advance: impl Fn(&mut Session<'s>) -> Result<Ahead, RunError>,
+    advance: Advance,
 ) -> Result<Option<Outcome>, RunError> {
     let mut session = Session::new(script)?;
     let mut told = 0;
     loop {
-        match advance(&mut session)? {
+        match advance(&mut session, PROGRESS_EVERY)? {
             Ahead::Broken => return Ok(None),
             Ahead::Scans(0) => return Ok(Some(session.finish())),
             Ahead::Scans(_) => {}
