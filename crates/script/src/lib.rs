@@ -32,7 +32,6 @@ pub use changes::with_changes;
 pub use claims::{Failure, Standing, Verdict};
 pub use error::{Code, DIAGNOSTICS_SHOWN, Diagnostic, ScriptError};
 pub use format::format;
-pub use read::block::NOT_BUILT;
 pub use read::machine_map::read_map;
 pub use read::sweep::read_sweep;
 pub use read::time::parse as parse_time;

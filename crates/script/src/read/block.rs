@@ -16,10 +16,6 @@ pub(crate) fn is_needed(pin: &Pin) -> bool {
     pin.direction == Direction::InOut && matches!(pin.ty, PinType::Axis(_))
 }
 
-/// The blocks of the standard that are not implemented. A test of `standstill-xtask` compares the list
-/// with its catalogue.
-pub const NOT_BUILT: [&str; 0] = [];
-
 impl Reader {
     pub(super) fn blocks(&mut self, fields: &Fields<'_>, tasks: Option<&[Task]>) -> Option<Vec<Instance>> {
         let node = self.require(fields, "blocks", "a script")?;
@@ -127,18 +123,10 @@ impl Reader {
         if info.is_some() {
             return info;
         }
-        let not_built = NOT_BUILT.iter().find(|known| known.eq_ignore_ascii_case(name));
-        if let Some(known) = not_built {
-            let message = format!("{known} is a block of the standard that is not built yet");
-            let help = "axes coupled to a master are not there; `standstill blocks` lists what is";
-            self.report(Diagnostic::new(Code::Unsupported, node.span, message).help(help));
-        } else {
-            let help = nearest(name, standstill_blocks::REGISTRY.iter().map(|info| info.name))
-                .unwrap_or_else(|| "`standstill blocks` lists those there are".to_owned());
-            let message = format!("there is no block {}", quoted(name));
-            self.report(Diagnostic::new(Code::UnknownBlock, node.span, message).help(help));
-        }
-        None
+        let help = nearest(name, standstill_blocks::REGISTRY.iter().map(|info| info.name))
+            .unwrap_or_else(|| "`standstill blocks` lists those there are".to_owned());
+        let message = format!("there is no block {}", quoted(name));
+        self.refuse(Diagnostic::new(Code::UnknownBlock, node.span, message).help(help))
     }
 
     /// The in_out or input called `name`.
