@@ -2,28 +2,21 @@
 //! have.
 
 use crate::read::shape;
-use crate::schema::{add, definitions, object, required};
-use serde_json::{Map, Value, json};
+use crate::schema::{add, definitions, object, required, titled, written};
+use serde_json::{Map, Value};
 
 /// The JSON Schema (draft 2020-12) of machine files (`*.machine.json`), in the layout of [`format`](crate::format).
 ///
 /// Only the reader of the script can check which names of the including files an included file may use.
 pub fn machine_schema() -> String {
-    let mut document = document();
-    document.sort_all_objects();
-    let text = document.to_string();
-    // A JSON writer made the text, so it can be laid out.
-    crate::format(&text, "machine-file.schema.json").unwrap_or(text)
+    written(document())
 }
 
 fn document() -> Value {
     let mut root = required(&["standstill"], object(&shape::MACHINE));
-    let schema = "https://json-schema.org/draft/2020-12/schema";
     let description =
         "Axes with their drives, inputs, tasks, blocks and parameters that several scan scripts share.";
-    add(&mut root, "$schema", json!(schema));
-    add(&mut root, "title", json!("Machine file for scan scripts"));
-    add(&mut root, "description", json!(description));
+    titled(&mut root, "Machine file for scan scripts", description);
     let needed = needed(&root, &definitions());
     add(&mut root, "$defs", Value::Object(needed));
     root

@@ -3,18 +3,14 @@
 use crate::read::machine_map::{COLUMNS_MAX, DECIMALS, DELIMITERS, MAP_VERSION, UNITS};
 use crate::read::shape::machine as shape;
 use crate::schema::of::words;
-use crate::schema::{add, object, required};
+use crate::schema::{add, object, required, titled, written};
 use serde_json::{Value, json};
 
 /// The JSON Schema (draft 2020-12) of maps, in the layout of [`format`](crate::format).
 ///
 /// It knows no trace, so it accepts the keys of every kind of signal for every one.
 pub fn map_schema() -> String {
-    let mut document = document();
-    document.sort_all_objects();
-    let text = document.to_string();
-    // A JSON writer made the text, so it can be laid out.
-    crate::format(&text, "compare-map.schema.json").unwrap_or(text)
+    written(document())
 }
 
 fn document() -> Value {
@@ -22,7 +18,6 @@ fn document() -> Value {
         &["standstill_compare", "recording", "offset", "signals"],
         object(&shape::MAP),
     );
-    let schema = "https://json-schema.org/draft/2020-12/schema";
     let description =
         "Says which column of a machine's recording is which signal of a trace, and what may differ.";
     let definitions = json!({
@@ -32,9 +27,7 @@ fn document() -> Value {
             {"type": "integer", "minimum": 1, "maximum": COLUMNS_MAX},
         ]},
     });
-    add(&mut root, "$schema", json!(schema));
-    add(&mut root, "title", json!("Map for standstill compare"));
-    add(&mut root, "description", json!(description));
+    titled(&mut root, "Map for standstill compare", description);
     add(&mut root, "$defs", definitions);
     root
 }

@@ -2,33 +2,23 @@
 
 use crate::read::shape::sweep as shape;
 use crate::read::sweep::{SCALES, SWEEP_VERSION};
-use crate::schema::{add, object, required};
+use crate::schema::{add, object, required, titled, written};
 use crate::sweep::{CASES_MAX, TAKES};
 use serde_json::{Value, json};
 
 /// The JSON Schema (draft 2020-12) of sweeps, in the layout of [`format`](crate::format).
 pub fn sweep_schema() -> String {
-    let mut document = document();
-    document.sort_all_objects();
-    let text = document.to_string();
-    // A JSON writer made the text, so it can be laid out.
-    crate::format(&text, "sweep.schema.json").unwrap_or(text)
+    written(document())
 }
 
 fn document() -> Value {
     let mut root = required(&["standstill_sweep", "script"], object(&shape::SWEEP));
     let description = "Says which parameters of a scan script vary, and what is taken of every run.";
-    add(
+    titled(
         &mut root,
-        "$schema",
-        json!("https://json-schema.org/draft/2020-12/schema"),
+        "Sweep over the parameters of a scan script",
+        description,
     );
-    add(
-        &mut root,
-        "title",
-        json!("Sweep over the parameters of a scan script"),
-    );
-    add(&mut root, "description", json!(description));
     add(
         &mut root,
         "oneOf",

@@ -20,12 +20,27 @@ use standstill_fb::{BlockInfo, Direction, PinType, TableInfo};
 ///
 /// It requires the spelling of the tables, but the reader, like IEC 61131-3, accepts any case.
 pub fn schema() -> String {
-    let mut document = document();
+    written(document())
+}
+
+/// A document as text, in the layout of [`format`](crate::format).
+pub(crate) fn written(mut document: Value) -> String {
     // The order of keys must not depend on the features of the JSON library that other crates enable.
     document.sort_all_objects();
     let text = document.to_string();
     // A JSON writer made the text, so it can be laid out.
-    crate::format(&text, "scan-script.schema.json").unwrap_or(text)
+    crate::format(&text, "a schema").unwrap_or(text)
+}
+
+/// The head of a document.
+pub(crate) fn titled(root: &mut Value, title: &str, description: &str) {
+    add(
+        root,
+        "$schema",
+        json!("https://json-schema.org/draft/2020-12/schema"),
+    );
+    add(root, "title", json!(title));
+    add(root, "description", json!(description));
 }
 
 fn document() -> Value {
@@ -38,17 +53,8 @@ fn document() -> Value {
         json!([{"required": ["axes", "blocks"]}, {"required": ["include"]}]),
     );
     add(&mut root, "dependentRequired", json!({"after": ["stop_when"]}));
-    add(
-        &mut root,
-        "$schema",
-        json!("https://json-schema.org/draft/2020-12/schema"),
-    );
-    add(&mut root, "title", json!("Scan script"));
-    add(
-        &mut root,
-        "description",
-        json!("Drives PLCopen function blocks scan by scan and says what must happen."),
-    );
+    let description = "Drives PLCopen function blocks scan by scan and says what must happen.";
+    titled(&mut root, "Scan script", description);
     add(&mut root, "$defs", Value::Object(definitions()));
     root
 }
