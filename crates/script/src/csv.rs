@@ -70,6 +70,15 @@ struct Cell<'a> {
 }
 
 impl Cell<'_> {
+    /// The begin of a line.
+    const fn begin_of(line: usize) -> Self {
+        Self {
+            text: "",
+            line,
+            column: 1,
+        }
+    }
+
     fn fault(&self, message: String, help: &str) -> CsvFault {
         CsvFault {
             line: self.line,
@@ -113,11 +122,7 @@ pub fn read_with_lines(bytes: &[u8], info: &TableInfo) -> Result<(Vec<Vec<f64>>,
             let message = format!("{} columns without a line that names them", cells.len());
             let help =
                 "two columns need no names, they are the first two fields; name others in a first line";
-            let at = cells.first().copied().unwrap_or(Cell {
-                text: "",
-                line: first + 1,
-                column: 1,
-            });
+            let at = cells.first().copied().unwrap_or(Cell::begin_of(first + 1));
             return Err(at.fault(message, &comma_help(&cells, separator, help)));
         }
         let places = vec![0, 1];
@@ -135,11 +140,7 @@ pub fn read_with_lines(bytes: &[u8], info: &TableInfo) -> Result<(Vec<Vec<f64>>,
         rows.push(row(&cells, &places, info, separator)?);
         lines_of.push(number + 1);
         if rows.len() > info.most {
-            let at = Cell {
-                text: "",
-                line: number + 1,
-                column: 1,
-            };
+            let at = Cell::begin_of(number + 1);
             let message = format!("more than {} rows, which are the most", info.most);
             return Err(at.fault(message, "leave rows out where the curve hardly bends"));
         }
@@ -249,11 +250,7 @@ fn named(cells: &[Cell<'_>], info: &TableInfo) -> Result<(Vec<usize>, Option<i32
         for needed in CAM_NEEDS {
             let place = field(needed).unwrap_or_default();
             if !places.contains(&place) {
-                let at = cells.first().copied().unwrap_or(Cell {
-                    text: "",
-                    line: 1,
-                    column: 1,
-                });
+                let at = cells.first().copied().unwrap_or(Cell::begin_of(1));
                 let message = format!("the column {} is missing", quoted(needed));
                 return Err(at.fault(message, "name it in the first line, and give it in each row"));
             }
@@ -268,11 +265,7 @@ fn row(
     info: &TableInfo,
     separator: char,
 ) -> Result<Vec<f64>, CsvFault> {
-    let at = cells.first().copied().unwrap_or(Cell {
-        text: "",
-        line: 1,
-        column: 1,
-    });
+    let at = cells.first().copied().unwrap_or(Cell::begin_of(1));
     if cells.len() != places.len() {
         let message = format!("{} columns where there are {}", cells.len(), places.len());
         let help = comma_help(

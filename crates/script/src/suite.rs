@@ -6,7 +6,7 @@ use crate::golden::{self, Mode, Standing};
 use crate::model::Script;
 use crate::read::{Parsed, Terms, read_within};
 use crate::run::{Counted, Outcome, RunError, Session, run_with};
-use crate::{GUEST_MEMORY, Reason, ScriptError, Verdict, Warnings, warnings};
+use crate::{GUEST_MEMORY, Reason, ScriptError, Warnings, warnings};
 use serde_json::json;
 use standstill_trace::compare::Yardstick;
 use standstill_trace::file::read_regular;
@@ -50,7 +50,7 @@ impl Report {
 /// The failures, a paragraph each: claims first, in file order, and their reasons, then the golden.
 impl fmt::Display for Report {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for failure in self.outcome.verdicts.iter().flat_map(failures) {
+        for failure in self.outcome.verdicts.iter().flat_map(|it| &it.failures) {
             writeln!(out, "{failure}")?;
         }
         let why = Reasons(&self.why);
@@ -81,10 +81,6 @@ impl fmt::Display for Reasons<'_> {
         }
         Ok(())
     }
-}
-
-fn failures(verdict: &Verdict) -> impl Iterator<Item = &crate::Failure> {
-    verdict.failures.iter()
 }
 
 /// The reason why a script could not be judged.
@@ -150,6 +146,16 @@ impl Default for Allowed {
             folders: Vec::new(),
             guest_memory: GUEST_MEMORY,
             long: false,
+        }
+    }
+}
+
+impl Allowed {
+    fn terms(&self, coverage: bool) -> Terms {
+        Terms {
+            guest_memory: self.guest_memory,
+            coverage,
+            long: self.long,
         }
     }
 }
@@ -302,12 +308,7 @@ fn read_as(
     coverage: bool,
 ) -> Result<(Script, String), SuiteError> {
     let text = read_text(path)?;
-    let terms = Terms {
-        guest_memory: allowed.guest_memory,
-        coverage,
-        long: allowed.long,
-    };
-    let script = read_at(&text, path, parameters, allowed, terms)?;
+    let script = read_at(&text, path, parameters, allowed, coverage)?;
     Ok((script, text))
 }
 
@@ -322,12 +323,7 @@ pub fn read_given(
     parameters: &[(String, f64)],
     allowed: &Allowed,
 ) -> Result<Script, ScriptError> {
-    let terms = Terms {
-        guest_memory: allowed.guest_memory,
-        coverage: false,
-        long: allowed.long,
-    };
-    read_at(text, path, parameters, allowed, terms)
+    read_at(text, path, parameters, allowed, false)
 }
 
 fn read_at(
@@ -335,8 +331,9 @@ fn read_at(
     path: &Path,
     parameters: &[(String, f64)],
     allowed: &Allowed,
-    terms: Terms,
+    coverage: bool,
 ) -> Result<Script, ScriptError> {
+    let terms = allowed.terms(coverage);
     let mut load = |inner: &str| included(path, inner, allowed);
     let mut guest = |inner: &str| module(path, inner, allowed);
     read_within(text, &shown(path), parameters, &mut load, &mut guest, terms)
@@ -573,10 +570,8 @@ pub fn orphans(folder: &Path) -> Result<Vec<PathBuf>, SuiteError> {
 fn is_of_another_test(file: &Path) -> bool {
     // The header is at the top; a file that cannot be read is no snapshot.
     const HEADER: u64 = 4096;
-    let mut text = Vec::new();
-    let read = fs::File::open(file).and_then(|file| file.take(HEADER).read_to_end(&mut text));
-    let text = String::from_utf8_lossy(&text);
-    let Some(header) = text.strip_prefix("---\n").filter(|_| read.is_ok()) else {
+    let text = begin(file, HEADER).unwrap_or_default();
+    let Some(header) = text.strip_prefix("---\n") else {
         return false;
     };
     let mut lines = header.lines().take_while(|line| *line != "---");
@@ -612,11 +607,16 @@ pub fn overlooked(folder: &Path) -> Result<Vec<PathBuf>, SuiteError> {
 
 /// Whether the begin of a file has the keys of a script.
 fn looks_like_a_script(file: &Path) -> bool {
-    let mut begin = Vec::new();
-    let read = fs::File::open(file).map(|file| file.take(LOOKED_AT).read_to_end(&mut begin));
-    let text = String::from_utf8_lossy(&begin);
+    let text = begin(file, LOOKED_AT).unwrap_or_default();
     let has = |key: &str| text.contains(&format!("\"{key}\""));
-    matches!(read, Ok(Ok(_))) && ["standstill", "cycle", "scans"].into_iter().all(has)
+    ["standstill", "cycle", "scans"].into_iter().all(has)
+}
+
+/// The first bytes of a file as text.
+fn begin(file: &Path, most: u64) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    fs::File::open(file)?.take(most).read_to_end(&mut bytes)?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 /// Bytes of a file that are read to decide whether it is a script.

@@ -1,10 +1,10 @@
 //! Whether a slave can follow a cam, and how fast its master may be: the results of MC_CamTableSelect.
 
 use super::curve::Curve;
-use super::table::{CamError, CamTable};
+use super::table::{CamError, CamTable, law_name};
 use crate::model::Axis;
 use standstill_axis::{
-    AxisId, CamBounds, CamCurve, CamFit, CamSelection, ErrorId, IecEnum, Limits, Log, Scope, Standard,
+    AxisId, CamBounds, CamCurve, CamFit, CamSelection, ErrorId, Limits, Log, Scope, Standard,
 };
 
 /// The cycle of axes that are not run (s): no property of a cam depends on it.
@@ -291,11 +291,9 @@ fn stretch(curve: &Curve, index: usize, law: CamCurve, limits: &Limits) -> Stret
         .into_iter()
         .filter(|(_, speed)| speed.is_finite())
         .min_by(|one, other| one.1.total_cmp(&other.1));
-    let names = CamCurve::ELEMENTS.iter();
-    let law = names.clone().find(|(_, number)| *number == law as i32);
     Stretch {
         ends,
-        law: law.map_or("", |(name, _)| *name),
+        law: law_name(law),
         bounds,
         highest: bounds.highest_velocity(limits),
         worst: least.map(|(limiting, _)| {

@@ -4,7 +4,8 @@
 //! pieces of degree 7 with the law's own derivatives in each row. The result is the same everywhere,
 //! because the sines are those of `libm`.
 
-use standstill_axis::{CamCurve, CamRow, IecEnum};
+use super::table::law_name;
+use standstill_axis::{CamCurve, CamRow};
 use std::f64::consts::PI;
 use std::fmt::Write;
 
@@ -236,15 +237,13 @@ pub fn csv(law: Law, lift: &Lift) -> Result<String, String> {
         lift.width
     );
     for (row, shape) in rows {
-        let names = CamCurve::ELEMENTS.iter();
-        let law = names.clone().find(|(_, number)| *number == shape as i32);
         let [master, slave, slope, curvature, third] =
             [row.master, row.slave, row.slope, row.curvature, row.third].map(|value| value + 0.0);
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
             "{master:?},{slave:?},{slope:?},{curvature:?},{third:?},{}",
-            law.map_or("", |(name, _)| *name)
+            law_name(shape)
         );
     }
     Ok(text)

@@ -54,6 +54,13 @@ impl From<SuiteError> for CamError {
     }
 }
 
+/// The IEC name of a law.
+pub(super) fn law_name(law: CamCurve) -> &'static str {
+    let mut names = CamCurve::ELEMENTS.iter();
+    let found = names.find(|(_, number)| *number == law as i32);
+    found.map_or("", |(name, _)| *name)
+}
+
 impl CamTable {
     /// The rows of a CSV file of this name.
     ///
