@@ -29,8 +29,7 @@ impl Walk<'_> {
             {
                 found.extend(self.failed(instance, error, at));
             }
-            let active = self.look.pin(instance, "Active");
-            let is_active = active.is_some_and(|active| self.look.is_true(active, scan));
+            let is_active = self.look.shows(instance, "Active", scan);
             let began = self.began(instance, scan);
             latest = latest.max(began.map(|began| (is_active, began, instance)));
             found.extend(self.clamped(instance, scan));
@@ -40,7 +39,7 @@ impl Walk<'_> {
             Some((_, rose, instance)) => {
                 if let Some(bad) = self.ended_badly(instance, rose, scan) {
                     found.extend(bad);
-                } else if self.is_busy(instance, scan) {
+                } else if self.look.shows(instance, "Busy", scan) {
                     found.push(self.follows(instance, rose, scan));
                 } else {
                     // Perhaps the next motion is missing.
@@ -129,11 +128,6 @@ impl Walk<'_> {
             }
         }
         found
-    }
-
-    fn is_busy(&self, instance: usize, scan: u64) -> bool {
-        let busy = self.look.pin(instance, "Busy");
-        busy.is_some_and(|busy| self.look.is_true(busy, scan))
     }
 
     fn state(&self, axis: usize, scan: u64) -> Option<&str> {
@@ -320,7 +314,7 @@ impl Walk<'_> {
         } else {
             format!(" with {values}")
         };
-        let since = if self.is_busy(instance, scan) {
+        let since = if self.look.shows(instance, "Busy", scan) {
             format!("is under way since scan {rose}")
         } else {
             format!("was triggered last in scan {rose}")
@@ -340,27 +334,24 @@ impl Walk<'_> {
     fn slowed(&self, axis: usize, scan: u64) -> Option<String> {
         let all = self.look.script().blocks.iter().enumerate();
         let mut own = all.filter(|(_, found)| found.block.name == "MC_SetOverride" && found.has_axis(axis));
-        own.find_map(|(instance, found)| {
-            let enabled = self.look.pin(instance, "Enabled")?;
-            let factor = match self.look.cell(self.look.pin(instance, "VelFactor")?, scan)? {
-                Cell::Real(factor) if factor != 1.0 => shortest(factor),
-                _ => return None,
-            };
-            self.look
-                .is_true(enabled, scan)
-                .then(|| format!("{} with VelFactor {factor}", found.name))
-        })
+        own.find_map(
+            |(instance, found)| match self.look.at(instance, "VelFactor", scan)? {
+                Cell::Real(factor) if factor != 1.0 && self.look.shows(instance, "Enabled", scan) => {
+                    Some(format!("{} with VelFactor {}", found.name, shortest(factor)))
+                }
+                _ => None,
+            },
+        )
     }
 
     /// The limit that held the axis most of the time: an axis limit or the Velocity of the block.
     fn held_by(&self, axis: usize, instance: usize, from: u64, to: u64) -> Option<String> {
         let limits = self.look.rows.trace.header().axes.get(axis)?.limits;
         let name = self.look.axis_name(axis);
-        let pin = self.look.pin(instance, "Velocity");
-        let asked = pin.and_then(|pin| match self.look.cell(pin, to)? {
-            Cell::Real(value) if value > 0.0 => Some(value),
+        let asked = match self.look.at(instance, "Velocity", to) {
+            Some(Cell::Real(value)) if value > 0.0 => Some(value),
             _ => None,
-        });
+        };
         let limit = |key: &str, value: Option<f64>| {
             value.map(|value| (value, format!("limits.{key} {} of {name}", shortest(value))))
         };

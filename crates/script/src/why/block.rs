@@ -51,10 +51,6 @@ impl Walk<'_> {
         if let Some(found) = self.ended_badly(instance, rose, scan) {
             return found;
         }
-        let is_true = |walk: &Self, name: &str, scan| {
-            let pin = walk.look.pin(instance, name);
-            pin.is_some_and(|pin| walk.look.is_true(pin, scan))
-        };
         if let Some(asked) = asked.map(|pin| Point::Pin(instance, pin))
             && let Some(came) = self.look.first_true(asked, rose, scan)
         {
@@ -65,15 +61,15 @@ impl Walk<'_> {
             if end < scan && self.is_result(asked) {
                 return vec![self.passed_by(instance, asked, came, end)];
             }
-            if end < scan && !is_true(self, "Busy", scan) {
+            if end < scan && !self.look.shows(instance, "Busy", scan) {
                 return vec![self.follows(instance, rose, scan)];
             }
         }
-        if !is_true(self, "Busy", scan) {
+        if !self.look.shows(instance, "Busy", scan) {
             // It has finished, and was expected once more.
             return self.feed(instance, trigger, rose + 1, scan);
         }
-        if self.look.pin(instance, "Active").is_some() && !is_true(self, "Active", scan) {
+        if self.look.pin(instance, "Active").is_some() && !self.look.shows(instance, "Active", scan) {
             return self.waits(instance, rose, scan);
         }
         vec![self.under_way(instance, rose, scan)]
@@ -145,10 +141,7 @@ impl Walk<'_> {
         let all = axes.iter().flat_map(|axis| self.look.commanders(*axis));
         let ahead: Vec<usize> = all
             .filter(|other| *other != instance)
-            .filter(|other| {
-                let active = self.look.pin(*other, "Active");
-                active.is_some_and(|active| self.look.is_true(active, scan))
-            })
+            .filter(|other| self.look.shows(*other, "Active", scan))
             .collect();
         let Some(other) = ahead.first() else {
             let text = format!("{name} is Busy since scan {rose} and has not become Active");
@@ -161,10 +154,7 @@ impl Walk<'_> {
 
     /// The last trigger of a block up to a scan.
     pub(super) fn began(&self, instance: usize, scan: u64) -> Option<u64> {
-        let triggers = self.look.triggers(instance).into_iter();
-        triggers
-            .filter_map(|pin| self.look.last_rise(Point::Pin(instance, pin), scan))
-            .max()
+        self.look.last_start(instance, scan).map(|(rose, _)| rose)
     }
 
     /// An error or an abortion after the trigger in `rose`.
@@ -234,13 +224,9 @@ impl Walk<'_> {
                             .is_some_and(|before| self.look.rises(trigger, before))
                 })
             };
-            let is_aborted = |other: usize| {
-                let pin = self.look.pin(other, "CommandAborted");
-                pin.is_some_and(|pin| self.look.is_true(pin, at))
-            };
             let by: Vec<usize> = all.filter(|other| *other != instance && given(*other)).collect();
             // The one that was called last has the axis.
-            let stays = |other: &usize| !is_aborted(*other);
+            let stays = |other: &usize| !self.look.shows(*other, "CommandAborted", at);
             let aborts = |other: &usize| matches!(self.mode(*other, at).as_str(), "" | ABORTING);
             let mut last = by.iter().copied().rev();
             let by = last
@@ -276,8 +262,7 @@ impl Walk<'_> {
 
     /// ` with BufferMode mcAborting`
     fn mode(&self, instance: usize, scan: u64) -> String {
-        let pin = self.look.pin(instance, "BufferMode");
-        match pin.and_then(|pin| self.look.cell(pin, scan)) {
+        match self.look.at(instance, "BufferMode", scan) {
             Some(Cell::Name(mode)) => format!(" with BufferMode {mode}"),
             _ => String::new(),
         }
@@ -285,13 +270,8 @@ impl Walk<'_> {
 
     /// A block that works while an input is TRUE.
     fn enabled(&mut self, instance: usize, since: u64, scan: u64) -> Vec<Finding> {
-        let triggers = self.look.triggers(instance);
-        let rose = triggers
-            .iter()
-            .filter_map(|pin| self.look.last_rise(Point::Pin(instance, *pin), scan))
-            .max();
-        let Some(rose) = rose else {
-            let each = triggers.into_iter();
+        let Some((rose, pin)) = self.look.last_start(instance, scan) else {
+            let each = self.look.triggers(instance).into_iter();
             return each
                 .flat_map(|pin| self.feed(instance, pin, since, scan))
                 .collect();
@@ -299,7 +279,7 @@ impl Walk<'_> {
         if let Some(found) = self.ended_badly(instance, rose, scan) {
             return found;
         }
-        if let Some(fell) = self.let_go(instance, &triggers, scan) {
+        if let Some(fell) = self.let_go(Point::Pin(instance, pin), rose, scan) {
             return vec![fell];
         }
         let axes = self.look.axes_of(instance);
@@ -334,12 +314,8 @@ impl Walk<'_> {
             .collect()
     }
 
-    /// The last input that started the block and is no longer TRUE.
-    fn let_go(&self, instance: usize, triggers: &[usize], scan: u64) -> Option<Finding> {
-        let points = triggers.iter().map(|pin| Point::Pin(instance, *pin));
-        let (rose, point) = points
-            .filter_map(|point| Some((self.look.last_rise(point, scan)?, point)))
-            .max_by_key(|(rose, _)| *rose)?;
+    /// The input that rose last and started the block, if it is no longer TRUE.
+    fn let_go(&self, point: Point, rose: u64, scan: u64) -> Option<Finding> {
         let end = self.look.end_of(point, rose);
         let text = format!(
             "{} was TRUE in {} only",

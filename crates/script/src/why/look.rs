@@ -130,6 +130,23 @@ impl<'a> Look<'a> {
         self.cell(point, scan) == Some(Cell::Bool(true))
     }
 
+    /// The value of the pin of this name.
+    pub(super) fn at(&self, instance: usize, name: &str, scan: u64) -> Option<Cell<'a>> {
+        self.cell(self.pin(instance, name)?, scan)
+    }
+
+    /// Whether a block has a pin of this name, and it is TRUE.
+    pub(super) fn shows(&self, instance: usize, name: &str, scan: u64) -> bool {
+        self.at(instance, name, scan) == Some(Cell::Bool(true))
+    }
+
+    /// The last rising edge of an input that starts a block, up to `to`, and the input.
+    pub(super) fn last_start(&self, instance: usize, to: u64) -> Option<(u64, usize)> {
+        let triggers = self.triggers(instance).into_iter();
+        let edges = triggers.filter_map(|pin| Some((self.last_rise(Point::Pin(instance, pin), to)?, pin)));
+        edges.max()
+    }
+
     /// The first scan of a range in which the point is TRUE.
     pub(super) fn first_true(&self, point: Point, from: u64, to: u64) -> Option<u64> {
         (from..=to.min(self.last())).find(|&scan| self.is_true(point, scan))
@@ -224,7 +241,7 @@ impl<'a> Look<'a> {
 
     /// The value of an ErrorID pin.
     pub(super) fn error_id(&self, instance: usize, scan: u64) -> Option<ErrorId> {
-        match self.cell(self.pin(instance, "ErrorID")?, scan)? {
+        match self.at(instance, "ErrorID", scan)? {
             Cell::Integer(number) => ErrorId::from_number(u16::try_from(number).ok()?),
             _ => None,
         }

@@ -89,13 +89,10 @@ impl Walk<'_> {
             return None;
         };
         let is_input = pin < self.look.instance(instance)?.block.input_count();
-        let inputs = if is_input {
-            vec![pin]
-        } else {
-            self.look.triggers(instance)
+        let (rose, pin) = match is_input {
+            true => (self.look.last_rise(point, scan)?, pin),
+            false => self.look.last_start(instance, scan)?,
         };
-        let edge = |pin: &usize| Some((self.look.last_rise(Point::Pin(instance, *pin), scan)?, *pin));
-        let (rose, pin) = inputs.iter().filter_map(edge).max()?;
         let wire = self.look.wire(instance, pin)?;
         let sources = wire.points().iter().copied();
         let (came, source) = if let Wire::Not(source) = wire {
@@ -113,10 +110,8 @@ impl Walk<'_> {
     /// `back.Execute is held.Q, held.IN is not press.InTorque`.
     pub(super) fn brought_by(&self, instance: usize, scan: u64) -> String {
         let mut told = Vec::new();
-        let triggers = self.look.triggers(instance).into_iter();
-        let edge =
-            triggers.filter_map(|pin| Some((self.look.last_rise(Point::Pin(instance, pin), scan)?, pin)));
-        let mut next = edge.max().map(|(rose, pin)| (Point::Pin(instance, pin), rose));
+        let start = self.look.last_start(instance, scan);
+        let mut next = start.map(|(rose, pin)| (Point::Pin(instance, pin), rose));
         while let Some((point, at)) = next.take().filter(|_| told.len() < TOLD_MOST) {
             let Some((instance, pin, source, rose)) = self.edge_behind(point, at) else {
                 break;

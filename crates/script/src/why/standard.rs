@@ -37,8 +37,7 @@ impl Walk<'_> {
 
     /// A TIME input as a literal.
     fn time(&self, instance: usize, name: &str, scan: u64) -> String {
-        let pin = self.look.pin(instance, name);
-        match pin.and_then(|pin| self.look.cell(pin, scan)) {
+        match self.look.at(instance, name, scan) {
             Some(Cell::Integer(ns)) => crate::read::time::literal(ns),
             _ => "not known".to_owned(),
         }
@@ -112,8 +111,7 @@ impl Walk<'_> {
     }
 
     fn preset(&self, instance: usize, scan: u64) -> String {
-        let pin = self.look.pin(instance, "PV");
-        match pin.and_then(|pin| self.look.cell(pin, scan)) {
+        match self.look.at(instance, "PV", scan) {
             Some(Cell::Integer(number)) => number.to_string(),
             _ => "its".to_owned(),
         }
