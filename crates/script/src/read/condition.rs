@@ -400,83 +400,83 @@ impl Reader {
                 return self.refuse(Diagnostic::new(Code::UnknownSignal, span, message).maybe_help(help));
             }
         };
-        if rest.eq_ignore_ascii_case("State") {
-            return Some((Signal::State(axis), Kind::State));
-        }
-        let named = |name| rest.eq_ignore_ascii_case(name);
-        let which = match () {
-            () if named("Master") => Some(WhichMaster::First),
-            () if named("Master2") => Some(WhichMaster::Second),
-            () => None,
-        };
-        let (number, difference) = match rest.split_once('.') {
-            Some((number, difference)) => (number, Some(difference)),
-            None => (rest, None),
-        };
-        let number = AXIS_NUMBERS
-            .iter()
-            .find(|(known, _)| known.eq_ignore_ascii_case(number))
-            .map(|(_, n)| *n);
-        let least = match (which, number) {
-            (Some(WhichMaster::First), _) => 1,
-            (Some(WhichMaster::Second), _) => 2,
-            (None, number) => number.map_or(0, AxisNumber::least_masters),
-        };
-        let masters = self.masters_of(axis);
-        let lacks = if difference.is_some() {
-            None
-        } else if masters == 0 && least > 0 {
-            Some((
-                "`Slave` pin",
-                "Master, Deviation and Phase are signals of axes that a block of this script couples to a master",
-            ))
-        } else if masters < least {
-            Some((
-                "`Slave` pin of MC_CombineAxes",
-                "Master2 and Phase2 are signals of axes that MC_CombineAxes couples to two masters",
-            ))
-        } else if number == Some(AxisNumber::Superimposed) && !self.is_superimposed(axis) {
-            Some((
-                "`Axis` pin of MC_MoveSuperimposed",
-                "Superimposed is a signal of axes that have a master and are moved by MC_MoveSuperimposed",
-            ))
-        } else if number == Some(AxisNumber::Shadow) && !self.on_cams.contains(&axis) {
-            Some((
-                "`Slave` pin of MC_CamIn",
-                "Shadow is a signal of axes that MC_CamIn couples to a master",
-            ))
-        } else {
-            None
-        };
-        if let Some((pin, help)) = lacks {
+        let signal = axis_signal(axis, rest);
+        if let Some((pin, help)) = signal.as_ref().and_then(|signal| self.lacked(axis, signal)) {
             let message = format!("{} stands at no {pin}, and has no {}", quoted(name), quoted(rest));
             return self.refuse(Diagnostic::new(Code::UnknownSignal, span, message).help(help));
         }
-        if let Some(which) = which {
-            return Some((Signal::Master(axis, which), Kind::Master));
-        }
-        let signal = match (number, difference) {
-            (Some(number), None) => Some(Signal::Axis(axis, number)),
-            (Some(AxisNumber::Position), Some(difference)) => match difference {
-                "d1" => Some(Signal::Difference(axis, 1)),
-                "d2" => Some(Signal::Difference(axis, 2)),
-                "d3" => Some(Signal::Difference(axis, 3)),
-                "d4" => Some(Signal::Difference(axis, 4)),
-                _ => None,
-            },
-            _ => None,
+        let kind = match signal {
+            Some(Signal::State(_)) => Kind::State,
+            Some(Signal::Master(..)) => Kind::Master,
+            Some(_) => Kind::Pin(PinType::Lreal),
+            None => {
+                let message = format!("an axis has no signal {}", quoted(rest));
+                let help = suggestion(
+                    rest,
+                    ["State", "Master", "Master2"]
+                        .into_iter()
+                        .chain(AXIS_NUMBERS.iter().map(|(name, _)| *name))
+                        .chain(["Position.d1", "Position.d2", "Position.d3", "Position.d4"]),
+                );
+                return self.refuse(Diagnostic::new(Code::UnknownSignal, span, message).maybe_help(help));
+            }
         };
-        if signal.is_none() {
-            let message = format!("an axis has no signal {}", quoted(rest));
-            let help = suggestion(
-                rest,
-                ["State", "Master", "Master2"]
-                    .into_iter()
-                    .chain(AXIS_NUMBERS.iter().map(|(name, _)| *name))
-                    .chain(["Position.d1", "Position.d2", "Position.d3", "Position.d4"]),
-            );
-            self.report(Diagnostic::new(Code::UnknownSignal, span, message).maybe_help(help));
-        }
-        signal.map(|signal| (signal, Kind::Pin(PinType::Lreal)))
+        signal.map(|signal| (signal, kind))
     }
+
+    /// The pin at which an axis must stand to have a signal, and the reason, if it does not stand there.
+    fn lacked(&self, axis: usize, signal: &Signal) -> Option<(&'static str, &'static str)> {
+        let least = match *signal {
+            Signal::Master(_, WhichMaster::First) => 1,
+            Signal::Master(_, WhichMaster::Second) => 2,
+            Signal::Axis(_, number) => number.least_masters(),
+            _ => 0,
+        };
+        let masters = self.masters_of(axis);
+        if masters == 0 && least > 0 {
+            return Some((
+                "`Slave` pin",
+                "Master, Deviation and Phase are signals of axes that a block of this script couples to a master",
+            ));
+        }
+        if masters < least {
+            return Some((
+                "`Slave` pin of MC_CombineAxes",
+                "Master2 and Phase2 are signals of axes that MC_CombineAxes couples to two masters",
+            ));
+        }
+        match signal {
+            Signal::Axis(_, AxisNumber::Superimposed) if !self.is_superimposed(axis) => Some((
+                "`Axis` pin of MC_MoveSuperimposed",
+                "Superimposed is a signal of axes that have a master and are moved by MC_MoveSuperimposed",
+            )),
+            Signal::Axis(_, AxisNumber::Shadow) if !self.on_cams.contains(&axis) => Some((
+                "`Slave` pin of MC_CamIn",
+                "Shadow is a signal of axes that MC_CamIn couples to a master",
+            )),
+            _ => None,
+        }
+    }
+}
+
+/// The signal of an axis by its name behind that of the axis.
+fn axis_signal(axis: usize, name: &str) -> Option<Signal> {
+    let is = |known: &str| name.eq_ignore_ascii_case(known);
+    if is("State") {
+        return Some(Signal::State(axis));
+    }
+    if is("Master") {
+        return Some(Signal::Master(axis, WhichMaster::First));
+    }
+    if is("Master2") {
+        return Some(Signal::Master(axis, WhichMaster::Second));
+    }
+    if let Some((number, difference)) = name.split_once('.') {
+        let mut orders = (1..).zip(["d1", "d2", "d3", "d4"]);
+        let (order, _) = orders.find(|(_, known)| *known == difference)?;
+        let is_position = number.eq_ignore_ascii_case("Position");
+        return is_position.then_some(Signal::Difference(axis, order));
+    }
+    let (_, number) = AXIS_NUMBERS.iter().find(|(known, _)| is(known))?;
+    Some(Signal::Axis(axis, *number))
 }
