@@ -96,10 +96,6 @@ pub(crate) fn signals() -> Value {
     ]}})
 }
 
-pub(crate) fn plain() -> Value {
-    json!({"type": "number"})
-}
-
 pub(crate) fn sign() -> Value {
     json!({"enum": [1, -1]})
 }

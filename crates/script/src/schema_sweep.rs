@@ -71,10 +71,6 @@ pub(crate) fn scale() -> Value {
     json!({"enum": SCALES.map(|(word, _)| word)})
 }
 
-pub(crate) fn plain() -> Value {
-    json!({"type": "number"})
-}
-
 pub(crate) fn measures() -> Value {
     json!({"type": "object", "additionalProperties": {"oneOf": each_measure()}})
 }

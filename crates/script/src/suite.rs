@@ -515,16 +515,7 @@ fn why(error: io::Error) -> String {
 /// # Errors
 /// A folder that cannot be read.
 pub fn find_texts(path: &Path) -> Result<Vec<PathBuf>, SuiteError> {
-    if !path.is_dir() {
-        return find(path);
-    }
-    let mut files = walk(path)?;
-    files.retain(|file| {
-        [EXTENSION, MACHINE_EXTENSION]
-            .iter()
-            .any(|ending| stem(file, ending).is_some())
-    });
-    Ok(files)
+    find_ending(path, &[EXTENSION, MACHINE_EXTENSION])
 }
 
 /// All scan scripts in a folder and the folders in it, sorted by path. A path that is a file is taken unchanged.
@@ -532,12 +523,16 @@ pub fn find_texts(path: &Path) -> Result<Vec<PathBuf>, SuiteError> {
 /// # Errors
 /// A folder that cannot be read.
 pub fn find(path: &Path) -> Result<Vec<PathBuf>, SuiteError> {
+    find_ending(path, &[EXTENSION])
+}
+
+fn find_ending(path: &Path, endings: &[&str]) -> Result<Vec<PathBuf>, SuiteError> {
     if !path.is_dir() {
         fs::metadata(path).map_err(SuiteError::io(path))?;
         return Ok(vec![path.to_owned()]);
     }
     let mut files = walk(path)?;
-    files.retain(|file| stem(file, EXTENSION).is_some());
+    files.retain(|file| endings.iter().any(|ending| stem(file, ending).is_some()));
     Ok(files)
 }
 

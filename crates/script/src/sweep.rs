@@ -242,7 +242,7 @@ impl Measure {
 }
 
 impl Values {
-    fn count(&self) -> u64 {
+    pub(crate) fn count(&self) -> u64 {
         match self {
             Self::List(list) => list.len() as u64,
             Self::Range { count, .. } => *count,

@@ -19,9 +19,8 @@ pub(super) struct At<'a> {
 impl<'a> At<'a> {
     pub(super) fn new(scan: u64, that: &'a [Condition]) -> Self {
         let demand = |condition| Demand {
-            condition,
-            unmet: None,
             nearest: Nearest::to(scan),
+            ..Demand::new(condition)
         };
         Self {
             scan,
@@ -66,7 +65,15 @@ struct Demand<'a> {
     nearest: Nearest,
 }
 
-impl Demand<'_> {
+impl<'a> Demand<'a> {
+    fn new(condition: &'a Condition) -> Self {
+        Self {
+            condition,
+            unmet: None,
+            nearest: Nearest::default(),
+        }
+    }
+
     fn values(&self, rows: &Rows<'_>, scan: u64) -> String {
         describe::values(rows, self.condition, scan)
     }
@@ -167,14 +174,8 @@ pub(super) struct Always<'a> {
 
 impl<'a> Always<'a> {
     pub(super) fn new(during: &'a [Condition], that: &'a [Condition]) -> Self {
-        let demand = |condition| Demand {
-            condition,
-            unmet: None,
-            nearest: Nearest::default(),
-        };
-        let each = that
-            .iter()
-            .map(|condition| (demand(condition), Listed::default()));
+        let each = that.iter();
+        let each = each.map(|condition| (Demand::new(condition), Listed::default()));
         Self {
             during,
             each: each.collect(),

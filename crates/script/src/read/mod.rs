@@ -576,11 +576,15 @@ impl Reader {
         self.masters_of(axis) > 0 && self.superimposed.contains(&axis)
     }
 
-    fn declare_name(&mut self, places: &mut BTreeMap<String, Span>, name: &str, span: Span, entity: Entity) {
+    fn check_name(&mut self, name: &str, span: Span) {
         if let Some(why) = identifier_error(name) {
             let message = format!("{} cannot be a name: {why}", quoted(name));
             self.report(Diagnostic::new(Code::BadName, span, message));
         }
+    }
+
+    fn declare_name(&mut self, places: &mut BTreeMap<String, Span>, name: &str, span: Span, entity: Entity) {
+        self.check_name(name, span);
         if let Some(first) = places.insert(name.to_ascii_uppercase(), span) {
             let message = format!("the name {} is taken", quoted(name));
             self.report(

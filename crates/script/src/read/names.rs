@@ -202,15 +202,6 @@ const NAME_WITH_SLIPS: usize = 100;
 
 /// The remedy for a name that is nearly one of `candidates`.
 pub(crate) fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
-    nearest_of(name, &candidates.collect::<Vec<_>>())
-}
-
-/// The remedy for a name that is not among `candidates`: the nearest one, otherwise all if they are few.
-pub(crate) fn suggestion<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
-    suggestion_of(name, &candidates.collect::<Vec<_>>())
-}
-
-fn nearest_of(name: &str, candidates: &[&str]) -> Option<String> {
     let wanted = name.to_ascii_lowercase();
     let length = wanted.chars().count();
     // The work grows with the product of the lengths, and a long name with one wrong letter is unlikely.
@@ -221,7 +212,6 @@ fn nearest_of(name: &str, candidates: &[&str]) -> Option<String> {
     // single letter gives none.
     let slips = if length < 2 { 0 } else { (length / 3).max(1) };
     candidates
-        .iter()
         .filter(|candidate| candidate.len() <= 8 * NAME_WITH_SLIPS)
         .map(|candidate| {
             (
@@ -234,9 +224,11 @@ fn nearest_of(name: &str, candidates: &[&str]) -> Option<String> {
         .map(|(_, candidate)| format!("did you mean `{candidate}`?"))
 }
 
-fn suggestion_of(name: &str, candidates: &[&str]) -> Option<String> {
+/// The remedy for a name that is not among `candidates`: the nearest one, otherwise all if they are few.
+pub(crate) fn suggestion<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
     const LISTED: usize = 12;
-    nearest_of(name, candidates).or_else(|| match candidates {
+    let candidates: Vec<&str> = candidates.collect();
+    nearest(name, candidates.iter().copied()).or_else(|| match candidates.as_slice() {
         [] => None,
         [only] => Some(format!("there is only `{only}`")),
         all if all.len() <= LISTED => {

@@ -1,7 +1,6 @@
 //! Guest programs: their modules, and which of their variables are signals.
 
 use super::json::{Json, Node};
-use super::names::identifier_error;
 use super::text::fault_symbol;
 use super::value::Fields;
 use super::{Reader, is_note, shape};
@@ -205,10 +204,7 @@ impl Reader {
                 if is_note(key, node) && node.text().and_then(SymbolType::find).is_none() {
                     continue;
                 }
-                if let Some(why) = identifier_error(&key.text) {
-                    let message = format!("{} cannot be a name: {why}", quoted(&key.text));
-                    self.report(Diagnostic::new(Code::BadName, key.span, message));
-                }
+                self.check_name(&key.text, key.span);
                 let upper = key.text.to_ascii_uppercase();
                 if names.contains(&upper) {
                     let message = format!("the name {} is taken", quoted(&key.text));

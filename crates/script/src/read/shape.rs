@@ -453,7 +453,7 @@ pub(crate) const CLAIMS: [Shape; 12] = [
 /// The objects of a map for `standstill compare`.
 pub(crate) mod machine {
     use super::{Shape, shape};
-    use crate::schema::of::{boolean, text};
+    use crate::schema::of::{boolean, plain, text};
     use crate::schema_map::*;
 
     pub(crate) const MAP: Shape = shape(
@@ -548,7 +548,7 @@ pub(crate) mod machine {
 /// The objects of a sweep.
 pub(crate) mod sweep {
     use super::{Shape, shape};
-    use crate::schema::of::{boolean, text};
+    use crate::schema::of::{boolean, plain, text};
     use crate::schema_sweep::*;
 
     pub(crate) const SWEEP: Shape = shape(

@@ -27,21 +27,17 @@ impl Reader {
     fn step(&mut self, node: &Node) -> Option<Step> {
         let fields = self.fields(node, &shape::STEP)?;
         let when = self.when(&fields);
-        let mut actions = Some(Vec::new());
+        let mut news = Vec::new();
         for (key, value) in fields.iter() {
-            let new = match key.text.as_str() {
+            news.push(match key.text.as_str() {
                 "set" => self.set(value),
                 "fault" => self.fault(value).map(|action| vec![action]),
                 "clear" => self.clear(value).map(|action| vec![action]),
                 "drive" => self.drive_step(value),
                 _ => continue,
-            };
-            actions = actions.zip(new).map(|(mut actions, new)| {
-                actions.extend(new);
-                actions
             });
         }
-        let actions = actions?;
+        let actions = news.into_iter().collect::<Option<Vec<_>>>()?.concat();
         if actions.is_empty() {
             let message = "a step does nothing without `set`, `fault`, `clear` or `drive`";
             return self.refuse(Diagnostic::new(Code::MissingKey, fields.brace(), message));
@@ -186,7 +182,7 @@ impl Reader {
     fn drive_step(&mut self, node: &Node) -> Option<Vec<Action>> {
         let fields = self.fields(node, &shape::DRIVE_STEP)?;
         let axis = self.axis_of(&fields, "a `drive` step");
-        let mut changes = Some(Vec::new());
+        let mut news = Vec::new();
         for (key, value) in fields.iter() {
             let name = format!("`{}`", key.text);
             let new = match key.text.as_str() {
@@ -196,20 +192,15 @@ impl Reader {
                 "input" => self.input(value),
                 "probe" => self.probe(value),
                 "report" => {
-                    changes = changes
-                        .zip(self.drive_report(value, axis))
-                        .map(|(changes, new)| [changes, new].concat());
+                    news.push(self.drive_report(value, axis));
                     continue;
                 }
                 _ => continue,
             };
-            let new = new.filter(|change| axis.is_none_or(|axis| self.knows_change(key, axis, change)));
-            changes = changes.zip(new).map(|(mut changes, new)| {
-                changes.push(new);
-                changes
-            });
+            let new = new.filter(|change| self.knows_change(key, axis, change));
+            news.push(new.map(|change| vec![change]));
         }
-        let (axis, changes) = (axis?, changes?);
+        let (axis, changes) = (axis?, news.into_iter().collect::<Option<Vec<_>>>()?.concat());
         if changes.is_empty() {
             let message = "a `drive` step needs what is to happen";
             return self.refuse(Diagnostic::new(Code::MissingKey, fields.brace(), message).help(
@@ -256,7 +247,7 @@ impl Reader {
     /// The value that a drive reports instead of the measured one.
     fn drive_report(&mut self, node: &Node, axis: Option<usize>) -> Option<Vec<DriveChange>> {
         let fields = self.fields(node, &shape::DRIVE_REPORT)?;
-        let drive = axis.and_then(|axis| self.drives.get(axis).copied().flatten());
+        let drive = self.drive_of(axis);
         let mut changes = Vec::new();
         if let Some(node) = fields.get("position") {
             let position = match drive {
@@ -291,31 +282,24 @@ impl Reader {
         Some(changes)
     }
 
+    /// The drive of an axis, and whether it counts increments; none if it could not be read.
+    fn drive_of(&self, axis: Option<usize>) -> Option<(DriveSetup, bool)> {
+        self.drives.get(axis?).copied().flatten()
+    }
+
     /// Whether the drive of `axis` supports the change; drives that could not be read were reported
     /// before.
-    fn knows_change(&mut self, key: &Key, axis: usize, change: &DriveChange) -> bool {
-        let drive = self.drives.get(axis).copied().flatten();
-        match (change, drive) {
-            (DriveChange::Remote(_) | DriveChange::Warning(_), None | Some((DriveSetup::Cia402(_), _))) => {
-                true
-            }
-            (
-                DriveChange::Displace(_)
-                | DriveChange::Input { .. }
-                | DriveChange::Probe { .. }
-                | DriveChange::ReportPosition(_)
-                | DriveChange::ReportTorque(_),
-                _,
-            ) => true,
-            (DriveChange::Remote(_) | DriveChange::Warning(_), Some(_)) => {
-                let message = format!("only a CiA 402 drive has `{}`", key.text);
-                self.report(
-                    Diagnostic::new(Code::BadValue, key.span, message)
-                        .help("give the axis \"drive\": {\"cia402\": {}}"),
-                );
-                false
-            }
+    fn knows_change(&mut self, key: &Key, axis: Option<usize>, change: &DriveChange) -> bool {
+        let is_of_bus = matches!(change, DriveChange::Remote(_) | DriveChange::Warning(_));
+        let is_on_bus = matches!(self.drive_of(axis), None | Some((DriveSetup::Cia402(_), _)));
+        if is_of_bus && !is_on_bus {
+            let message = format!("only a CiA 402 drive has `{}`", key.text);
+            self.report(
+                Diagnostic::new(Code::BadValue, key.span, message)
+                    .help("give the axis \"drive\": {\"cia402\": {}}"),
+            );
         }
+        is_on_bus || !is_of_bus
     }
 
     fn axis_of(&mut self, fields: &Fields<'_>, what: &str) -> Option<usize> {

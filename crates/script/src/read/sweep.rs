@@ -171,13 +171,9 @@ impl Reader {
     fn check_cases(&mut self, varied: &[Varied], draw: Draw, root: &Node) -> Option<()> {
         let count = match draw {
             Draw::Sample { count, .. } => Some(count),
-            Draw::Grid => varied.iter().try_fold(1_u64, |cases, varied| {
-                let count = match &varied.values {
-                    Values::List(list) => list.len() as u64,
-                    Values::Range { count, .. } => *count,
-                };
-                cases.checked_mul(count)
-            }),
+            Draw::Grid => varied
+                .iter()
+                .try_fold(1_u64, |cases, varied| cases.checked_mul(varied.values.count())),
         };
         if count.is_some_and(|count| count <= CASES_MAX) {
             return Some(());

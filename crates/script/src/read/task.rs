@@ -1,7 +1,6 @@
 //! Tasks: when they run, and the task of each block.
 
 use super::json::Node;
-use super::names::identifier_error;
 use super::value::Fields;
 use super::{Reader, shape};
 use crate::error::{Code, Diagnostic, quoted};
@@ -28,17 +27,14 @@ impl Reader {
         let mut places: BTreeMap<String, Span> = BTreeMap::new();
         let mut tasks = Vec::new();
         for (key, node) in members.iter() {
-            if let Some(why) = identifier_error(&key.text) {
-                let message = format!("{} cannot be a name: {why}", quoted(&key.text));
-                self.report(Diagnostic::new(Code::BadName, key.span, message));
-            }
-            if let Some(first) = places.insert(key.text.to_ascii_uppercase(), key.span) {
+            self.check_name(&key.text, key.span);
+            let upper = key.text.to_ascii_uppercase();
+            if let Some(first) = places.insert(upper.clone(), key.span) {
                 let message = format!("the name {} is taken", quoted(&key.text));
                 self.report(
                     Diagnostic::new(Code::DuplicateName, key.span, message).related(first, "by this task"),
                 );
             }
-            let upper = key.text.to_ascii_uppercase();
             self.task_places.entry(upper).or_insert(tasks.len());
             tasks.push(self.task(&key.text, node));
         }

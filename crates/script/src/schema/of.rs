@@ -95,6 +95,11 @@ pub(crate) fn vacuous() -> Value {
     json!({"const": "allowed"})
 }
 
+/// A number without any other form.
+pub(crate) fn plain() -> Value {
+    json!({"type": "number"})
+}
+
 pub(crate) fn number() -> Value {
     definition("number")
 }
