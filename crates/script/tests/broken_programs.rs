@@ -4,10 +4,10 @@
 //! changed call order), and the words that name the fault. The search for reasons does not use these
 //! data.
 
+use super::common::{outcome, scan_tests};
 use serde::Deserialize;
+use standstill_script::Outcome;
 use standstill_script::suite::read_text;
-use standstill_script::{Outcome, read, run};
-use std::path::Path;
 
 /// The least number of broken programs whose fault is named.
 const NAMED_LEAST: usize = 37;
@@ -38,8 +38,7 @@ fn broken() -> Vec<Broken> {
 }
 
 fn text(script: &str) -> String {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests/gallery");
-    read_text(&folder.join(format!("{script}.scan.json"))).unwrap()
+    read_text(&scan_tests().join(format!("gallery/{script}.scan.json"))).unwrap()
 }
 
 /// The script with its fault.
@@ -74,8 +73,7 @@ fn with_fault(broken: &Broken) -> String {
 }
 
 fn run_of(broken: &Broken) -> Outcome {
-    let script = read(&with_fault(broken), &broken.script, &[]).unwrap_or_else(|error| panic!("{error}"));
-    run(&script).unwrap_or_else(|error| panic!("{error}"))
+    outcome(&with_fault(broken))
 }
 
 #[test]
@@ -113,7 +111,6 @@ fn a_reason_names_its_scan_and_its_claims() {
 
 #[test]
 fn a_run_whose_claims_hold_has_no_reasons() {
-    let script = read(&text("gate"), "gate", &[]).unwrap();
-    let outcome = run(&script).unwrap();
+    let outcome = outcome(&text("gate"));
     assert!(outcome.passed() && outcome.why.is_empty());
 }

@@ -4,7 +4,8 @@
 //! The run under judgement has a BOOL `a`, TRUE in scans 3 to 5 and 8, and a number `v` that is 0, then 1.5
 //! from scan 4 on; axis X moves 3 -> 5 in three scans from scan 1 on (3, 3.5, 4.5, 5, ..).
 
-use standstill_script::{Outcome, judge_recording, read, run};
+use super::common::{failures, outcome, script};
+use standstill_script::{Outcome, judge_recording, run};
 use standstill_trace::Trace;
 
 fn judged(claims: &str) -> Outcome {
@@ -17,28 +18,17 @@ fn judged(claims: &str) -> Outcome {
                       {{"at": 8, "set": {{"a": true, "b": true}}}}, {{"at": 9, "set": {{"a": false}}}}],
             "stop_when": {{"v": 99}}, "expect": [{claims}]}}"#
     );
-    let script = read(&text, "test.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
-    run(&script).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn failures(claim: &str) -> Vec<String> {
-    let outcome = judged(claim);
-    outcome
-        .verdicts
-        .iter()
-        .flat_map(|verdict| &verdict.failures)
-        .map(ToString::to_string)
-        .collect()
+    outcome(&text)
 }
 
 #[track_caller]
 fn holds(claim: &str) {
-    assert_eq!(failures(claim), Vec::<String>::new(), "{claim}");
+    assert_eq!(failures(&judged(claim)), [""; 0], "{claim}");
 }
 
 #[track_caller]
 fn fails(claim: &str, text: &str) {
-    assert_eq!(failures(claim).join("\n"), text, "{claim}");
+    assert_eq!(failures(&judged(claim)).join("\n"), text, "{claim}");
 }
 
 #[test]
@@ -138,7 +128,7 @@ fn comparisons() {
         (r#"1.5000000000000002"#, false),
         (r#""NaN""#, false),
     ] {
-        let found = failures(&format!(r#"{{"at": 9, "that": {{"v": {test}}}}}"#));
+        let found = failures(&judged(&format!(r#"{{"at": 9, "that": {{"v": {test}}}}}"#)));
         assert_eq!(found.is_empty(), value, "{test}: {found:?}");
     }
     holds(r#"{"at": 9, "that": {"X.Position": {"same_as": "Y.Position"}, "X.Velocity": -0.0}}"#);
@@ -187,14 +177,7 @@ fn a_claim_beyond_the_end_of_the_run_fails() {
             r#"{{"standstill": 1, "cycle": "T#1ms", "scans": 100, "axes": {{}}, "blocks": [], "inputs": {{"a": false}},
                 "steps": [{{"at": 4, "set": {{"a": true}}}}], "stop_when": {{"a": true}}, "after": 2, "expect": [{claim}]}}"#
         );
-        let script = read(&text, "test.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
-        let outcome = run(&script).unwrap_or_else(|error| panic!("{error}"));
-        outcome.verdicts[0]
-            .failures
-            .iter()
-            .map(ToString::to_string)
-            .collect::<Vec<_>>()
-            .join("\n")
+        failures(&outcome(&text)).join("\n")
     };
     let beyond = |scan| format!("expect[0]: it speaks of scan {scan}, but the run ended with scan 6");
     assert_eq!(early(r#"{"at": 7, "that": {"a": true}}"#), beyond(7));
@@ -257,15 +240,11 @@ fn seventy_axes(moves: bool, mode: &str) -> String {
 
 /// The run of seventy axes. Its claims are fulfilled, and are also judged on the trace alone.
 fn run_of_seventy(moves: bool, mode: &str) -> Trace {
-    let script = read(&seventy_axes(moves, mode), "test.scan.json", &[]).expect("it is a script");
+    let script = script(&seventy_axes(moves, mode));
     let outcome = run(&script).expect("it runs");
-    let failures = |outcome: &Outcome| -> Vec<String> {
-        let verdicts = outcome.verdicts.iter().flat_map(|verdict| &verdict.failures);
-        verdicts.map(ToString::to_string).collect()
-    };
-    assert_eq!(failures(&outcome), Vec::<String>::new());
+    assert_eq!(failures(&outcome), [""; 0]);
     let again = judge_recording(&script, outcome.trace.clone()).expect("it is of this script");
-    assert_eq!(failures(&again), Vec::<String>::new());
+    assert_eq!(failures(&again), [""; 0]);
     outcome.trace
 }
 

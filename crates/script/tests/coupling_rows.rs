@@ -3,7 +3,7 @@
 //! Names are those of `scan-tests/coupling`, or of a folder beside it. The reaction of each block to each
 //! value at its pins is in `blocks/tests/bad_input`.
 
-use std::path::Path;
+use super::common::scan_tests;
 
 /// An event, and the scripts that show it.
 type Row = (&'static str, &'static [&'static str]);
@@ -226,7 +226,7 @@ const ON_THE_SLAVE: &[Row] = &[
 
 #[test]
 fn every_row_has_its_scripts() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests");
+    let folder = scan_tests();
     for (what, scripts) in [STATES, BY_SET_VALUES, BY_ACTUAL_VALUES, ON_THE_SLAVE].concat() {
         assert!(!scripts.is_empty(), "{what}");
         for script in scripts {

@@ -4,10 +4,11 @@
 //! S follows M at 1/1 from scan 1 on. M moves at 200 u/s from scan 10 on; the limit of S is 100: it lags,
 //! and catches up when M is at rest again. L follows S; A follows nothing and is at no `Slave` pin.
 
-use standstill_script::{Outcome, read, run};
+use super::common::{failures, outcome};
+use standstill_script::{Outcome, read};
 use standstill_trace::{Cell, Trace, cell_text};
 
-fn script(keys: &str) -> String {
+fn text(keys: &str) -> String {
     format!(
         r#"{{"standstill": 1, "cycle": "T#1ms", "scans": 900, "inputs": {{"GO": false, "RUN": false, "off": false}},
             "axes": {{"M": {{"limits": {{"velocity": 200, "acceleration": 10000}}, "state": "Standstill"}},
@@ -29,20 +30,18 @@ fn script(keys: &str) -> String {
 
 const STEPS: &str = r#""steps": [{"at": 1, "set": {"GO": true}}, {"at": 10, "set": {"RUN": true}}, {"at": 800, "set": {"off": true}}]"#;
 
-fn outcome(claims: &str) -> Outcome {
-    let text = script(&format!("{STEPS}, \"expect\": [{claims}]"));
-    let script = read(&text, "test.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
-    run(&script).unwrap_or_else(|error| panic!("{error}"))
+fn judged(claims: &str) -> Outcome {
+    outcome(&text(&format!("{STEPS}, \"expect\": [{claims}]")))
 }
 
 fn refused(claim: &str) -> String {
-    let text = script(&format!("{STEPS}, \"expect\": [{claim}]"));
+    let text = text(&format!("{STEPS}, \"expect\": [{claim}]"));
     read(&text, "test.scan.json", &[]).expect_err(claim).to_string()
 }
 
 #[test]
 fn only_slaves_have_the_columns() {
-    let trace = outcome("").trace;
+    let trace = judged("").trace;
     let names: Vec<&str> = trace
         .columns()
         .iter()
@@ -78,7 +77,7 @@ fn only_slaves_have_the_columns() {
 
 #[test]
 fn the_columns_tell_of_their_row_and_are_empty_without_a_master() {
-    let outcome = outcome("");
+    let outcome = judged("");
     let trace = &outcome.trace;
     let text = |name: &str, scan| cell_text(trace.cell(scan, trace.column(name).unwrap()).unwrap());
     let number = |name: &str, scan| match trace.cell(scan, trace.column(name).unwrap()) {
@@ -115,12 +114,7 @@ fn claims_conditions_and_expressions_read_them() {
         {"always": "=S.Deviation <= 1.0E-12 AND L.Phase = 0.0"},
         {"by": 200, "that": {"far.Busy": true}},
         {"never": {"S.Deviation": {"lt": -5}}, "to": 100}"#;
-    let failures: Vec<String> = outcome(claims)
-        .verdicts
-        .iter()
-        .flat_map(|verdict| &verdict.failures)
-        .map(ToString::to_string)
-        .collect();
+    let failures = failures(&judged(claims));
     // At 100 u/s the distance is 5 u behind after some 60 ms; the last claim is there to show a value.
     assert_eq!(failures.len(), 1, "{failures:#?}");
     assert!(
@@ -172,8 +166,7 @@ fn the_header_tells_how_cams_lay() {
                      "MasterOffset": -30, "SlaveScaling": 0.5, "CamTableID": {"from": "table.CamTableID"}}},
                    {"name": "halt", "type": "MC_Halt", "pins": {"Axis": "S", "Execute": {"from": "OFF"}}}],
         "steps": [{"at": 3000, "set": {"OFF": true}}], "expect": []}"#;
-    let script = read(text, "test.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
-    let trace = run(&script).unwrap_or_else(|error| panic!("{error}")).trace;
+    let trace = outcome(text).trace;
     let [cam] = &trace.header().cams[..] else {
         panic!("one cam: {:?}", trace.header().cams);
     };
@@ -197,8 +190,7 @@ fn the_header_tells_how_a_cam_lies_that_was_laid_turns_before() {
                    {"name": "cam", "type": "MC_CamIn", "pins": {"Master": "M", "Slave": "S", "Execute": {"from": "table.Done"},
                      "MasterSyncPosition": 120, "MasterStartDistance": 20, "CamTableID": {"from": "table.CamTableID"}}}],
         "steps": [], "expect": [{"never": {"cam.Error": true}}]}"#;
-    let script = read(text, "test.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
-    let outcome = run(&script).unwrap_or_else(|error| panic!("{error}"));
+    let outcome = outcome(text);
     assert!(outcome.passed());
     let [cam] = &outcome.trace.header().cams[..] else {
         panic!("one cam: {:?}", outcome.trace.header().cams);

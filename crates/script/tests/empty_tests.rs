@@ -1,9 +1,10 @@
 //! Every kind of part that tests nothing is reported with its place; others are not. Claims detect
 //! mutants.
 
+use super::common::{scan_tests, script};
 use standstill_script::mutate::{Fate, mutants};
 use standstill_script::suite::{Allowed, find, run_script};
-use standstill_script::{WarningKind, Warnings, read, run, warnings};
+use standstill_script::{WarningKind, Warnings, run, warnings};
 use std::fs;
 use std::path::Path;
 use std::thread;
@@ -17,7 +18,7 @@ const SOUND: &str = r#"{"standstill": 1, "cycle": "T#1ms", "scans": 100, "inputs
 "expect": [{"by": 90, "that": {"move.Done": true, "X.Position": 4}}, {"by": 99, "that": {"halt.Done": true}}]}"#;
 
 fn warned(text: &str) -> Warnings {
-    let script = read(text, "a.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
+    let script = script(text);
     let outcome = run(&script).unwrap_or_else(|error| panic!("{error}"));
     assert!(outcome.passed(), "{:#?}", outcome.verdicts);
     warnings(&script, &outcome, false)
@@ -199,7 +200,7 @@ fn the_numbers_of_a_table_are_changed_and_claims_notice() {
 "TimePosition": [{"DeltaTime": "T#100ms", "Position": 6}, {"DeltaTime": "T#100ms", "Position": 0}]}}],
 "steps": [{"at": 1, "set": {"go": true}}],
 "expect": [{"once": {"X.Position": 6}}, {"duration": [{"dose.Busy": true}, {"dose.Done": true}], "ge": 200, "le": 200}]}"#;
-    let script = read(text, "a.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
+    let script = script(text);
     let original = run(&script).unwrap();
     assert!(original.passed(), "{:#?}", original.verdicts);
     let all = mutants(&script, 1, 500);
@@ -234,10 +235,10 @@ fn the_numbers_of_a_table_are_changed_and_claims_notice() {
 /// This is a note, for which no strict test fails: the homing may be intended to reverse at a limit switch.
 #[test]
 fn a_reference_behind_the_search_is_a_note() {
-    let gallery = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests/gallery");
+    let gallery = scan_tests().join("gallery");
     let text = fs::read_to_string(gallery.join("homing_then_production.scan.json")).unwrap();
     let notes = |text: &str| -> Vec<String> {
-        let script = read(text, "a.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
+        let script = script(text);
         let outcome = run(&script).unwrap();
         let all = warnings(&script, &outcome, true).all.into_iter();
         let notes = all.filter(|warning| warning.kind == WarningKind::Note);
@@ -260,7 +261,7 @@ fn a_reference_behind_the_search_is_a_note() {
 /// Users start from the gallery, so its claims must be good.
 #[test]
 fn every_script_of_the_gallery_kills_four_of_five_mutants() {
-    let gallery = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests/gallery");
+    let gallery = scan_tests().join("gallery");
     let scripts = find(&gallery).unwrap();
     assert!(scripts.len() >= 15, "{scripts:?}");
     let scores = thread::scope(|scope| {

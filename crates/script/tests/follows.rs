@@ -1,7 +1,7 @@
 //! The claim `follows`: it holds for the positions of the runtime, and fails for every position with an
 //! error of one unit in the last place.
 
-use standstill_script::model::Script;
+use super::common::{failures, outcome, script};
 use standstill_script::{Outcome, judge_recording, read, run, warnings};
 use standstill_testkit::Random;
 use standstill_trace::{Cell, Trace};
@@ -30,22 +30,6 @@ fn text(ratio: (i16, u16), turns: [&str; 2], claims: &str) -> String {
 
 const PLAIN: [&str; 2] = ["", ""];
 const ROUND: [&str; 2] = [r#""modulo": 7.3, "#, r#""modulo": 5.9, "#];
-
-fn script(text: &str) -> Script {
-    read(text, "test.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn outcome(text: &str) -> Outcome {
-    run(&script(text)).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn failures(outcome: &Outcome) -> Vec<String> {
-    let verdicts = outcome.verdicts.iter();
-    verdicts
-        .flat_map(|verdict| &verdict.failures)
-        .map(ToString::to_string)
-        .collect()
-}
 
 fn claim(ratio: (i16, u16), more: &str) -> String {
     let (num, den) = ratio;

@@ -2,6 +2,7 @@
 //! digest, extremes and events. A run that keeps few columns has the same verdicts. Half of the claims of every
 //! scan test are broken on purpose, so that there are words to compare.
 
+use super::common::{scan_tests, script};
 use serde_json::{Value, json};
 use standstill_script::model::Script;
 use standstill_script::suite::{Allowed, find, read_given, read_text};
@@ -118,8 +119,7 @@ fn breaks(value: &mut Value, random: &mut Random) {
 
 #[test]
 fn claims_are_judged_the_same_with_few_rows_at_a_time() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests");
-    let scripts = find(&folder).unwrap_or_else(|error| panic!("{error}"));
+    let scripts = find(&scan_tests()).unwrap_or_else(|error| panic!("{error}"));
     let (mut passed, mut failed, mut unreadable) = (0, 0, 0);
     let step = standstill_testkit::whole_or(1, 61);
     for (seed, path) in (1..).zip(&scripts).step_by(step) {
@@ -182,7 +182,7 @@ const ENDLESS: &str = r#"{"standstill": 1, "cycle": "T#1ms", "scans": SCANS, "ax
 /// with a few.
 fn failures(claim: &str) -> Vec<String> {
     let text = ENDLESS.replace("SCANS", "100").replace("EXPECT", claim);
-    let script = standstill_script::read(&text, "t.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
+    let script = script(&text);
     let told = whole(&script).expect("it runs");
     for every in [1, 2, 3, 5, 7, 64, 99, 100] {
         assert_eq!(

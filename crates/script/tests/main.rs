@@ -2,6 +2,7 @@
 
 mod broken_programs;
 mod claims;
+mod common;
 mod coupling_rows;
 mod couplings;
 mod empty_tests;

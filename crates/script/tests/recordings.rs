@@ -1,9 +1,9 @@
 //! Claims judged on traces that a script did not make itself.
 
+use super::common::scan_tests;
 use standstill_script::suite::{Allowed, find, read_file, shown};
 use standstill_script::{judge_recording, run};
 use standstill_testkit::whole_or;
-use std::path::Path;
 
 /// If the trace of a run is written to a file and read again, it is judged as the run was. The only difference is
 /// unknown in a recording: the motion of the axes before its first row.
@@ -19,7 +19,7 @@ fn a_recording_of_a_run_is_judged_as_the_run() {
         "guests",
         "reading",
     ];
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests");
+    let folder = scan_tests();
     let scripts = folders.map(|name| find(&folder.join(name)).expect("a folder of scripts"));
     let step = whole_or(1, 53);
     let (mut claims, mut differing) = (0, Vec::new());

@@ -1,6 +1,7 @@
 //! Claims relative to events, against an evaluator of their definition that shares no code with the judge: lists of BOOLs and
 //! the quantifiers of `docs/claims.md`. Traces and claims are random, from a fixed seed.
 
+use super::common::{failures, outcome};
 use standstill_script::{read, run};
 use standstill_testkit::Random;
 
@@ -59,7 +60,7 @@ fn the_example_of_the_page_is_a_script() {
               {{"name": "home", "type": "MC_MoveAbsolute", "pins": {{"Axis": "X", "Execute": {{"from": "out.Done"}}, "Velocity": 50}}}}],
             "steps": [{{"at": 3, "set": {{"go": true}}}}], {example}}}"#
     );
-    let outcome = run(&read(&text, "docs/claims.md", &[]).unwrap_or_else(|error| panic!("{error}"))).unwrap();
+    let outcome = outcome(&text);
     assert!(outcome.passed(), "{:?}", outcome.verdicts);
 }
 
@@ -279,7 +280,7 @@ fn near_takes_another_signal() {
             r#"{{"standstill": 1, "cycle": "T#1ms", "scans": 3, "axes": {{}}, "blocks": [],
                 "inputs": {{"v": 1, "u": 0}}, "steps": [{{"at": 1, "set": {{"v": 5, "u": 3.5}}}}], "expect": [{claim}]}}"#
         );
-        run(&read(&text, "a.scan.json", &[]).unwrap()).unwrap()
+        outcome(&text)
     };
     let near = |plus: f64, within: f64| {
         format!(r#"{{"always": {{"v": {{"near": {{"of": "u", "plus": {plus}}}, "within": {within}}}}}}}"#)
@@ -300,15 +301,8 @@ fn failures_name_the_rising_and_what_was_missed() {
         "inputs": {"a": false, "b": false}, "steps": [{"at": 2, "set": {"a": true}}, {"at": 6, "set": {"b": true}}],
         "expect": [{"when": {"a": true}, "within": 3, "that": {"b": true}}, {"after": {"b": true}, "by": 9, "that": {"a": false}},
           {"duration": [{"a": true}, {"b": true}], "le": 3}, {"count": {"a": true}, "eq": 2}, {"never": {"a": true}, "for": 3}]}"#;
-    let outcome = run(&read(text, "a.scan.json", &[]).unwrap()).unwrap();
-    let told: Vec<String> = outcome
-        .verdicts
-        .iter()
-        .flat_map(|verdict| &verdict.failures)
-        .map(ToString::to_string)
-        .collect();
     assert_eq!(
-        told,
+        failures(&outcome(text)),
         [
             "expect[0].that: a TRUE rose in scan 2, and b TRUE did not come by scan 5; it came at 6, 1 later",
             "expect[1].that: b TRUE rose in scan 6, and a FALSE did not come by scan 15; the run ended with scan 8, before that",

@@ -2,7 +2,8 @@
 //!
 //! Scripts here are as small as possible for their rule; motion has its tests in `scan-tests`.
 
-use standstill_script::{Outcome, RunError, read, read_with_programs, run};
+use super::common;
+use standstill_script::{Outcome, RunError, read_with_programs, run};
 use standstill_trace::Cell;
 
 /// A script of `scans` scans of 1 ms with a powered axis X and these additional keys.
@@ -11,15 +12,6 @@ fn script(scans: u64, keys: &str) -> String {
         r#"{{"standstill": 1, "cycle": "T#1ms", "scans": {scans},
             "axes": {{"X": {{"limits": {{"velocity": 50, "acceleration": 200}}, "state": "Standstill"}}}}, {keys}}}"#
     )
-}
-
-fn try_run(text: &str) -> Result<Outcome, RunError> {
-    let script = read(text, "test.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
-    run(&script)
-}
-
-fn runs(text: &str) -> Outcome {
-    try_run(text).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A column of a run as text, one word for each scan.
@@ -46,7 +38,7 @@ fn words(outcome: &Outcome, name: &str) -> String {
 
 #[test]
 fn steps_apply_at_the_latch_of_their_scan_in_file_order() {
-    let outcome = runs(&script(
+    let outcome = common::outcome(&script(
         5,
         r#""inputs": {"a": false, "v": 1}, "blocks": [{"name": "r", "type": "R_TRIG", "pins": {"CLK": {"from": "a"}}}],
            "steps": [{"at": 2, "set": {"v": 5}}, {"at": 2, "set": {"a": true, "v": 6}}, {"at": "T#4ms", "set": {"a": false}}]"#,
@@ -60,7 +52,7 @@ fn steps_apply_at_the_latch_of_their_scan_in_file_order() {
 #[test]
 fn a_step_with_when_applies_once_so_many_scans_after_the_next_latch() {
     let steps = |rest: &str| {
-        let outcome = runs(&script(
+        let outcome = common::outcome(&script(
             12,
             &format!(
                 r#""inputs": {{"a": false, "v": 0}}, "blocks": [],
@@ -77,7 +69,7 @@ fn a_step_with_when_applies_once_so_many_scans_after_the_next_latch() {
 
 #[test]
 fn a_step_may_set_a_pin_that_is_not_wired() {
-    let outcome = runs(&script(
+    let outcome = common::outcome(&script(
         4,
         r#""blocks": [{"name": "r", "type": "R_TRIG", "pins": {"CLK": false}}], "steps": [{"at": 1, "set": {"r.CLK": true}}]"#,
     ));
@@ -90,7 +82,7 @@ fn stop_when_ends_the_run_so_many_rows_later() {
         let keys = format!(
             r#""inputs": {{"a": false}}, "blocks": [], "steps": [{{"at": 3, "set": {{"a": true}}}}], "stop_when": {{"a": true}}{rest}"#
         );
-        runs(&script(20, &keys)).trace.scans()
+        common::outcome(&script(20, &keys)).trace.scans()
     };
     assert_eq!(ends(""), 4);
     assert_eq!(ends(r#", "after": 2"#), 6);
@@ -98,7 +90,7 @@ fn stop_when_ends_the_run_so_many_rows_later() {
 
 #[test]
 fn a_wire_reads_earlier_blocks_of_this_scan_and_later_ones_of_the_last() {
-    let outcome = runs(&script(
+    let outcome = common::outcome(&script(
         5,
         r#""inputs": {"a": false}, "steps": [{"at": 2, "set": {"a": true}}],
            "blocks": [{"name": "before", "type": "R_TRIG", "pins": {"CLK": {"from": "r.Q"}}},
@@ -112,7 +104,7 @@ fn a_wire_reads_earlier_blocks_of_this_scan_and_later_ones_of_the_last() {
 
 #[test]
 fn logic_wires_follow_their_truth_tables() {
-    let outcome = runs(&script(
+    let outcome = common::outcome(&script(
         4,
         r#""inputs": {"a": false, "b": false},
            "steps": [{"at": 1, "set": {"a": true}}, {"at": 2, "set": {"a": false, "b": true}}, {"at": 3, "set": {"a": true}}],
@@ -127,7 +119,7 @@ fn logic_wires_follow_their_truth_tables() {
 
 #[test]
 fn a_slow_task_leaves_its_pins_as_they_were() {
-    let outcome = runs(&script(
+    let outcome = common::outcome(&script(
         6,
         r#""inputs": {"a": false, "go": false}, "steps": [{"at": 1, "set": {"a": true}}, {"at": 4, "set": {"go": true}}],
            "tasks": {"main": {"interval": "T#1ms"}, "slow": {"interval": 3, "priority": 1}, "once": {"single": {"from": "go"}}},
@@ -143,7 +135,7 @@ fn a_slow_task_leaves_its_pins_as_they_were() {
 
 /// A move of 3 scans with this drive, and its trace.
 fn short_move(drive: &str) -> Outcome {
-    runs(&format!(
+    common::outcome(&format!(
         r#"{{"standstill": 1, "cycle": "T#1ms", "scans": 12, "inputs": {{"go": false}}, "steps": [{{"at": 1, "set": {{"go": true}}}}],
             "axes": {{"X": {{"limits": {{"velocity": 1000, "acceleration": 1000000}}, "position": 3, "state": "Standstill", "drive": {{"ideal": {drive}}}}}}},
             "blocks": [{{"name": "m", "type": "MC_MoveAbsolute", "pins": {{"Axis": "X", "Execute": {{"from": "go"}}, "Position": 5, "Velocity": 1000}}}}]}}"#
@@ -188,7 +180,7 @@ fn the_actual_position_is_the_set_position_of_delay_plus_one_scans_ago() {
 
 /// The states of an axis under these steps, without repetitions, each with its first scan.
 fn states(keys: &str) -> String {
-    let outcome = runs(&script(40, keys));
+    let outcome = common::outcome(&script(40, keys));
     let mut shown = Vec::new();
     let mut last = String::new();
     for (scan, state) in column(&outcome, "X.State").into_iter().enumerate() {
@@ -225,11 +217,11 @@ fn a_fault_shows_in_the_row_of_its_scan_and_needs_clear_and_reset() {
 #[test]
 fn only_an_axis_without_power_can_be_displaced() {
     let displaced = |state: &str| {
-        try_run(&format!(
+        run(&common::script(&format!(
             r#"{{"standstill": 1, "cycle": "T#1ms", "scans": 5, "blocks": [],
                 "axes": {{"X": {{"limits": {{"velocity": 1, "acceleration": 1}}, "state": "{state}"}}}},
                 "steps": [{{"at": 2, "drive": {{"axis": "X", "displace": 10}}}}]}}"#
-        ))
+        )))
     };
     let outcome = displaced("Disabled").unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(words(&outcome, "X.ActualPosition"), "0 0 10 10 10");
@@ -247,7 +239,7 @@ fn only_an_axis_without_power_can_be_displaced() {
 
 #[test]
 fn an_undefined_enum_number_is_traced_as_its_number_and_refused_with_a_note() {
-    let outcome = runs(&script(
+    let outcome = common::outcome(&script(
         3,
         r#""blocks": [{"name": "m", "type": "MC_MoveAbsolute",
                        "pins": {"Axis": "X", "Execute": true, "Position": 1, "Velocity": 1, "BufferMode": 77}}],

@@ -1,11 +1,11 @@
 //! A run that advances scan by scan equals the whole run, claims are decided as in the final judgement,
 //! and changes on the way can be saved as a script.
 
+use super::common;
 use standstill_script::model::Point;
 use standstill_script::suite::{Allowed, find, read_file};
-use standstill_script::{Session, Standing, read, run, with_changes};
+use standstill_script::{Session, Standing, with_changes};
 use standstill_trace::compare::compare;
-use std::path::{Path, PathBuf};
 
 const SCRIPT: &str = r#"{"standstill": 1, "title": "One move", "cycle": "T#1ms", "scans": 300,
   "axes": {"X": {"unit": "mm", "limits": {"velocity": 50, "acceleration": 1000}, "state": "Standstill"}},
@@ -16,13 +16,9 @@ const SCRIPT: &str = r#"{"standstill": 1, "title": "One move", "cycle": "T#1ms",
   ],
   "expect": [{"by": 299, "that": {"m.Done": true}}, {"never": {"m.Error": true}}, {"at": 299, "that": {"m.Done": true}}]}"#;
 
-fn scan_tests() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests")
-}
-
 #[test]
 fn claims_are_decided_on_the_way_as_they_are_judged_at_the_end() {
-    let scripts = find(&scan_tests()).unwrap_or_else(|error| panic!("{error}"));
+    let scripts = find(&common::scan_tests()).unwrap_or_else(|error| panic!("{error}"));
     let (mut early, mut claims) = (0, 0);
     for path in scripts.iter().step_by(standstill_testkit::whole_or(5, 53)) {
         let (script, _) = read_file(path, &[], &Allowed::default()).unwrap_or_else(|error| panic!("{error}"));
@@ -69,7 +65,7 @@ fn a_claim_that_fails_is_told_in_its_scan() {
     let script = script
         .replace("\"GO\": false", "\"GO\": true")
         .replace("\"at\": 299", "\"at\": 100");
-    let script = read(&script, "s", &[]).unwrap_or_else(|error| panic!("{error}"));
+    let script = common::script(&script);
     let mut session = Session::new(&script).unwrap_or_else(|error| panic!("{error}"));
     let mut told = Vec::new();
     while session.advance().unwrap_or_else(|error| panic!("{error}")) {
@@ -97,7 +93,7 @@ fn what_is_changed_on_the_way_is_a_script_too() {
             "\"steps\": [{\"at\": 3, \"set\": {\"way\": 3}}], \"expect\"",
         ),
     ] {
-        let script = read(&text, "s", &[]).unwrap_or_else(|error| panic!("{error}"));
+        let script = common::script(&text);
         let mut session = Session::new(&script).unwrap_or_else(|error| panic!("{error}"));
         let pin = |instance: usize, name: &str| {
             let mut pins = script.blocks[instance].block.pins();
@@ -154,8 +150,7 @@ fn what_is_changed_on_the_way_is_a_script_too() {
             text.matches("\"at\": 3,").count() + 1,
             "{saved}"
         );
-        let again = read(&saved, "saved", &[]).unwrap_or_else(|error| panic!("{error}\n{saved}"));
-        let again = run(&again).unwrap_or_else(|error| panic!("{error}"));
+        let again = common::outcome(&saved);
         let outcome = session.finish();
         assert_eq!(compare(&outcome.trace, &again.trace), None, "{saved}");
         assert!(outcome.trace.column("m.Done").is_some_and(|done| {
@@ -169,7 +164,7 @@ fn what_is_changed_on_the_way_is_a_script_too() {
 
 #[test]
 fn inputs_are_found_by_name_and_written_all_or_none() {
-    let script = read(SCRIPT, "one.scan.json", &[]).unwrap();
+    let script = common::script(SCRIPT);
     let mut session = Session::new(&script).unwrap();
     let [go, way] = ["go", "WAY"].map(|name| session.point(name).unwrap());
     assert_eq!((go, way), (Point::Input(0), Point::Input(1)));
@@ -195,7 +190,7 @@ fn inputs_are_found_by_name_and_written_all_or_none() {
 
 #[test]
 fn a_drive_that_is_led_is_where_it_is_led_to() {
-    let script = read(SCRIPT, "one.scan.json", &[]).unwrap();
+    let script = common::script(SCRIPT);
     let mut session = Session::new(&script).unwrap();
     let go = session.point("GO").unwrap();
     session.change(go, "TRUE").unwrap();

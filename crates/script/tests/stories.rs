@@ -1,7 +1,8 @@
 //! A story must name the change that was made to a run, from the traces of both alone. Each test runs a script and a
 //! changed one, through files as `standstill explain` does.
 
-use standstill_script::{read, run};
+use super::common::outcome;
+use standstill_script::run;
 use standstill_trace::story::{Cause, Story, story};
 use standstill_trace::{Cell, Trace, jsonl};
 
@@ -19,10 +20,12 @@ const SCRIPT: &str = r#"{"standstill": 1, "title": "There and back", "cycle": "T
 
 /// The trace of a script as a file has it.
 fn trace(script: &str) -> Trace {
-    let script = read(script, "t.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
-    let trace = run(&script).unwrap_or_else(|error| panic!("{error}")).trace;
+    through_a_file(&outcome(script).trace)
+}
+
+fn through_a_file(trace: &Trace) -> Trace {
     let mut file = Vec::new();
-    jsonl::write(&trace, &mut file).expect("a vector takes all");
+    jsonl::write(trace, &mut file).expect("a vector takes all");
     let text = String::from_utf8(file).expect("UTF-8");
     jsonl::read(&text).expect("our own").trace
 }
@@ -42,15 +45,21 @@ fn first(story: &Story) -> &Cause {
     story.causes.first().expect("a story has a cause")
 }
 
-/// A trace with one column changed: `change` gets the scan and the value.
+/// A trace with one column of numbers changed: `change` gets the scan and the value.
 fn with(trace: &Trace, name: &str, change: impl Fn(usize, f64) -> f64) -> Trace {
     let column = trace.column(name).expect("there is one");
+    with_cells(trace, |scan, at, cell| match cell {
+        Cell::Real(value) if at == column => Cell::Real(change(scan, value)),
+        other => other,
+    })
+}
+
+/// A trace with other cells: `change` gets the scan, the column and the cell.
+fn with_cells<'t>(trace: &'t Trace, change: impl Fn(usize, usize, Cell<'t>) -> Cell<'t>) -> Trace {
     let mut other = Trace::new(trace.header().clone());
     for scan in 0..trace.scans() {
-        let mut row: Vec<_> = trace.row(scan).collect();
-        if let Some(Cell::Real(value)) = row.get_mut(column) {
-            *value = change(scan, *value);
-        }
+        let row = trace.row(scan).enumerate();
+        let row: Vec<_> = row.map(|(column, cell)| change(scan, column, cell)).collect();
         other.push_row(&row).expect("the same columns");
     }
     other
@@ -222,14 +231,10 @@ fn an_event_that_never_comes() {
     // An output that one run does not raise, without any other evidence.
     let before = trace(SCRIPT);
     let done = before.column("back.Done").expect("there");
-    let mut after = Trace::new(before.header().clone());
-    for scan in 0..before.scans() {
-        let mut row: Vec<_> = before.row(scan).collect();
-        if let Some(cell) = row.get_mut(done) {
-            *cell = Cell::Bool(false);
-        }
-        after.push_row(&row).expect("the same columns");
-    }
+    let after = with_cells(&before, |_, column, cell| match column == done {
+        true => Cell::Bool(false),
+        false => cell,
+    });
     let story = told(&before, &after);
     let Cause::Events {
         missing: Some(missing),
@@ -279,12 +284,7 @@ fn trace_of_program(source: &str) -> Trace {
             Ok(source.as_bytes().to_vec())
         });
     let script = script.unwrap_or_else(|error| panic!("{error}"));
-    let trace = run(&script).unwrap_or_else(|error| panic!("{error}")).trace;
-    let mut file = Vec::new();
-    jsonl::write(&trace, &mut file).expect("a vector takes all");
-    jsonl::read(&String::from_utf8(file).expect("UTF-8"))
-        .expect("our own")
-        .trace
+    through_a_file(&run(&script).unwrap_or_else(|error| panic!("{error}")).trace)
 }
 
 /// The line where the difference began, after a change of the program.
@@ -333,31 +333,25 @@ fn the_line_of_a_program_whose_change_came_first() {
 #[test]
 fn a_program_that_only_follows_has_no_line() {
     let trace = trace_of_program(CELL);
-    let mut other = Trace::new(trace.header().clone());
-    for instance in &mut trace.header().clone().instances {
+    for instance in &trace.header().instances {
         assert!(instance.pins.iter().any(|pin| !pin.written.is_empty()));
     }
-    // A trace that knows no statements: an older one.
+    let other = with_cells(&trace, |scan, _, cell| match cell {
+        Cell::Integer(value) if scan == 5 => Cell::Integer(value + 1),
+        other => other,
+    });
+    assert!(told(&trace, &other).line.is_some());
+    // The same in a trace that knows no statements: an older one.
     let mut header = trace.header().clone();
     let pins = header.instances.iter_mut().flat_map(|it| &mut it.pins);
     pins.for_each(|pin| pin.written.clear());
-    let mut bare = Trace::new(header);
-    for scan in 0..trace.scans() {
-        let row: Vec<_> = trace.row(scan).collect();
-        bare.push_row(&row).expect("the same columns");
-        let changed = row.iter().map(|cell| match cell {
-            Cell::Integer(value) if scan == 5 => Cell::Integer(value + 1),
-            other => *other,
-        });
-        other
-            .push_row(&changed.collect::<Vec<_>>())
-            .expect("the same columns");
-    }
-    assert!(told(&trace, &other).line.is_some());
-    let mut changed = Trace::new(bare.header().clone());
-    for scan in 0..bare.scans() {
-        let row: Vec<_> = other.row(scan).collect();
-        changed.push_row(&row).expect("the same columns");
-    }
-    assert_eq!(told(&bare, &changed).line, None);
+    let bare = |trace: &Trace| {
+        let mut bare = Trace::new(header.clone());
+        for scan in 0..trace.scans() {
+            let row: Vec<_> = trace.row(scan).collect();
+            bare.push_row(&row).expect("the same columns");
+        }
+        bare
+    };
+    assert_eq!(told(&bare(&trace), &bare(&other)).line, None);
 }

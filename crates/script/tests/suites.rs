@@ -1,5 +1,6 @@
 //! Folders of scripts: the found scripts, and the effect of each mode on goldens.
 
+use super::common::scan_tests;
 use serde_json::{Value, json};
 use standstill_script::golden::{Mode, Standing};
 use standstill_script::read;
@@ -282,8 +283,7 @@ fn what_is_no_script_is_told_apart_from_what_cannot_be_read() {
 /// What `standstill fmt` makes of a script of the suite is the script.
 #[test]
 fn the_scripts_of_the_suite_are_in_the_canonical_layout() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests");
-    let files = find_texts(&folder).unwrap();
+    let files = find_texts(&scan_tests()).unwrap();
     assert!(files.len() > 450, "{}", files.len());
     for file in files {
         let text = fs::read_to_string(&file).unwrap();
@@ -353,8 +353,7 @@ fn name_numbers(node: &mut Value, parameters: &mut Vec<(String, f64)>) {
 #[test]
 fn a_script_with_other_values_is_what_reading_it_with_them_gives() {
     let folder = Folder::new("other_values");
-    let scripts =
-        find(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests")).expect("there are scripts");
+    let scripts = find(&scan_tests()).expect("there are scripts");
     let (mut good, mut refused) = (0, 0);
     for (place, key) in scripts
         .iter()

@@ -1,6 +1,7 @@
 //! Reasons: through expressions in wires, steps and claims, and within their bound for any script.
 
-use standstill_script::{Outcome, read, run};
+use super::common;
+use standstill_script::Outcome;
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
@@ -12,8 +13,7 @@ fn outcome(inputs: &str, blocks: &str, steps: &str, expect: &str) -> Outcome {
                       "Y": {{"limits": {{"velocity": 1000, "acceleration": 100000}}}}}},
             "blocks": [{blocks}], "steps": [{steps}], "expect": [{expect}]}}"#
     );
-    let script = read(&text, "test.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
-    run(&script).unwrap_or_else(|error| panic!("{error}"))
+    common::outcome(&text)
 }
 
 fn first(outcome: &Outcome) -> &str {
@@ -145,8 +145,7 @@ fn ring(blocks: usize, scans: usize, claims: usize, claim: &str) -> Outcome {
             "blocks": [{all}], "expect": [{}]}}"#,
         expect.join(",")
     );
-    let script = read(&text, "ring.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
-    run(&script).unwrap_or_else(|error| panic!("{error}"))
+    common::outcome(&text)
 }
 
 /// Twenty claims, each at another place of a ring of many blocks: all walks together take the time of a few runs.

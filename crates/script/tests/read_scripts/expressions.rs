@@ -1,6 +1,7 @@
 //! Scripts with expressions: the messages for one that cannot be read, and for one without a value.
 
-use standstill_script::{read, run};
+use crate::common;
+use standstill_script::read;
 use std::fmt::Write;
 
 /// A script with these pins of a move, and this claim.
@@ -66,10 +67,7 @@ fn every_bad_expression_is_told_at_its_place() {
 
 /// What speaks against the claims of a run.
 fn failures(pins: &str, claims: &str) -> Vec<String> {
-    let script = read(&with(pins, claims), "e.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
-    let outcome = run(&script).unwrap();
-    let failures = outcome.verdicts.iter().flat_map(|verdict| &verdict.failures);
-    failures.map(ToString::to_string).collect()
+    common::failures(&common::outcome(&with(pins, claims)))
 }
 
 /// Covers: ST33
