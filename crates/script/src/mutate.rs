@@ -209,7 +209,6 @@ fn table(script: &Script, path: &str, place: TableRef, info: TableInfo, all: &mu
 
 /// A constant a tenth less and a tenth more; for a BOOL the opposite.
 fn numbers(value: Value) -> Vec<(Value, String)> {
-    let text = |value: f64| shortest(value);
     match value {
         Value::Bool(value) => {
             let name = |value: bool| if value { "TRUE" } else { "FALSE" };
@@ -222,7 +221,10 @@ fn numbers(value: Value) -> Vec<(Value, String)> {
             .iter()
             .map(|factor| {
                 let other = value * factor;
-                (Value::Lreal(other), format!("{} to {}", text(value), text(other)))
+                (
+                    Value::Lreal(other),
+                    format!("{} to {}", shortest(value), shortest(other)),
+                )
             })
             .collect(),
         Value::Time(ns) if ns != 0 => [ns / 10 * 9, ns / 10 * 11]

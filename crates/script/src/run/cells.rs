@@ -35,7 +35,7 @@ pub(crate) fn point_name(script: &Script, point: Point) -> String {
     .unwrap_or_default()
 }
 
-/// The type of a guest's variable with this value.
+/// The type of an input variable or a guest's variable with this value.
 pub(crate) fn type_of(value: Value) -> PinType {
     match value {
         Value::Bool(_) => PinType::Bool,

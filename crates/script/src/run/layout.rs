@@ -3,7 +3,7 @@
 use super::cells;
 use crate::model::{Action, AxisNumber, Point, Program, Script, Signal, Symbol, Variable, WhichMaster};
 use standstill_blocks::BlockInstance;
-use standstill_fb::{AnyInstance, Direction, PinType, Value};
+use standstill_fb::{AnyInstance, Direction};
 use standstill_record::told;
 use standstill_trace::{self as trace, Kind};
 use std::collections::BTreeSet;
@@ -196,7 +196,7 @@ pub(crate) fn header(script: &Script) -> trace::Header {
             .iter()
             .map(|input| trace::Input {
                 name: input.name.clone(),
-                iec_type: type_of(input.initial).to_owned(),
+                iec_type: cells::type_of(input.initial).iec_name().to_owned(),
             })
             .collect(),
         instances: blocks(script)
@@ -305,12 +305,4 @@ fn zero(kind: Kind) -> Option<String> {
         Kind::Name => return None,
     };
     Some(text.to_owned())
-}
-
-/// Type of an input variable; a script knows only these two.
-fn type_of(value: Value) -> &'static str {
-    match value {
-        Value::Bool(_) => PinType::Bool.iec_name(),
-        _ => PinType::Lreal.iec_name(),
-    }
 }

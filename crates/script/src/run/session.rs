@@ -467,8 +467,9 @@ impl<'a> Session<'a> {
                 .filter(|number: &f64| word || number.is_finite());
             known.ok_or_else(|| format!("`{text}` is no number"))
         };
-        let whole = |least: i64, most: i64| {
+        let whole = |least: i64, most: i64, value: fn(i64) -> Value| {
             let known = text.parse().ok().filter(|number| (least..=most).contains(number));
+            let known = known.map(|number| (value(number), number.to_string()));
             known.ok_or_else(|| format!("`{text}` is no whole number from {least} to {most}"))
         };
         match (now, ty) {
@@ -485,21 +486,11 @@ impl<'a> Session<'a> {
                 };
                 Ok((Value::Lreal(number), json))
             }
-            (Value::Int(_), _) => {
-                let number = whole(i16::MIN.into(), i16::MAX.into())?;
-                let value = i16::try_from(number).map_err(|error| error.to_string())?;
-                Ok((Value::Int(value), number.to_string()))
-            }
-            (Value::Word(_), _) => {
-                let number = whole(0, u16::MAX.into())?;
-                let value = u16::try_from(number).map_err(|error| error.to_string())?;
-                Ok((Value::Word(value), number.to_string()))
-            }
-            (Value::Dword(_), _) => {
-                let number = whole(0, u32::MAX.into())?;
-                let value = u32::try_from(number).map_err(|error| error.to_string())?;
-                Ok((Value::Dword(value), number.to_string()))
-            }
+            (Value::Int(_), _) => whole(i16::MIN.into(), i16::MAX.into(), |number| {
+                Value::Int(number as i16)
+            }),
+            (Value::Word(_), _) => whole(0, u16::MAX.into(), |number| Value::Word(number as u16)),
+            (Value::Dword(_), _) => whole(0, u32::MAX.into(), |number| Value::Dword(number as u32)),
             (Value::Time(_), _) => {
                 let ns = time::parse(text)
                     .map_err(|why| format!("`{text}` is no time such as T#1s500ms: {why}"))?;

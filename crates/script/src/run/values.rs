@@ -3,7 +3,7 @@
 use super::cells::{self, convert};
 use crate::model::{Point, Script, Wire};
 use standstill_blocks::BlockInstance;
-use standstill_fb::{AnyInstance, PinType, Value};
+use standstill_fb::{AnyInstance, Value};
 
 /// The present values that a script's wires read and its steps write.
 #[derive(Clone, Debug)]
@@ -52,11 +52,7 @@ impl Values {
             Point::Input(index) => {
                 let variable = self.variables.get_mut(index)?;
                 // A variable keeps its declared type.
-                let ty = match variable {
-                    Value::Bool(_) => PinType::Bool,
-                    _ => PinType::Lreal,
-                };
-                *variable = convert(value, ty)?;
+                *variable = convert(value, cells::type_of(*variable))?;
             }
             Point::Pin(instance, pin) => {
                 let instance = self.instances.get_mut(instance)?;

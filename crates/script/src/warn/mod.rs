@@ -228,15 +228,9 @@ fn clamps(script: &Script, outcome: &Outcome, all: &mut Vec<Warning>) {
         }
         told.push((&note.subject, pin));
         let owner = note.subject.split('.').next().unwrap_or_default();
-        let block = script.blocks.iter().position(|block| block.name == note.subject);
-        let (path, span) = match block {
-            Some(index) => (
-                format!("blocks[{index}]"),
-                script
-                    .blocks
-                    .get(index)
-                    .map_or(Span::default(), |block| block.place.span),
-            ),
+        let mut blocks = script.blocks.iter().enumerate();
+        let (path, span) = match blocks.find(|(_, block)| block.name == note.subject) {
+            Some((index, block)) => (format!("blocks[{index}]"), block.place.span),
             None => {
                 let program = script.programs.iter().find(|program| program.name == owner);
                 let span = program.map_or(Span { start: 0, end: 1 }, |program| program.place.span);
