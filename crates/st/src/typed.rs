@@ -2,6 +2,7 @@
 //! explicit.
 
 use crate::source::Span;
+use crate::syntax::Operator;
 use crate::types::{Elementary, TypeId, UnitId};
 
 /// A variable or a part of one.
@@ -66,7 +67,7 @@ pub(crate) enum Kind {
     /// A function whose value is a string, built at this address.
     Join(crate::library::Function, Vec<Expr>, u32),
     /// Two strings.
-    Compare(Operation, Box<[Expr; 2]>),
+    Compare(Operator, Box<[Expr; 2]>),
     /// A function of the library, computed in this type.
     Library(crate::library::Function, Elementary, Vec<Expr>),
     Wrong,
@@ -76,35 +77,11 @@ pub(crate) enum Kind {
 #[derive(Clone, Debug)]
 pub(crate) struct Step {
     pub convert: Option<(Elementary, Elementary)>,
-    pub operation: Operation,
+    pub operator: Operator,
     pub right: Expr,
-    /// The type in which it is computed.
+    /// The type in which it is computed; a TIME is scaled by a LINT or an LREAL.
     pub ty: Elementary,
     pub span: Span,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Operation {
-    Or,
-    OrElse,
-    Xor,
-    And,
-    AndThen,
-    Equal,
-    NotEqual,
-    Less,
-    LessEqual,
-    Greater,
-    GreaterEqual,
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Modulo,
-    Power,
-    /// TIME and a number of the type given: `Multiply` or `Divide`.
-    TimeMultiply(Elementary),
-    TimeDivide(Elementary),
 }
 
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@ use super::Checker;
 use crate::error::{Code, Diagnostic};
 use crate::source::Span;
 use crate::syntax::{Expression, Operator};
-use crate::typed::{Expr, Kind, Operation, Step};
+use crate::typed::{Expr, Kind, Step};
 use crate::types::{ANY_INTEGER, ANY_REAL, BOOL, Class, Constant, Elementary, TypeId, Types};
 
 impl<'a> Checker<'a> {
@@ -201,17 +201,10 @@ impl<'a> Checker<'a> {
         let Some((left, right, ty)) = self.together(left, operator, right, at, None) else {
             return Expr::wrong(span);
         };
-        let operation = match operator {
-            Operator::Or => Operation::Or,
-            Operator::OrElse => Operation::OrElse,
-            Operator::Xor => Operation::Xor,
-            Operator::And => Operation::And,
-            _ => Operation::AndThen,
-        };
         if let (Kind::Integer(one), Kind::Integer(other)) = (&left.kind, &right.kind) {
-            let number = match operation {
-                Operation::Or | Operation::OrElse => one | other,
-                Operation::Xor => one ^ other,
+            let number = match operator {
+                Operator::Or | Operator::OrElse => one | other,
+                Operator::Xor => one ^ other,
                 _ => one & other,
             };
             return Expr {
@@ -220,20 +213,12 @@ impl<'a> Checker<'a> {
                 span,
             };
         }
-        self.step(left, operation, right, ty, Types::of(ty), at)
+        self.step(left, operator, right, ty, Types::of(ty), at)
     }
 
     fn compare(&mut self, left: Expr, operator: Operator, right: Expr, at: Span) -> Expr {
         let span = left.span.to(right.span);
-        let operation = match operator {
-            Operator::Equal => Operation::Equal,
-            Operator::NotEqual => Operation::NotEqual,
-            Operator::Less => Operation::Less,
-            Operator::LessEqual => Operation::LessEqual,
-            Operator::Greater => Operation::Greater,
-            _ => Operation::GreaterEqual,
-        };
-        let same = matches!(operation, Operation::Equal | Operation::NotEqual);
+        let same = matches!(operator, Operator::Equal | Operator::NotEqual);
         let (left, right, ty) = if self.types.is_enumeration(left.ty) || self.types.is_enumeration(right.ty) {
             let of = if self.types.is_enumeration(left.ty) {
                 left.ty
@@ -258,7 +243,7 @@ impl<'a> Checker<'a> {
             let base = self.types.elementary(of).unwrap_or(Elementary::Int);
             (left, right, base)
         } else if self.is_text(left.ty) && self.is_text(right.ty) {
-            return self.compare_texts(left, operation, right);
+            return self.compare_texts(left, operator, right);
         } else {
             let text = self.is_text(left.ty);
             if self.types.elementary(left.ty).is_none() && !is_any(&left) && !text {
@@ -275,27 +260,21 @@ impl<'a> Checker<'a> {
             self.error(Code::WrongType, at, "BOOL has no order", "compare with = or <>");
             return Expr::wrong(span);
         }
-        let order = match (left.constant(), right.constant()) {
-            (Some(Constant::Integer(one)), Some(Constant::Integer(other))) => Some(one.partial_cmp(&other)),
-            (Some(Constant::Real(one)), Some(Constant::Real(other))) => Some(one.partial_cmp(&other)),
+        let known = match (left.constant(), right.constant()) {
+            (Some(Constant::Integer(one)), Some(Constant::Integer(other))) => {
+                Some(holds(&one, operator, &other))
+            }
+            (Some(Constant::Real(one)), Some(Constant::Real(other))) => Some(holds(&one, operator, &other)),
             _ => None,
         };
-        if let Some(order) = order {
-            let holds = match operation {
-                Operation::Equal => order.is_some_and(std::cmp::Ordering::is_eq),
-                Operation::NotEqual => !order.is_some_and(std::cmp::Ordering::is_eq),
-                Operation::Less => order.is_some_and(std::cmp::Ordering::is_lt),
-                Operation::LessEqual => order.is_some_and(std::cmp::Ordering::is_le),
-                Operation::Greater => order.is_some_and(std::cmp::Ordering::is_gt),
-                _ => order.is_some_and(std::cmp::Ordering::is_ge),
-            };
+        if let Some(holds) = known {
             return Expr {
                 kind: Kind::Integer(holds.into()),
                 ty: BOOL,
                 span,
             };
         }
-        self.step(left, operation, right, ty, BOOL, at)
+        self.step(left, operator, right, ty, BOOL, at)
     }
 
     /// a ** b, in REAL or LREAL.
@@ -324,7 +303,7 @@ impl<'a> Checker<'a> {
         if left.is_wrong() || right.is_wrong() {
             return Expr::wrong(span);
         }
-        self.step(left, Operation::Power, right, ty, of, at)
+        self.step(left, Operator::Power, right, ty, of, at)
     }
 
     fn arithmetic(
@@ -336,27 +315,19 @@ impl<'a> Checker<'a> {
         expected: Option<TypeId>,
     ) -> Expr {
         let span = left.span.to(right.span);
-        let operation = match operator {
-            Operator::Add => Operation::Add,
-            Operator::Subtract => Operation::Subtract,
-            Operator::Multiply => Operation::Multiply,
-            Operator::Divide => Operation::Divide,
-            _ => Operation::Modulo,
-        };
         if is_any(&left) && is_any(&right) {
-            return self.fold_any(&left, operation, &right, at);
+            return self.fold_any(&left, operator, &right, at);
         }
-        if let Some(value) = self.scaled_time(&left, operation, &right, at) {
+        if let Some(value) = self.scaled_time(&left, operator, &right, at) {
             return value;
         }
         let Some((left, right, ty)) = self.together(left, operator, right, at, expected) else {
             return Expr::wrong(span);
         };
-        let time_ok = matches!(operation, Operation::Add | Operation::Subtract);
         let good = match ty.class() {
             Class::Signed | Class::Unsigned => true,
-            Class::Real => operation != Operation::Modulo,
-            Class::Time => time_ok,
+            Class::Real => operator != Operator::Modulo,
+            Class::Time => matches!(operator, Operator::Add | Operator::Subtract),
             Class::Bool | Class::Bits => false,
         };
         if !good {
@@ -366,7 +337,7 @@ impl<'a> Checker<'a> {
                     "convert it to a number: {0}_TO_UDINT(..), or the type you need",
                     ty.name()
                 ),
-                Class::Time if operation == Operation::Divide => format!(
+                Class::Time if operator == Operator::Divide => format!(
                     "for a ratio divide numbers: {0}_TO_LREAL(..) / {0}_TO_LREAL(..)",
                     ty.name()
                 ),
@@ -379,33 +350,30 @@ impl<'a> Checker<'a> {
         }
         match (left.constant(), right.constant()) {
             (Some(Constant::Real(one)), Some(Constant::Real(other))) => {
-                self.real(reals(one, operation, other), Types::of(ty), span)
+                self.real(reals(one, operator, other), Types::of(ty), span)
             }
-            (one, Some(Constant::Integer(0)))
-                if matches!(operation, Operation::Divide | Operation::Modulo) =>
-            {
-                let _ = one;
+            (_, Some(Constant::Integer(0))) if matches!(operator, Operator::Divide | Operator::Modulo) => {
                 self.error(Code::OutOfRange, right.span, "this divides by zero", "");
                 Expr::wrong(span)
             }
             (Some(Constant::Integer(one)), Some(Constant::Integer(other))) => Expr {
-                kind: Kind::Integer(ty.wrapped(wholes(one, operation, other))),
+                kind: Kind::Integer(ty.wrapped(wholes(one, operator, other))),
                 ty: Types::of(ty),
                 span,
             },
-            _ => self.step(left, operation, right, ty, Types::of(ty), at),
+            _ => self.step(left, operator, right, ty, Types::of(ty), at),
         }
     }
 
     /// Two literals without a type.
-    fn fold_any(&mut self, left: &Expr, operation: Operation, right: &Expr, at: Span) -> Expr {
+    fn fold_any(&mut self, left: &Expr, operator: Operator, right: &Expr, at: Span) -> Expr {
         let span = left.span.to(right.span);
         if let (Kind::Integer(one), Kind::Integer(other)) = (&left.kind, &right.kind) {
-            if *other == 0 && matches!(operation, Operation::Divide | Operation::Modulo) {
+            if *other == 0 && matches!(operator, Operator::Divide | Operator::Modulo) {
                 self.error(Code::OutOfRange, right.span, "this divides by zero", "");
                 return Expr::wrong(span);
             }
-            if operation == Operation::Divide && one % other != 0 {
+            if operator == Operator::Divide && one % other != 0 {
                 let message = format!(
                     "whole numbers are divided without a rest: this is {}",
                     one / other
@@ -413,7 +381,7 @@ impl<'a> Checker<'a> {
                 let doubt = Diagnostic::warning(Code::Doubtful, at, message);
                 self.tell(doubt.help(format!("for a fraction write {one}.0 / {other}.0")));
             }
-            let number = wholes(*one, operation, *other);
+            let number = wholes(*one, operator, *other);
             if i64::try_from(number).is_err() && u64::try_from(number).is_err() {
                 self.error(Code::OutOfRange, span, "no type of whole numbers holds this", "");
                 return Expr::wrong(span);
@@ -429,24 +397,24 @@ impl<'a> Checker<'a> {
             Kind::Real(number) => number,
             _ => 0.0,
         };
-        if operation == Operation::Modulo {
+        if operator == Operator::Modulo {
             self.error(Code::WrongType, at, "MOD is for whole numbers", "");
             return Expr::wrong(span);
         }
         Expr {
-            kind: Kind::Real(reals(number(left), operation, number(right))),
+            kind: Kind::Real(reals(number(left), operator, number(right))),
             ty: ANY_REAL,
             span,
         }
     }
 
     /// A TIME times or divided by a number.
-    fn scaled_time(&mut self, left: &Expr, operation: Operation, right: &Expr, at: Span) -> Option<Expr> {
+    fn scaled_time(&mut self, left: &Expr, operator: Operator, right: &Expr, at: Span) -> Option<Expr> {
         let class = |checker: &Self, value: &Expr| checker.types.elementary(value.ty).map(Elementary::class);
         let span = left.span.to(right.span);
         let time = class(self, left) == Some(Class::Time);
-        if !time || !matches!(operation, Operation::Multiply | Operation::Divide) {
-            let behind = class(self, right) == Some(Class::Time) && operation == Operation::Multiply;
+        if !time || !matches!(operator, Operator::Multiply | Operator::Divide) {
+            let behind = class(self, right) == Some(Class::Time) && operator == Operator::Multiply;
             if behind && !time {
                 self.error(
                     Code::WrongType,
@@ -479,16 +447,15 @@ impl<'a> Checker<'a> {
             }
             return Some(Expr::wrong(span));
         };
-        if operation == Operation::Divide && matches!(right.kind, Kind::Integer(0)) {
+        if operator == Operator::Divide && matches!(right.kind, Kind::Integer(0)) {
             self.error(Code::OutOfRange, right.span, "this divides by zero", "");
             return Some(Expr::wrong(span));
         }
         let ty = left.ty;
         let elementary = self.types.elementary(ty).unwrap_or(Elementary::Time);
         // Whole numbers of all widths are taken as LINT, so that there are two cases.
-        let (right, number) = if number.is_real() {
-            let right = self.convert(right, Types::of(Elementary::Lreal));
-            (right, Elementary::Lreal)
+        let right = if number.is_real() {
+            self.convert(right, Types::of(Elementary::Lreal))
         } else {
             let span = right.span;
             let kind = match right.kind {
@@ -496,20 +463,16 @@ impl<'a> Checker<'a> {
                 _ => Kind::Convert(Box::new(right), number, Elementary::Lint),
             };
             let ty = Types::of(Elementary::Lint);
-            (Expr { kind, ty, span }, Elementary::Lint)
+            Expr { kind, ty, span }
         };
-        let operation = match operation {
-            Operation::Multiply => Operation::TimeMultiply(number),
-            _ => Operation::TimeDivide(number),
-        };
-        Some(self.step(left.clone(), operation, right, elementary, ty, at))
+        Some(self.step(left.clone(), operator, right, elementary, ty, at))
     }
 
     /// Adds a step to the chain on the left, or begins a chain.
     fn step(
         &mut self,
         left: Expr,
-        operation: Operation,
+        operator: Operator,
         right: Expr,
         ty: Elementary,
         result: TypeId,
@@ -519,7 +482,7 @@ impl<'a> Checker<'a> {
         let before = self.types.elementary(left.ty).unwrap_or(ty);
         let mut step = Step {
             convert: None,
-            operation,
+            operator,
             right,
             ty,
             span: at,
@@ -559,22 +522,33 @@ const fn is_comparison(operator: Operator) -> bool {
     )
 }
 
-fn reals(one: f64, operation: Operation, other: f64) -> f64 {
-    match operation {
-        Operation::Add => one + other,
-        Operation::Subtract => one - other,
-        Operation::Multiply => one * other,
+fn holds<T: PartialOrd>(one: &T, operator: Operator, other: &T) -> bool {
+    match operator {
+        Operator::Equal => one == other,
+        Operator::NotEqual => one != other,
+        Operator::Less => one < other,
+        Operator::LessEqual => one <= other,
+        Operator::Greater => one > other,
+        _ => one >= other,
+    }
+}
+
+fn reals(one: f64, operator: Operator, other: f64) -> f64 {
+    match operator {
+        Operator::Add => one + other,
+        Operator::Subtract => one - other,
+        Operator::Multiply => one * other,
         _ => one / other,
     }
 }
 
 /// Both have at most 64 bits, so nothing overflows; the divisor is not 0.
-const fn wholes(one: i128, operation: Operation, other: i128) -> i128 {
-    match operation {
-        Operation::Add => one + other,
-        Operation::Subtract => one - other,
-        Operation::Multiply => one.wrapping_mul(other),
-        Operation::Divide => one / other,
+const fn wholes(one: i128, operator: Operator, other: i128) -> i128 {
+    match operator {
+        Operator::Add => one + other,
+        Operator::Subtract => one - other,
+        Operator::Multiply => one.wrapping_mul(other),
+        Operator::Divide => one / other,
         _ => one % other,
     }
 }

@@ -4,8 +4,8 @@ use super::Checker;
 use crate::error::{Code, Diagnostic};
 use crate::library::Function;
 use crate::source::Span;
-use crate::syntax::Expression;
-use crate::typed::{Expr, Kind, Operation};
+use crate::syntax::{Expression, Operator};
+use crate::typed::{Expr, Kind};
 use crate::types::{BOOL, Elementary, TEXT_MOST, Type, TypeId, Types};
 
 impl<'a> Checker<'a> {
@@ -52,10 +52,10 @@ impl<'a> Checker<'a> {
     }
 
     /// Two strings are compared byte by byte.
-    pub(super) fn compare_texts(&mut self, left: Expr, operation: Operation, right: Expr) -> Expr {
+    pub(super) fn compare_texts(&mut self, left: Expr, operator: Operator, right: Expr) -> Expr {
         Expr {
             span: left.span.to(right.span),
-            kind: Kind::Compare(operation, Box::new([left, right])),
+            kind: Kind::Compare(operator, Box::new([left, right])),
             ty: BOOL,
         }
     }

@@ -113,7 +113,7 @@ impl<'c, 'p, 'a> Emitter<'c, 'p, 'a> {
             Kind::Call(call) => self.function_call(call),
             Kind::Text(bytes) => self.text(bytes),
             Kind::Join(function, values, buffer) => self.join(*function, values, *buffer, value.span),
-            Kind::Compare(operation, sides) => self.compare_texts(*operation, &sides[0], &sides[1]),
+            Kind::Compare(operator, sides) => self.compare_texts(*operator, &sides[0], &sides[1]),
             Kind::Library(function, of, values) => self.library(*function, *of, values, value.span),
             // A program with mistakes is not compiled.
             Kind::Wrong => {

@@ -4,8 +4,9 @@ use super::FaultKind;
 use super::expression::Emitter;
 use super::function::value_type;
 use crate::library;
-use crate::typed::{Operation, Step};
-use crate::types::Elementary;
+use crate::syntax::Operator;
+use crate::typed::Step;
+use crate::types::{Class, Elementary};
 use wasm_encoder::{BlockType, ValType};
 
 impl Emitter<'_, '_, '_> {
@@ -15,21 +16,18 @@ impl Emitter<'_, '_, '_> {
             self.convert(from, to);
         }
         let ty = value_type(step.ty);
-        match step.operation {
-            Operation::AndThen | Operation::OrElse => self.lazy(step),
-            Operation::Divide | Operation::Modulo if !step.ty.is_real() => self.divide(step, step.ty),
-            Operation::TimeDivide(Elementary::Lint) => self.divide(step, Elementary::Lint),
-            Operation::TimeMultiply(Elementary::Lreal) | Operation::TimeDivide(Elementary::Lreal) => {
+        match step.operator {
+            Operator::AndThen | Operator::OrElse => self.lazy(step),
+            Operator::Multiply | Operator::Divide
+                if step.ty.class() == Class::Time && self.elementary(&step.right).is_real() =>
+            {
                 self.function.sink().f64_convert_i64_s();
                 self.expression(&step.right);
-                if matches!(step.operation, Operation::TimeMultiply(_)) {
-                    self.function.sink().f64_mul();
-                } else {
-                    self.function.sink().f64_div();
-                }
+                self.real_operation(step.operator, false);
                 self.convert(Elementary::Lreal, Elementary::Lint);
             }
-            Operation::Power => {
+            Operator::Divide | Operator::Modulo if !step.ty.is_real() => self.divide(step),
+            Operator::Power => {
                 self.convert(step.ty, Elementary::Lreal);
                 self.expression(&step.right);
                 self.convert(step.ty, Elementary::Lreal);
@@ -39,9 +37,9 @@ impl Emitter<'_, '_, '_> {
             _ => {
                 self.expression(&step.right);
                 match ty {
-                    ValType::F32 | ValType::F64 => self.real_operation(step.operation, ty == ValType::F32),
-                    ValType::I64 => self.wide_operation(step.operation, step.ty.is_signed()),
-                    _ => self.whole_operation(step.operation, step.ty),
+                    ValType::F32 | ValType::F64 => self.real_operation(step.operator, ty == ValType::F32),
+                    ValType::I64 => self.wide_operation(step.operator, step.ty.is_signed()),
+                    _ => self.whole_operation(step.operator, step.ty),
                 }
             }
         }
@@ -49,7 +47,7 @@ impl Emitter<'_, '_, '_> {
 
     fn lazy(&mut self, step: &Step) {
         self.function.if_(BlockType::Result(ValType::I32));
-        if step.operation == Operation::AndThen {
+        if step.operator == Operator::AndThen {
             self.expression(&step.right);
             self.function.else_();
             self.function.sink().i32_const(0);
@@ -61,10 +59,10 @@ impl Emitter<'_, '_, '_> {
         self.function.end();
     }
 
-    fn real_operation(&mut self, operation: Operation, single: bool) {
-        use Operation as O;
+    fn real_operation(&mut self, operator: Operator, single: bool) {
+        use Operator as O;
         let mut sink = self.function.sink();
-        match (operation, single) {
+        match (operator, single) {
             (O::Add, true) => sink.f32_add(),
             (O::Add, false) => sink.f64_add(),
             (O::Subtract, true) => sink.f32_sub(),
@@ -90,13 +88,13 @@ impl Emitter<'_, '_, '_> {
         };
     }
 
-    fn wide_operation(&mut self, operation: Operation, signed: bool) {
-        use Operation as O;
+    fn wide_operation(&mut self, operator: Operator, signed: bool) {
+        use Operator as O;
         let mut sink = self.function.sink();
-        match (operation, signed) {
+        match (operator, signed) {
             (O::Add, _) => sink.i64_add(),
             (O::Subtract, _) => sink.i64_sub(),
-            (O::Multiply | O::TimeMultiply(_), _) => sink.i64_mul(),
+            (O::Multiply, _) => sink.i64_mul(),
             (O::Or, _) => sink.i64_or(),
             (O::Xor, _) => sink.i64_xor(),
             (O::And, _) => sink.i64_and(),
@@ -114,10 +112,10 @@ impl Emitter<'_, '_, '_> {
         };
     }
 
-    fn whole_operation(&mut self, operation: Operation, of: Elementary) {
-        use Operation as O;
+    fn whole_operation(&mut self, operator: Operator, of: Elementary) {
+        use Operator as O;
         let mut sink = self.function.sink();
-        match (operation, of.is_signed()) {
+        match (operator, of.is_signed()) {
             (O::Add, _) => sink.i32_add(),
             (O::Subtract, _) => sink.i32_sub(),
             (O::Multiply, _) => sink.i32_mul(),
@@ -136,14 +134,15 @@ impl Emitter<'_, '_, '_> {
             (O::GreaterEqual, false) => sink.i32_ge_u(),
             _ => sink.unreachable(),
         };
-        if matches!(operation, O::Add | O::Subtract | O::Multiply) {
+        if matches!(operator, O::Add | O::Subtract | O::Multiply) {
             self.narrow(of);
         }
     }
 
     /// A division of whole numbers, or its rest.
-    fn divide(&mut self, step: &Step, of: Elementary) {
-        let rest = step.operation == Operation::Modulo;
+    fn divide(&mut self, step: &Step) {
+        let of = step.ty;
+        let rest = step.operator == Operator::Modulo;
         let wide = of.size() == 8;
         let constant = Self::is_constant(&step.right);
         if constant.is_some_and(|number| number != 0 && number != -1) {

@@ -5,7 +5,8 @@ use super::function::{Function, at};
 use super::{FaultKind, Target};
 use crate::library;
 use crate::source::Span;
-use crate::typed::{Expr, Operation};
+use crate::syntax::Operator;
+use crate::typed::Expr;
 use crate::types::TEXT_MOST;
 use wasm_encoder::{BlockType, ValType};
 
@@ -208,18 +209,18 @@ impl Emitter<'_, '_, '_> {
     }
 
     /// Compares two strings; the result is a BOOL.
-    pub(super) fn compare_texts(&mut self, operation: Operation, one: &Expr, other: &Expr) {
+    pub(super) fn compare_texts(&mut self, operator: Operator, one: &Expr, other: &Expr) {
         self.expression(one);
         self.expression(other);
         self.helper(Helper::Compare);
         let mut sink = self.function.sink();
         sink.i32_const(0);
-        match operation {
-            Operation::Equal => sink.i32_eq(),
-            Operation::NotEqual => sink.i32_ne(),
-            Operation::Less => sink.i32_lt_s(),
-            Operation::LessEqual => sink.i32_le_s(),
-            Operation::Greater => sink.i32_gt_s(),
+        match operator {
+            Operator::Equal => sink.i32_eq(),
+            Operator::NotEqual => sink.i32_ne(),
+            Operator::Less => sink.i32_lt_s(),
+            Operator::LessEqual => sink.i32_le_s(),
+            Operator::Greater => sink.i32_gt_s(),
             _ => sink.i32_ge_s(),
         };
     }

@@ -3,6 +3,7 @@
 use super::paths::{Paths, Way, meet};
 use crate::check::Program;
 use crate::source::Span;
+use crate::syntax::Operator;
 use crate::typed::{Argument, Base, Branch, Expr, Kind, Place, Stmt, StmtKind};
 use crate::types::{Elementary, Member, MemberKind, Type, UnitId};
 use std::collections::BTreeSet;
@@ -323,8 +324,7 @@ impl Walk<'_, '_, '_> {
             Kind::Chain(first, steps) => {
                 self.expression(first);
                 for step in steps {
-                    use crate::typed::Operation::{Equal, NotEqual};
-                    if matches!(step.operation, Equal | NotEqual) && step.ty.is_real() {
+                    if matches!(step.operator, Operator::Equal | Operator::NotEqual) && step.ty.is_real() {
                         self.facts.equal.push(step.span);
                     }
                     self.expression(&step.right);
