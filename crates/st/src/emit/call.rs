@@ -11,7 +11,7 @@ use crate::source::Span;
 use crate::typed::{Argument, BlockCall, Expr, FunctionCall, Place};
 use crate::types::{Elementary, Type};
 use standstill_fb::{BlockInfo, PinType};
-use wasm_encoder::{BlockType, ValType};
+use wasm_encoder::ValType;
 
 /// Offset of the records of a table, behind their count.
 const RECORDS: u32 = 8;
@@ -119,9 +119,7 @@ impl Emitter<'_, '_, '_> {
                     .sink()
                     .i32_load(at(offset + member.offset, 2))
                     .i32_eqz();
-                self.function.if_(BlockType::Empty);
-                self.function.sink().i32_const(site).i64_const(0);
-                self.fault();
+                self.plain_fault_if(site);
             }
             self.push_root(root);
             self.add_offset(offset);

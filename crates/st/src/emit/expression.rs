@@ -7,6 +7,7 @@ use super::function::{Function, Label, value_type};
 use super::place::Root;
 use super::{Context, FaultKind};
 use crate::source::Span;
+use crate::syntax::Operator;
 use crate::typed::{Expr, Kind};
 use crate::types::{Elementary, TypeId};
 use wasm_encoder::{BlockType, ValType};
@@ -87,16 +88,11 @@ impl<'c, 'p, 'a> Emitter<'c, 'p, 'a> {
             Kind::Negate(of, inner) => self.negate(*of, inner),
             Kind::Not(of, inner) => {
                 self.expression(inner);
-                let mask = of.range().1;
                 if *of == Elementary::Bool {
                     self.function.sink().i32_eqz();
                 } else {
-                    self.constant(*of, mask);
-                    if of.size() == 8 {
-                        self.function.sink().i64_xor();
-                    } else {
-                        self.function.sink().i32_xor();
-                    }
+                    self.constant(*of, of.range().1);
+                    self.operation(Operator::Xor, *of);
                 }
             }
             Kind::Chain(first, steps) => {
@@ -132,16 +128,10 @@ impl<'c, 'p, 'a> Emitter<'c, 'p, 'a> {
                 self.expression(inner);
                 self.function.sink().f64_neg();
             }
-            ValType::I64 => {
-                self.function.sink().i64_const(0);
-                self.expression(inner);
-                self.function.sink().i64_sub();
-            }
             _ => {
-                self.function.sink().i32_const(0);
+                self.constant(of, 0);
                 self.expression(inner);
-                self.function.sink().i32_sub();
-                self.narrow(of);
+                self.operation(Operator::Subtract, of);
             }
         }
     }
@@ -149,27 +139,20 @@ impl<'c, 'p, 'a> Emitter<'c, 'p, 'a> {
     /// A value that must be within a subrange.
     fn within(&mut self, inner: &Expr, of: Elementary, low: i128, high: i128) {
         self.expression(inner);
-        let ty = value_type(of);
-        let local = self.function.local(ty);
+        let local = self.function.local(value_type(of));
         let site = self.site(inner.span, FaultKind::Subrange);
         self.function.sink().local_tee(local);
-        // low <= x <= high, as x - low <= high - low without a sign.
-        self.constant(of, low);
-        let span = high - low;
-        if ty == ValType::I64 {
-            self.function.sink().i64_sub();
-            self.constant(of, span);
-            self.function.sink().i64_gt_u();
-        } else {
-            self.function.sink().i32_sub();
-            self.constant(Elementary::Udint, span);
-            self.function.sink().i32_gt_u();
-        }
+        self.is_outside(of, low, high);
+        self.fault_if(site, local, of);
+        self.function.sink().local_get(local);
+    }
+
+    /// A fault if the top of the stack is true; its value is the whole number in a local variable.
+    pub(super) fn fault_if(&mut self, site: i32, local: u32, of: Elementary) {
         self.function.if_(BlockType::Empty);
         self.function.sink().i32_const(site).local_get(local);
         self.fault_value(of);
         self.fault();
-        self.function.sink().local_get(local);
     }
 
     /// Turns a whole number on the stack into the value of a fault.
@@ -181,5 +164,12 @@ impl<'c, 'p, 'a> Emitter<'c, 'p, 'a> {
                 self.function.sink().i64_extend_i32_u();
             }
         }
+    }
+
+    /// The same of a fault without a value.
+    pub(super) fn plain_fault_if(&mut self, site: i32) {
+        self.function.if_(BlockType::Empty);
+        self.function.sink().i32_const(site).i64_const(0);
+        self.fault();
     }
 }

@@ -7,9 +7,10 @@ use super::{FaultKind, Target};
 use crate::layout;
 use crate::library::Function;
 use crate::source::Span;
+use crate::syntax::Operator;
 use crate::typed::Expr;
 use crate::types::{Elementary, Type};
-use wasm_encoder::{BlockType, ValType};
+use wasm_encoder::ValType;
 
 impl Emitter<'_, '_, '_> {
     pub(super) fn library(&mut self, function: Function, of: Elementary, values: &[Expr], span: Span) {
@@ -29,20 +30,7 @@ impl Emitter<'_, '_, '_> {
                 values.iter().for_each(|value| self.expression(value));
                 self.helper(Helper::Find);
             }
-            Function::Min | Function::Max | Function::Limit if self.is_text(values) => {
-                self.extreme_text(function, values);
-            }
-            Function::Min | Function::Max => self.extreme(function, of, values),
-            // As MIN(MAX(IN, MN), MX).
-            Function::Limit => {
-                if let [least, value, most] = values {
-                    self.expression(value);
-                    self.expression(least);
-                    self.pair(Function::Max, of);
-                    self.expression(most);
-                    self.pair(Function::Min, of);
-                }
-            }
+            Function::Min | Function::Max | Function::Limit => self.extreme(function, of, values),
             Function::Atan2 => {
                 for value in values {
                     self.expression(value);
@@ -111,11 +99,25 @@ impl Emitter<'_, '_, '_> {
         }
     }
 
+    /// MIN, MAX, and LIMIT as MIN(MAX(IN, MN), MX). Of strings the addresses are chosen.
     fn extreme(&mut self, function: Function, of: Elementary, values: &[Expr]) {
+        let text = self.is_text(values);
+        let pair = |emitter: &mut Self, function: Function| match text {
+            true => emitter.pair_of_texts(function),
+            false => emitter.pair(function, of),
+        };
+        if let (Function::Limit, [least, value, most]) = (function, values) {
+            self.expression(value);
+            self.expression(least);
+            pair(self, Function::Max);
+            self.expression(most);
+            pair(self, Function::Min);
+            return;
+        }
         for (place, value) in values.iter().enumerate() {
             self.expression(value);
             if place > 0 {
-                self.pair(function, of);
+                pair(self, function);
             }
         }
     }
@@ -125,24 +127,6 @@ impl Emitter<'_, '_, '_> {
         values
             .first()
             .is_some_and(|value| matches!(types.get(value.ty), Type::Text(_)))
-    }
-
-    /// MIN, MAX and LIMIT of strings, whose addresses are chosen.
-    fn extreme_text(&mut self, function: Function, values: &[Expr]) {
-        if let (Function::Limit, [least, value, most]) = (function, values) {
-            self.expression(value);
-            self.expression(least);
-            self.pair_of_texts(Function::Max);
-            self.expression(most);
-            self.pair_of_texts(Function::Min);
-            return;
-        }
-        for (place, value) in values.iter().enumerate() {
-            self.expression(value);
-            if place > 0 {
-                self.pair_of_texts(function);
-            }
-        }
     }
 
     /// The smaller or larger one of two strings whose addresses are on the stack.
@@ -155,13 +139,9 @@ impl Emitter<'_, '_, '_> {
         sink.local_set(other).local_tee(one).local_get(other);
         sink.local_get(one).local_get(other);
         self.helper(Helper::Compare);
-        let mut sink = self.function.sink();
-        sink.i32_const(0);
-        match function {
-            Function::Min => sink.i32_lt_s(),
-            _ => sink.i32_gt_s(),
-        };
-        sink.select();
+        self.function.sink().i32_const(0);
+        self.operation(chosen_by(function), Elementary::Dint);
+        self.function.sink().select();
     }
 
     /// The smaller or larger one of two values on the stack.
@@ -181,17 +161,8 @@ impl Emitter<'_, '_, '_> {
                     .local_get(other)
                     .local_get(one)
                     .local_get(other);
-                match (ty == ValType::I64, of.is_signed(), least) {
-                    (true, true, true) => sink.i64_lt_s(),
-                    (true, false, true) => sink.i64_lt_u(),
-                    (true, true, false) => sink.i64_gt_s(),
-                    (true, false, false) => sink.i64_gt_u(),
-                    (false, true, true) => sink.i32_lt_s(),
-                    (false, false, true) => sink.i32_lt_u(),
-                    (false, true, false) => sink.i32_gt_s(),
-                    (false, false, false) => sink.i32_gt_u(),
-                };
-                sink.select();
+                self.operation(chosen_by(function), of);
+                self.function.sink().select();
             }
         }
     }
@@ -219,9 +190,7 @@ impl Emitter<'_, '_, '_> {
             .local_tee(given)
             .i64_const(inputs.len() as i64)
             .i64_ge_u();
-        self.function.if_(BlockType::Empty);
-        self.function.sink().i32_const(site).local_get(given);
-        self.fault();
+        self.fault_if(site, given, Elementary::Lint);
         let chosen = self.function.local(value_type(of));
         for (place, input) in inputs.iter().enumerate() {
             self.expression(input);
@@ -306,5 +275,13 @@ impl Emitter<'_, '_, '_> {
         }
         sink.i32_or();
         self.narrow(of);
+    }
+}
+
+/// The comparison by which the first of two values is the result.
+fn chosen_by(function: Function) -> Operator {
+    match function {
+        Function::Min => Operator::Less,
+        _ => Operator::Greater,
     }
 }

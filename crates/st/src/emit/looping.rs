@@ -5,6 +5,7 @@ use super::expression::{Emitter, Loop};
 use super::function::{Label, at, value_type};
 use crate::layout;
 use crate::source::Span;
+use crate::syntax::Operator;
 use crate::typed::{Expr, For, Stmt};
 use crate::types::Elementary;
 use wasm_encoder::{BlockType, ValType};
@@ -142,9 +143,7 @@ impl Emitter<'_, '_, '_> {
             .local_get(up)
             .select();
         sink.local_tee(size).i64_eqz();
-        self.function.if_(BlockType::Empty);
-        self.function.sink().i32_const(site).i64_const(0);
-        self.fault();
+        self.plain_fault_if(site);
         Stride::Local { size, up, signed }
     }
 
@@ -155,61 +154,34 @@ impl Emitter<'_, '_, '_> {
         }
         let site = self.site(each.from.span, FaultKind::Subrange);
         let (low, high) = each.range;
-        let wide = each.ty.size() == 8;
         self.function.sink().local_get(local);
-        self.constant(each.ty, low);
-        if wide {
-            self.function.sink().i64_sub();
-            self.constant(each.ty, high - low);
-            self.function.sink().i64_gt_u();
-        } else {
-            self.function.sink().i32_sub();
-            self.constant(Elementary::Udint, high - low);
-            self.function.sink().i32_gt_u();
-        }
-        self.function.if_(BlockType::Empty);
-        self.function.sink().i32_const(site).local_get(local);
-        self.fault_value(each.ty);
-        self.fault();
+        self.is_outside(each.ty, low, high);
+        self.fault_if(site, local, each.ty);
     }
 
     /// Pushes whether the first value is already beyond the end.
     fn beyond(&mut self, ty: Elementary, from: u32, to: u32, stride: Stride) {
         match stride {
-            Stride::Known(number) => self.is_greater(ty, from, to, number > 0),
+            Stride::Known(number) if number > 0 => self.between(Operator::Greater, ty, from, to),
+            Stride::Known(_) => self.between(Operator::Less, ty, from, to),
             Stride::Local { up, .. } => {
-                self.is_greater(ty, from, to, true);
-                self.is_greater(ty, from, to, false);
+                self.between(Operator::Greater, ty, from, to);
+                self.between(Operator::Less, ty, from, to);
                 self.function.sink().local_get(up).select();
             }
         }
     }
 
-    /// Pushes whether `one` is greater than `other`, or less.
-    fn is_greater(&mut self, ty: Elementary, one: u32, other: u32, greater: bool) {
-        let mut sink = self.function.sink();
-        sink.local_get(one).local_get(other);
-        match (ty.size() == 8, ty.is_signed(), greater) {
-            (true, true, true) => sink.i64_gt_s(),
-            (true, false, true) => sink.i64_gt_u(),
-            (true, true, false) => sink.i64_lt_s(),
-            (true, false, false) => sink.i64_lt_u(),
-            (false, true, true) => sink.i32_gt_s(),
-            (false, false, true) => sink.i32_gt_u(),
-            (false, true, false) => sink.i32_lt_s(),
-            (false, false, false) => sink.i32_lt_u(),
-        };
+    /// An operator between two local variables.
+    fn between(&mut self, operator: Operator, ty: Elementary, one: u32, other: u32) {
+        self.function.sink().local_get(one).local_get(other);
+        self.operation(operator, ty);
     }
 
     /// Pushes the distance from `one` to `other`, which is not negative, as a number of the width of the type.
-    fn difference(&mut self, ty: Elementary, one: u32, other: u32) {
-        let mut sink = self.function.sink();
-        sink.local_get(other).local_get(one);
-        if ty.size() == 8 {
-            sink.i64_sub();
-        } else {
-            sink.i32_sub();
-        }
+    fn distance(&mut self, ty: Elementary, one: u32, other: u32) {
+        self.function.sink().local_get(other).local_get(one);
+        self.difference(ty);
     }
 
     /// Pushes whether less than a stride is left.
@@ -217,12 +189,12 @@ impl Emitter<'_, '_, '_> {
         match stride {
             Stride::Known(number) => {
                 let (one, other) = if number > 0 { (from, to) } else { (to, from) };
-                self.difference(ty, one, other);
+                self.distance(ty, one, other);
                 self.less_than_known(ty, number.unsigned_abs());
             }
             Stride::Local { size, up, .. } => {
-                self.difference(ty, from, to);
-                self.difference(ty, to, from);
+                self.distance(ty, from, to);
+                self.distance(ty, to, from);
                 self.function.sink().local_get(up).select();
                 if ty.size() < 8 {
                     self.function.sink().i64_extend_i32_u();

@@ -15,7 +15,6 @@ impl Emitter<'_, '_, '_> {
         if let Some((from, to)) = step.convert {
             self.convert(from, to);
         }
-        let ty = value_type(step.ty);
         match step.operator {
             Operator::AndThen | Operator::OrElse => self.lazy(step),
             Operator::Multiply | Operator::Divide
@@ -23,7 +22,7 @@ impl Emitter<'_, '_, '_> {
             {
                 self.function.sink().f64_convert_i64_s();
                 self.expression(&step.right);
-                self.real_operation(step.operator, false);
+                self.operation(step.operator, Elementary::Lreal);
                 self.convert(Elementary::Lreal, Elementary::Lint);
             }
             Operator::Divide | Operator::Modulo if !step.ty.is_real() => self.divide(step),
@@ -36,12 +35,41 @@ impl Emitter<'_, '_, '_> {
             }
             _ => {
                 self.expression(&step.right);
-                match ty {
-                    ValType::F32 | ValType::F64 => self.real_operation(step.operator, ty == ValType::F32),
-                    ValType::I64 => self.wide_operation(step.operator, step.ty.is_signed()),
-                    _ => self.whole_operation(step.operator, step.ty),
-                }
+                self.operation(step.operator, step.ty);
             }
+        }
+    }
+
+    /// An operator between the two values on the stack.
+    pub(super) fn operation(&mut self, operator: Operator, of: Elementary) {
+        match value_type(of) {
+            ValType::F32 => self.real_operation(operator, true),
+            ValType::F64 => self.real_operation(operator, false),
+            ValType::I64 => self.wide_operation(operator, of.is_signed()),
+            _ => self.whole_operation(operator, of),
+        }
+    }
+
+    /// The difference of the two whole numbers on the stack, which keeps all bits of a type of 8 or 16.
+    pub(super) fn difference(&mut self, of: Elementary) {
+        if of.size() == 8 {
+            self.function.sink().i64_sub();
+        } else {
+            self.function.sink().i32_sub();
+        }
+    }
+
+    /// Pushes whether the whole number on the stack is outside of `low` to `high`: x - low > high - low without a
+    /// sign.
+    pub(super) fn is_outside(&mut self, of: Elementary, low: i128, high: i128) {
+        self.constant(of, low);
+        self.difference(of);
+        if of.size() == 8 {
+            self.constant(of, high - low);
+            self.function.sink().i64_gt_u();
+        } else {
+            self.constant(Elementary::Udint, high - low);
+            self.function.sink().i32_gt_u();
         }
     }
 
@@ -143,7 +171,6 @@ impl Emitter<'_, '_, '_> {
     fn divide(&mut self, step: &Step) {
         let of = step.ty;
         let rest = step.operator == Operator::Modulo;
-        let wide = of.size() == 8;
         let constant = Self::is_constant(&step.right);
         if constant.is_some_and(|number| number != 0 && number != -1) {
             self.expression(&step.right);
@@ -157,33 +184,22 @@ impl Emitter<'_, '_, '_> {
         self.expression(&step.right);
         let site = self.site(step.span, FaultKind::DivisionByZero);
         self.function.sink().local_tee(right);
-        if wide {
+        if of.size() == 8 {
             self.function.sink().i64_eqz();
         } else {
             self.function.sink().i32_eqz();
         }
-        self.function.if_(BlockType::Empty);
-        self.function.sink().i32_const(site).local_get(left);
-        self.fault_value(of);
-        self.fault();
+        self.fault_if(site, left, of);
         // The least number by -1 wraps around; the processor would trap.
         let guard = of.is_signed() && of.size() >= 4 && !rest;
         if guard {
             self.function.sink().local_get(right);
             self.constant(of, -1);
-            if wide {
-                self.function.sink().i64_eq();
-            } else {
-                self.function.sink().i32_eq();
-            }
+            self.operation(Operator::Equal, of);
             self.function.if_(BlockType::Result(ty));
             self.constant(of, 0);
             self.function.sink().local_get(left);
-            if wide {
-                self.function.sink().i64_sub();
-            } else {
-                self.function.sink().i32_sub();
-            }
+            self.difference(of);
             self.function.else_();
         }
         self.function.sink().local_get(left).local_get(right);

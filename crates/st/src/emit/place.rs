@@ -108,9 +108,7 @@ impl Emitter<'_, '_, '_> {
                     .i64_lt_s()
                     .i32_or();
             }
-            self.function.if_(BlockType::Empty);
-            self.function.sink().i32_const(site).local_get(given);
-            self.fault();
+            self.fault_if(site, given, Elementary::Lint);
             let mut sink = self.function.sink();
             sink.local_get(given)
                 .i64_const(index.low)
@@ -131,11 +129,7 @@ impl Emitter<'_, '_, '_> {
                 .local_get(local)
                 .i32_const(low)
                 .i32_add();
-            if of.is_signed() {
-                self.function.sink().i64_extend_i32_s();
-            } else {
-                self.function.sink().i64_extend_i32_u();
-            }
+            self.fault_value(of);
             self.fault();
             self.function.sink().local_get(local);
         }

@@ -8,6 +8,7 @@ use crate::check::{Task, UnitKind};
 use crate::layout;
 use crate::source::Span;
 use crate::start;
+use crate::syntax::Operator;
 use crate::typed::{Base, Branch, Expr, Place, Stmt, StmtKind};
 use crate::types::{Elementary, Member, MemberKind, Type, TypeId, UnitId};
 use wasm_encoder::{BlockType, ValType};
@@ -338,22 +339,19 @@ impl Emitter<'_, '_, '_> {
 
     /// One comparison after the other.
     fn comparisons(&mut self, local: u32, of: Elementary, branches: &[Branch], other: &[Stmt], span: Span) {
-        let wide = of.size() == 8;
         let end = self.function.block();
         for (number, branch) in (1..).zip(branches) {
             for (place, (from, to)) in branch.labels.iter().enumerate() {
                 self.function.sink().local_get(local);
                 self.constant(of, *from);
-                if from == to && wide {
-                    self.function.sink().i64_eq();
-                } else if from == to {
-                    self.function.sink().i32_eq();
-                } else if wide {
-                    self.function.sink().i64_sub();
+                if from == to {
+                    self.operation(Operator::Equal, of);
+                } else if of.size() == 8 {
+                    self.difference(of);
                     self.constant(of, to - from);
                     self.function.sink().i64_le_u();
                 } else {
-                    self.function.sink().i32_sub();
+                    self.difference(of);
                     self.constant(Elementary::Udint, to - from);
                     self.function.sink().i32_le_u();
                 }

@@ -7,7 +7,7 @@ use crate::library;
 use crate::source::Span;
 use crate::syntax::Operator;
 use crate::typed::Expr;
-use crate::types::TEXT_MOST;
+use crate::types::{Elementary, TEXT_MOST};
 use wasm_encoder::{BlockType, ValType};
 
 /// Helper functions of the module for strings.
@@ -213,16 +213,8 @@ impl Emitter<'_, '_, '_> {
         self.expression(one);
         self.expression(other);
         self.helper(Helper::Compare);
-        let mut sink = self.function.sink();
-        sink.i32_const(0);
-        match operator {
-            Operator::Equal => sink.i32_eq(),
-            Operator::NotEqual => sink.i32_ne(),
-            Operator::Less => sink.i32_lt_s(),
-            Operator::LessEqual => sink.i32_le_s(),
-            Operator::Greater => sink.i32_gt_s(),
-            _ => sink.i32_ge_s(),
-        };
+        self.function.sink().i32_const(0);
+        self.operation(operator, Elementary::Dint);
     }
 
     /// A function whose value is a string: its pieces one behind the other at `buffer`, whose address is pushed.
@@ -297,9 +289,7 @@ impl Emitter<'_, '_, '_> {
     /// A fault if the top of the stack is true.
     fn text_fault(&mut self, number: u32, span: Span) {
         let site = self.site(span, FaultKind::Position);
-        self.function.if_(BlockType::Empty);
-        self.function.sink().i32_const(site).local_get(number);
-        self.fault();
+        self.fault_if(site, number, Elementary::Lint);
     }
 
     /// A position from `least` up to the one behind the string becomes an index from 0.
