@@ -36,9 +36,7 @@ impl Counters {
     pub(crate) fn new(program: &mut Program<'_>, sources: &Sources) -> Self {
         let mut keys = Vec::new();
         for body in &program.bodies {
-            let span = program.units[body.unit.0 as usize].span;
-            // The last file is the library's.
-            if sources.file_index(span) + 1 < sources.count() {
+            if !sources.in_library(program.units[body.unit.0 as usize].span) {
                 statements(&body.statements, &mut keys);
             }
         }
@@ -90,7 +88,6 @@ fn statements(list: &[Stmt], keys: &mut Vec<Key>) {
             StmtKind::For(each) => statements(&each.body, keys),
             StmtKind::While(_, body) | StmtKind::Repeat(body, _) => statements(body, keys),
             StmtKind::Assign(..)
-            | StmtKind::Copy(..)
             | StmtKind::Evaluate(_)
             | StmtKind::Block(_)
             | StmtKind::Exit

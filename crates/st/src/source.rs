@@ -172,6 +172,11 @@ impl Sources {
         self.files.len()
     }
 
+    /// The number of the file that a place is in.
+    pub(crate) fn file_index(&self, span: Span) -> usize {
+        self.index(span.start)
+    }
+
     /// Whether a place is in the library's own text, which is the last file.
     pub(crate) fn in_library(&self, span: Span) -> bool {
         self.file_index(span) + 1 == self.count()
@@ -290,10 +295,5 @@ impl Sources {
         let text = text.trim_end_matches(['\n', '\r']);
         let at = |place: u32| (place as usize - begin).min(text.len());
         Some((text, first as u32 + 1, at(from)..at(to)))
-    }
-
-    /// The number of the file that a place is in.
-    pub(crate) fn file_index(&self, span: Span) -> usize {
-        self.index(span.start)
     }
 }

@@ -16,6 +16,19 @@ pub(crate) struct Place {
     pub bit: Option<u32>,
 }
 
+impl Place {
+    /// A place without indices.
+    pub(crate) const fn plain(base: Base, offset: u32, ty: TypeId) -> Self {
+        Self {
+            base,
+            offset,
+            indices: Vec::new(),
+            ty,
+            bit: None,
+        }
+    }
+}
+
 /// The base of an address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Base {
@@ -127,10 +140,8 @@ pub(crate) struct Stmt {
 
 #[derive(Clone, Debug)]
 pub(crate) enum StmtKind {
-    /// A variable of an elementary type, or one of its bits.
+    /// A variable, or one of its bits.
     Assign(Place, Expr),
-    /// A variable with members or elements: its number of bytes.
-    Copy(Place, Expr, u32),
     /// A function whose value is not used.
     Evaluate(Expr),
     Block(Box<BlockCall>),

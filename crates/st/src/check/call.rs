@@ -1,6 +1,6 @@
 //! Calls of functions and of instances of blocks.
 
-use super::path::{Named, plain};
+use super::path::Named;
 use super::{Checker, UnitKind};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::library::{Function, blocks, conversion};
@@ -366,7 +366,7 @@ impl<'a> Checker<'a> {
             let method = self.methods.get(&(block, callee.root.key())).copied()?;
             let ty = self.block_type(block);
             self.look_at_unit(callee.root.span, method);
-            return Some((method, plain(Base::This, 0, ty)));
+            return Some((method, Place::plain(Base::This, 0, ty)));
         };
         let key = name.key();
         if !self.methods.keys().any(|(_, method)| *method == key) {
@@ -442,7 +442,7 @@ impl<'a> Checker<'a> {
                 },
                 MemberKind::Output => {
                     for (_, argument) in matched.iter().filter(|(it, _)| *it == place) {
-                        let from = plain(Base::Memory, frame.saturating_add(member.offset), member.ty);
+                        let from = Place::plain(Base::Memory, frame.saturating_add(member.offset), member.ty);
                         outputs.extend(self.output(from, argument));
                     }
                 }
@@ -590,7 +590,7 @@ impl<'a> Checker<'a> {
         let mut wrong = false;
         for (place, argument) in &matched {
             let member = &members[*place];
-            let own = plain(Base::Callee, member.offset, member.ty);
+            let own = Place::plain(Base::Callee, member.offset, member.ty);
             match (argument.way, &argument.value) {
                 (Way::In, Some(value)) if member.kind == MemberKind::InOut => match self.bound(member, value)
                 {

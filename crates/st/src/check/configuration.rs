@@ -1,11 +1,10 @@
 //! The tasks and programs that run, from a CONFIGURATION, or the only program.
 
-use super::path::plain;
 use super::{Checker, UnitKind};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::source::Span;
 use crate::syntax::{Argument, Configuration, Expression, Item};
-use crate::typed::{Base, Stmt};
+use crate::typed::{Base, Place, Stmt};
 use crate::types::{Class, Constant, UnitId, WRONG};
 
 /// Programs that run together.
@@ -267,7 +266,7 @@ impl<'a> Checker<'a> {
     pub(super) fn run(&mut self, tasks: &mut [Task], instances: &[Instance<'a>]) {
         for instance in instances {
             let ty = self.block_type(instance.unit);
-            let place = plain(Base::Memory, instance.address, ty);
+            let place = Place::plain(Base::Memory, instance.address, ty);
             let call = self.in_scope(None, |checker| {
                 checker.block_call(
                     place,

@@ -153,6 +153,14 @@ pub(crate) struct Program<'a> {
     pub layout: Layout,
 }
 
+impl Program<'_> {
+    /// Bytes of a type.
+    pub(crate) fn size(&self, ty: TypeId) -> u32 {
+        let of_unit = |unit: UnitId| self.units[unit.0 as usize].members.size;
+        self.types.size(ty, of_unit).0
+    }
+}
+
 pub(crate) struct Checker<'a> {
     sources: &'a Sources,
     is_configured: bool,

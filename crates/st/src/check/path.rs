@@ -196,14 +196,14 @@ impl<'a> Checker<'a> {
         let (bytes, name) = (members.size, self.unit(unit).name.clone());
         let mut running = self.running.iter().filter(|it| it.unit == unit);
         match (running.next(), running.next()) {
-            (Some(only), None) => return Some((plain(Base::Memory, only.address, ty), None)),
+            (Some(only), None) => return Some((Place::plain(Base::Memory, only.address, ty), None)),
             (Some(one), Some(other)) => {
                 let message = format!(
                     "tasks run several instances of the PROGRAM `{name}`: {}, {}",
                     one.name, other.name
                 );
                 self.error(Code::UnknownName, span, message, "share VAR_GLOBAL with it");
-                return Some((plain(Base::Memory, 0, crate::types::WRONG), None));
+                return Some((Place::plain(Base::Memory, 0, crate::types::WRONG), None));
             }
             (None, _) => {}
         }
@@ -235,7 +235,7 @@ impl<'a> Checker<'a> {
     pub(super) fn global_place(&mut self, place: usize) -> (Place, Option<String>) {
         let member = &self.globals[place].member;
         let fixed = self.fixed(None, place, member);
-        (plain(Base::Memory, member.offset, member.ty), fixed)
+        (Place::plain(Base::Memory, member.offset, member.ty), fixed)
     }
 
     /// Why a variable of a unit, or a global one, must not be written.
@@ -256,7 +256,7 @@ impl<'a> Checker<'a> {
     pub(super) fn member_place(&mut self, unit: UnitId, place: usize) -> (Place, Option<String>) {
         let info = self.unit(unit);
         let Some(member) = info.members.list.get(place) else {
-            return (plain(Base::Memory, 0, crate::types::WRONG), None);
+            return (Place::plain(Base::Memory, 0, crate::types::WRONG), None);
         };
         if let MemberKind::External(global) = member.kind {
             return self.global_place(global);
@@ -265,10 +265,12 @@ impl<'a> Checker<'a> {
         let fixed = self.fixed(Some(unit), place, member);
         let (frame, offset, ty) = (info.frame, member.offset, member.ty);
         let place = match (member.kind, function) {
-            (MemberKind::InOut, true) => plain(Base::MemoryPointer(frame.saturating_add(offset)), 0, ty),
-            (MemberKind::InOut, false) => plain(Base::ThisPointer(offset), 0, ty),
-            (_, true) => plain(Base::Memory, frame.saturating_add(offset), ty),
-            (_, false) => plain(Base::This, offset, ty),
+            (MemberKind::InOut, true) => {
+                Place::plain(Base::MemoryPointer(frame.saturating_add(offset)), 0, ty)
+            }
+            (MemberKind::InOut, false) => Place::plain(Base::ThisPointer(offset), 0, ty),
+            (_, true) => Place::plain(Base::Memory, frame.saturating_add(offset), ty),
+            (_, false) => Place::plain(Base::This, offset, ty),
         };
         (place, fixed)
     }
@@ -636,16 +638,5 @@ impl<'a> Checker<'a> {
         let message = format!("there is no variable {}", quoted(&name.text));
         let wrong = Diagnostic::error(Code::UnknownName, name.span, message);
         self.tell(wrong.maybe_help(guess.or_else(|| Some("declare it in VAR .. END_VAR".to_owned()))));
-    }
-}
-
-/// A place without indices.
-pub(super) const fn plain(base: Base, offset: u32, ty: TypeId) -> Place {
-    Place {
-        base,
-        offset,
-        indices: Vec::new(),
-        ty,
-        bit: None,
     }
 }

@@ -92,8 +92,7 @@ impl<'a> Checker<'a> {
                 self.error(Code::NotWritable, path.span, message, "assign to a variable");
                 None
             }
-            Named::Place(place, Some(why)) => {
-                let _ = place;
+            Named::Place(_, Some(why)) => {
                 self.error(Code::NotWritable, path.span, why, "assign to another variable");
                 None
             }
@@ -102,17 +101,12 @@ impl<'a> Checker<'a> {
     }
 
     fn assignment(&mut self, path: &'a Path, value: &'a Expression) -> Option<StmtKind> {
-        let target = self.target(path);
-        let ty = match &target {
-            Some(place) if place.bit.is_some() => BOOL,
-            Some(place) => place.ty,
-            None => {
-                // Its other errors are still reported.
-                self.expression(value, None);
-                return None;
-            }
+        let Some(target) = self.target(path) else {
+            // Its other errors are still reported.
+            self.expression(value, None);
+            return None;
         };
-        let target = target?;
+        let ty = if target.bit.is_some() { BOOL } else { target.ty };
         if let Type::Block(_) = self.types.get(ty) {
             let message = format!("an instance of {} is not assigned", self.type_name(ty));
             self.error(
@@ -132,11 +126,7 @@ impl<'a> Checker<'a> {
         if value.is_wrong() {
             return None;
         }
-        if self.types.elementary(ty).is_some() || self.is_text(ty) {
-            return Some(StmtKind::Assign(target, value));
-        }
-        let (size, _) = self.size(ty);
-        Some(StmtKind::Copy(target, value, size))
+        Some(StmtKind::Assign(target, value))
     }
 
     fn case(&mut self, case: &'a Case, span: Span) -> Option<StmtKind> {
@@ -335,7 +325,7 @@ impl<'a> Checker<'a> {
         let from = self.value(&each.from, ty);
         let to = self.value(&each.to, ty);
         let by = match &each.by {
-            Some(by) => self.step_value(by, of),
+            Some(by) => self.step_value(by),
             None => Expr {
                 kind: Kind::Integer(1),
                 ty: Types::of(Elementary::Lint),
@@ -366,7 +356,7 @@ impl<'a> Checker<'a> {
     }
 
     /// The step of FOR as a LINT: it may be negative if the control variable is unsigned.
-    fn step_value(&mut self, by: &'a Expression, of: Option<Elementary>) -> Expr {
+    fn step_value(&mut self, by: &'a Expression) -> Expr {
         let value = self.expression(by, None);
         let value = self.settle(value);
         let span = value.span;
@@ -400,14 +390,11 @@ impl<'a> Checker<'a> {
                 ty,
                 span,
             },
-            _ => {
-                let _ = of;
-                Expr {
-                    kind: Kind::Convert(Box::new(value), it, Elementary::Lint),
-                    ty,
-                    span,
-                }
-            }
+            _ => Expr {
+                kind: Kind::Convert(Box::new(value), it, Elementary::Lint),
+                ty,
+                span,
+            },
         }
     }
 }

@@ -62,9 +62,10 @@ impl Emitter<'_, '_, '_> {
                 self.assign_text(target.ty, |emitter| emitter.expression(value));
             }
             (None, _) => {
-                let size = |unit: crate::types::UnitId| program.units[unit.0 as usize].members.size;
-                let (bytes, _) = program.types.size(target.ty, size);
-                self.copy(target, value, bytes);
+                self.whole_address(target);
+                self.expression(value);
+                let bytes = program.size(target.ty).cast_signed();
+                self.function.sink().i32_const(bytes).memory_copy(0, 0);
             }
         }
     }
@@ -76,15 +77,6 @@ impl Emitter<'_, '_, '_> {
             from(self);
             self.helper(Helper::Assign);
         }
-    }
-
-    pub(super) fn copy(&mut self, target: &Place, value: &Expr, bytes: u32) {
-        self.whole_address(target);
-        self.expression(value);
-        self.function
-            .sink()
-            .i32_const(bytes.cast_signed())
-            .memory_copy(0, 0);
     }
 
     pub(super) fn block_call(&mut self, call: &BlockCall, span: Span) {

@@ -10,7 +10,7 @@ use crate::source::Span;
 use crate::start;
 use crate::syntax::Operator;
 use crate::typed::{Base, Branch, Expr, Place, Stmt, StmtKind};
-use crate::types::{Elementary, Member, MemberKind, Type, TypeId, UnitId};
+use crate::types::{Elementary, Member, MemberKind, Type, UnitId};
 use wasm_encoder::{BlockType, ValType};
 
 /// Largest number of table entries for each label: states are often numbered in tens.
@@ -101,20 +101,9 @@ pub(super) fn unit(context: &mut Context<'_, '_>, id: UnitId) -> Function {
         emitter.function.end();
     }
     if let Some(member) = result {
-        let place = place(frame + member.offset, member.ty);
-        emitter.read(&place);
+        emitter.read(&Place::plain(Base::Memory, frame + member.offset, member.ty));
     }
     emitter.function
-}
-
-const fn place(offset: u32, ty: TypeId) -> Place {
-    Place {
-        base: Base::Memory,
-        offset,
-        indices: Vec::new(),
-        ty,
-        bit: None,
-    }
 }
 
 impl Emitter<'_, '_, '_> {
@@ -145,7 +134,7 @@ impl Emitter<'_, '_, '_> {
                     });
                 }
                 (_, None) => {
-                    let bytes = self.bytes(member.ty);
+                    let bytes = self.context.program.size(member.ty);
                     let mut sink = self.function.sink();
                     sink.i32_const(offset.cast_signed()).local_get(local);
                     sink.i32_const(bytes.cast_signed()).memory_copy(0, 0);
@@ -154,18 +143,10 @@ impl Emitter<'_, '_, '_> {
         }
     }
 
-    fn bytes(&self, ty: TypeId) -> u32 {
-        let program = self.context.program;
-        program
-            .types
-            .size(ty, |unit| program.units[unit.0 as usize].members.size)
-            .0
-    }
-
     /// Gives a variable its initial value, as at every call.
     fn fresh(&mut self, member: &Member, root: Root, frame: u32) {
         let program = self.context.program;
-        let bytes = self.bytes(member.ty);
+        let bytes = program.size(member.ty);
         let mut image = vec![0; bytes as usize];
         start::write(program, member.ty, &member.start, &mut image, 0);
         let offset = frame + member.offset;
@@ -226,7 +207,6 @@ impl Emitter<'_, '_, '_> {
         let span = statement.span;
         match &statement.kind {
             StmtKind::Assign(target, value) => self.assign(target, value),
-            StmtKind::Copy(target, value, bytes) => self.copy(target, value, *bytes),
             StmtKind::Evaluate(value) => {
                 self.expression(value);
                 let empty = value.ty == crate::types::WRONG;

@@ -113,14 +113,10 @@ struct Places {
 
 impl Places {
     fn new(program: &Program<'_>) -> Self {
-        let unit_size = |unit: UnitId| {
-            let info = program.units.get(unit.0 as usize);
-            info.map_or(0, |info| info.members.size)
-        };
         let span = |(place, member): (usize, &Member)| {
             let bytes = match member.kind {
                 MemberKind::InOut => 1,
-                _ => program.types.size(member.ty, unit_size).0.max(1),
+                _ => program.size(member.ty).max(1),
             };
             (member.offset, member.offset.saturating_add(bytes), place)
         };
@@ -170,7 +166,7 @@ impl Walk<'_, '_, '_> {
 
     fn statement(&mut self, statement: &Stmt) {
         match &statement.kind {
-            StmtKind::Assign(target, value) | StmtKind::Copy(target, value, _) => {
+            StmtKind::Assign(target, value) => {
                 self.assign(target);
                 self.expression(value);
             }

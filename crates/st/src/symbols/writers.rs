@@ -59,19 +59,10 @@ struct Finder<'p> {
 impl Finder<'_> {
     fn body(&mut self, body: &Body) {
         let info = &self.program.units[body.unit.0 as usize];
-        // The last file is the library's.
-        if self.sources.file_index(info.span) + 1 < self.sources.count() {
+        if !self.sources.in_library(info.span) {
             self.unit = Some(info.owner.unwrap_or(body.unit));
             self.statements(&body.statements);
         }
-    }
-
-    fn size(&self, ty: crate::types::TypeId) -> u32 {
-        let units = &self.program.units;
-        self.program
-            .types
-            .size(ty, |unit| units[unit.0 as usize].members.size)
-            .0
     }
 
     fn write(&mut self, place: &Place, span: Span, value: Option<Constant>, is_call: bool) {
@@ -86,7 +77,7 @@ impl Finder<'_> {
         self.found.push(Write {
             unit,
             start: place.offset,
-            end: place.offset + reach + self.size(place.ty),
+            end: place.offset + reach + self.program.size(place.ty),
             file: self.sources.file_name(span).to_owned(),
             position: self.sources.position(span.start),
             value: value.filter(|_| place.bit.is_none()),
@@ -105,10 +96,6 @@ impl Finder<'_> {
         match &statement.kind {
             StmtKind::Assign(place, value) => {
                 self.write(place, span, value.constant(), false);
-                self.expression(value, span);
-            }
-            StmtKind::Copy(place, value, _) => {
-                self.write(place, span, None, false);
                 self.expression(value, span);
             }
             StmtKind::Evaluate(value) => self.expression(value, span),
