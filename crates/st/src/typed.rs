@@ -174,6 +174,10 @@ pub(crate) struct For {
 }
 
 impl Expr {
+    pub(crate) const fn new(kind: Kind, ty: TypeId, span: Span) -> Self {
+        Self { kind, ty, span }
+    }
+
     pub(crate) const fn wrong(span: Span) -> Self {
         Self {
             kind: Kind::Wrong,

@@ -371,6 +371,11 @@ impl Types {
         }
     }
 
+    /// The same of a type that is computed with, which an enumeration is not.
+    pub(crate) fn computed(&self, id: TypeId) -> Option<Elementary> {
+        self.elementary(id).filter(|_| !self.is_enumeration(id))
+    }
+
     /// The type of an expression that reads a variable of this type: for a subrange its base.
     pub(crate) fn value_type(&self, id: TypeId) -> TypeId {
         match self.get(id) {

@@ -330,11 +330,7 @@ impl<'a> Checker<'a> {
         };
         let target = self.target(path)?;
         let ty = self.types.value_type(member.ty);
-        let mut loaded = Expr {
-            kind: Kind::Load(member),
-            ty,
-            span: argument.span,
-        };
+        let mut loaded = Expr::new(Kind::Load(member), ty, argument.span);
         if argument.way == Way::OutInverted {
             match self
                 .types
@@ -449,39 +445,27 @@ impl<'a> Checker<'a> {
                 _ => {}
             }
         }
-        let Some(result) = result.filter(|ty| *ty != WRONG && !wrong) else {
-            if !wrong && self.unit(unit).result.is_none() {
-                // A function without a type is called in statements only.
-                return Expr {
-                    kind: Kind::Call(Box::new(FunctionCall {
-                        unit,
-                        instance,
-                        arguments,
-                        outputs,
-                        buffer: None,
-                    })),
-                    ty: WRONG,
-                    span: call.span,
-                };
-            }
-            return Expr::wrong(call.span);
+        let mut called = FunctionCall {
+            unit,
+            instance,
+            arguments,
+            outputs,
+            buffer: None,
         };
-        let buffer = self.types.elementary(result).is_none().then(|| {
+        let Some(result) = result.filter(|ty| *ty != WRONG && !wrong) else {
+            if wrong || self.unit(unit).result.is_some() {
+                return Expr::wrong(call.span);
+            }
+            // A function without a type is called in statements only.
+            return Expr::new(Kind::Call(Box::new(called)), WRONG, call.span);
+        };
+        if self.types.elementary(result).is_none() {
             let (bytes, _) = self.size(result);
-            (self.layout.take(bytes), bytes)
-        });
-        self.check_memory(call.span);
-        Expr {
-            kind: Kind::Call(Box::new(FunctionCall {
-                unit,
-                instance,
-                arguments,
-                outputs,
-                buffer,
-            })),
-            ty: self.types.value_type(result),
-            span: call.span,
+            called.buffer = Some((self.layout.take(bytes), bytes));
         }
+        self.check_memory(call.span);
+        let ty = self.types.value_type(result);
+        Expr::new(Kind::Call(Box::new(called)), ty, call.span)
     }
 
     /// The default of an input of a function that a call leaves out.
@@ -492,7 +476,7 @@ impl<'a> Checker<'a> {
                 _ => Vec::new(),
             };
             let (kind, ty) = (Kind::Text(bytes), member.ty);
-            return Some(Expr { kind, ty, span });
+            return Some(Expr::new(kind, ty, span));
         }
         let elementary = self.types.elementary(member.ty)?;
         let kind = match &member.start {
@@ -504,11 +488,7 @@ impl<'a> Checker<'a> {
             },
             _ => return None,
         };
-        Some(Expr {
-            kind,
-            ty: self.types.value_type(member.ty),
-            span,
-        })
+        Some(Expr::new(kind, self.types.value_type(member.ty), span))
     }
 
     fn missing(&mut self, pin: &str, of: &str, span: Span) {

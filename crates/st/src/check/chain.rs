@@ -1,6 +1,7 @@
 //! Operators: the type in which they are computed, and the values of constants.
 
 use super::Checker;
+use super::convert::widened;
 use crate::error::{Code, Diagnostic};
 use crate::source::Span;
 use crate::syntax::{Expression, Operator};
@@ -78,12 +79,7 @@ impl<'a> Checker<'a> {
         if left.is_wrong() || right.is_wrong() {
             return None;
         }
-        let plain = |ty| {
-            self.types
-                .elementary(ty)
-                .filter(|_| !self.types.is_enumeration(ty))
-        };
-        let common = match (plain(left.ty), plain(right.ty)) {
+        let common = match (self.types.computed(left.ty), self.types.computed(right.ty)) {
             (Some(one), Some(other)) => one.common(other),
             _ => None,
         };
@@ -104,11 +100,7 @@ impl<'a> Checker<'a> {
 
     /// A literal without a type beside a value of type `other`.
     fn meet(&mut self, literal: Expr, other: TypeId, expected: Option<Elementary>) -> Expr {
-        let Some(of) = self
-            .types
-            .elementary(other)
-            .filter(|_| !self.types.is_enumeration(other))
-        else {
+        let Some(of) = self.types.computed(other) else {
             if self.types.is_enumeration(other) {
                 return self.convert(literal, other);
             }
@@ -207,11 +199,7 @@ impl<'a> Checker<'a> {
                 Operator::Xor => one ^ other,
                 _ => one & other,
             };
-            return Expr {
-                kind: Kind::Integer(number),
-                ty: Types::of(ty),
-                span,
-            };
+            return Expr::new(Kind::Integer(number), Types::of(ty), span);
         }
         self.step(left, operator, right, ty, Types::of(ty), at)
     }
@@ -268,11 +256,7 @@ impl<'a> Checker<'a> {
             _ => None,
         };
         if let Some(holds) = known {
-            return Expr {
-                kind: Kind::Integer(holds.into()),
-                ty: BOOL,
-                span,
-            };
+            return Expr::new(Kind::Integer(holds.into()), BOOL, span);
         }
         self.step(left, operator, right, ty, BOOL, at)
     }
@@ -356,11 +340,11 @@ impl<'a> Checker<'a> {
                 self.error(Code::OutOfRange, right.span, "this divides by zero", "");
                 Expr::wrong(span)
             }
-            (Some(Constant::Integer(one)), Some(Constant::Integer(other))) => Expr {
-                kind: Kind::Integer(ty.wrapped(wholes(one, operator, other))),
-                ty: Types::of(ty),
+            (Some(Constant::Integer(one)), Some(Constant::Integer(other))) => Expr::new(
+                Kind::Integer(ty.wrapped(wholes(one, operator, other))),
+                Types::of(ty),
                 span,
-            },
+            ),
             _ => self.step(left, operator, right, ty, Types::of(ty), at),
         }
     }
@@ -386,11 +370,7 @@ impl<'a> Checker<'a> {
                 self.error(Code::OutOfRange, span, "no type of whole numbers holds this", "");
                 return Expr::wrong(span);
             }
-            return Expr {
-                kind: Kind::Integer(number),
-                ty: ANY_INTEGER,
-                span,
-            };
+            return Expr::new(Kind::Integer(number), ANY_INTEGER, span);
         }
         let number = |value: &Expr| match value.kind {
             Kind::Integer(number) => number as f64,
@@ -401,11 +381,11 @@ impl<'a> Checker<'a> {
             self.error(Code::WrongType, at, "MOD is for whole numbers", "");
             return Expr::wrong(span);
         }
-        Expr {
-            kind: Kind::Real(reals(number(left), operator, number(right))),
-            ty: ANY_REAL,
+        Expr::new(
+            Kind::Real(reals(number(left), operator, number(right))),
+            ANY_REAL,
             span,
-        }
+        )
     }
 
     /// A TIME times or divided by a number.
@@ -433,11 +413,8 @@ impl<'a> Checker<'a> {
             ANY_INTEGER => self.convert(right.clone(), Types::of(Elementary::Lint)),
             _ => self.settle(right.clone()),
         };
-        let number = self
-            .types
-            .elementary(right.ty)
-            .filter(|it| it.is_integer() || it.is_real());
-        let Some(number) = number.filter(|_| !self.types.is_enumeration(right.ty)) else {
+        let number = self.types.computed(right.ty);
+        let Some(number) = number.filter(|it| it.is_integer() || it.is_real()) else {
             if !right.is_wrong() {
                 let message = format!(
                     "a TIME is scaled by a number, not by {}",
@@ -457,13 +434,7 @@ impl<'a> Checker<'a> {
         let right = if number.is_real() {
             self.convert(right, Types::of(Elementary::Lreal))
         } else {
-            let span = right.span;
-            let kind = match right.kind {
-                Kind::Integer(value) => Kind::Integer(value),
-                _ => Kind::Convert(Box::new(right), number, Elementary::Lint),
-            };
-            let ty = Types::of(Elementary::Lint);
-            Expr { kind, ty, span }
+            widened(right, number, Elementary::Lint)
         };
         Some(self.step(left.clone(), operator, right, elementary, ty, at))
     }
@@ -498,11 +469,7 @@ impl<'a> Checker<'a> {
                 Kind::Chain(Box::new(first), vec![step])
             }
         };
-        Expr {
-            kind,
-            ty: result,
-            span,
-        }
+        Expr::new(kind, result, span)
     }
 }
 

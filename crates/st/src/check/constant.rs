@@ -46,10 +46,6 @@ impl Checker<'_> {
             Constant::Integer(number) => Kind::Integer(number),
             Constant::Real(number) => Kind::Real(number),
         };
-        Some(Expr {
-            kind,
-            ty: self.types.value_type(ty),
-            span,
-        })
+        Some(Expr::new(kind, self.types.value_type(ty), span))
     }
 }

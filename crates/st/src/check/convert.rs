@@ -45,16 +45,10 @@ impl Checker<'_> {
         match (value.ty, &value.kind) {
             (ANY_INTEGER, Kind::Integer(number)) => self.literal(*number, target, value.span),
             (ANY_REAL, Kind::Real(number)) => self.real_literal(*number, target, value.span),
-            _ => {
-                let from = self
-                    .types
-                    .elementary(value.ty)
-                    .filter(|_| !self.types.is_enumeration(value.ty));
-                match from {
-                    Some(from) if from.widens_to(target) => widened(value, from, target),
-                    _ => self.refuse(&value, to),
-                }
-            }
+            _ => match self.types.computed(value.ty) {
+                Some(from) if from.widens_to(target) => widened(value, from, target),
+                _ => self.refuse(&value, to),
+            },
         }
     }
 
@@ -134,11 +128,7 @@ impl Checker<'_> {
             }
             _ => Kind::Integer(number),
         };
-        Expr {
-            kind,
-            ty: Types::of(to),
-            span,
-        }
+        Expr::new(kind, Types::of(to), span)
     }
 
     fn real_literal(&mut self, number: f64, to: Elementary, span: Span) -> Expr {
@@ -163,11 +153,7 @@ impl Checker<'_> {
             );
             return Expr::wrong(span);
         }
-        Expr {
-            kind: Kind::Real(kept),
-            ty: Types::of(to),
-            span,
-        }
+        Expr::new(Kind::Real(kept), Types::of(to), span)
     }
 
     /// A type in the name of a conversion.
@@ -220,7 +206,7 @@ pub(super) fn rounded(number: f64, to: Elementary) -> f64 {
 }
 
 /// A value as one of a type that holds all of its values.
-fn widened(value: Expr, from: Elementary, to: Elementary) -> Expr {
+pub(super) fn widened(value: Expr, from: Elementary, to: Elementary) -> Expr {
     let (ty, span) = (Types::of(to), value.span);
     let kind = match value.kind {
         Kind::Integer(number) if to.is_real() => Kind::Real(rounded(number as f64, to)),
@@ -228,5 +214,12 @@ fn widened(value: Expr, from: Elementary, to: Elementary) -> Expr {
         Kind::Real(number) => Kind::Real(number),
         _ => Kind::Convert(Box::new(value), from, to),
     };
-    Expr { kind, ty, span }
+    Expr::new(kind, ty, span)
+}
+
+/// A whole number of any type as LINT.
+pub(super) fn as_lint(value: Expr, from: Elementary) -> Expr {
+    let span = value.span;
+    let kind = Kind::Convert(Box::new(value), from, Elementary::Lint);
+    Expr::new(kind, Types::of(Elementary::Lint), span)
 }

@@ -95,7 +95,7 @@ impl<'a> Checker<'a> {
             ExpressionKind::Chain(first, rest) => return self.chain(first, rest, expected, span),
             ExpressionKind::Wrong => return Expr::wrong(span),
         };
-        Expr { kind, ty, span }
+        Expr::new(kind, ty, span)
     }
 
     /// An expression as a value of this type.
@@ -136,24 +136,14 @@ impl<'a> Checker<'a> {
         if value.is_wrong() {
             return value;
         }
-        let of = self
-            .types
-            .elementary(value.ty)
-            .filter(|it| it.is_signed() || it.is_real());
-        let of = of.filter(|_| !self.types.is_enumeration(value.ty));
+        let of = self.types.computed(value.ty);
+        let of = of.filter(|it| it.is_signed() || it.is_real());
         let ty = value.ty;
         let kind = match (value.kind, of) {
             (Kind::Integer(number), None) if ty == ANY_INTEGER => Kind::Integer(-number),
             (Kind::Real(number), _) => Kind::Real(-number),
             (Kind::Integer(number), Some(of)) => Kind::Integer(of.wrapped(-number)),
-            (kind, Some(of)) => Kind::Negate(
-                of,
-                Box::new(Expr {
-                    kind,
-                    ty,
-                    span: value.span,
-                }),
-            ),
+            (kind, Some(of)) => Kind::Negate(of, Box::new(Expr::new(kind, ty, value.span))),
             (_, None) => {
                 let message = format!("{} has no sign", self.type_name(ty));
                 self.error(
@@ -165,7 +155,7 @@ impl<'a> Checker<'a> {
                 return Expr::wrong(span);
             }
         };
-        Expr { kind, ty, span }
+        Expr::new(kind, ty, span)
     }
 
     fn not(&mut self, inner: &'a Expression, expected: Option<TypeId>, span: Span) -> Expr {
@@ -179,11 +169,8 @@ impl<'a> Checker<'a> {
         if value.is_wrong() {
             return value;
         }
-        let of = self
-            .types
-            .elementary(value.ty)
-            .filter(|it| matches!(it.class(), Class::Bool | Class::Bits));
-        let Some(of) = of.filter(|_| !self.types.is_enumeration(value.ty)) else {
+        let of = self.types.computed(value.ty);
+        let Some(of) = of.filter(|it| matches!(it.class(), Class::Bool | Class::Bits)) else {
             self.no_bits(&value, "NOT");
             return Expr::wrong(span);
         };
@@ -192,7 +179,7 @@ impl<'a> Checker<'a> {
             Kind::Integer(number) => Kind::Integer(number ^ of.range().1),
             _ => Kind::Not(of, Box::new(value)),
         };
-        Expr { kind, ty, span }
+        Expr::new(kind, ty, span)
     }
 
     /// Reports that a value is neither BOOL nor a bit string.
@@ -222,10 +209,6 @@ impl<'a> Checker<'a> {
     /// The constant result of an operation with numbers of floating point.
     pub(super) fn real(&self, number: f64, ty: TypeId, span: Span) -> Expr {
         let kept = self.types.elementary(ty).map_or(number, |it| rounded(number, it));
-        Expr {
-            kind: Kind::Real(kept),
-            ty,
-            span,
-        }
+        Expr::new(Kind::Real(kept), ty, span)
     }
 }

@@ -2,12 +2,13 @@
 
 use super::Checker;
 use super::call::inputs;
+use super::convert::as_lint;
 use crate::error::{Code, Diagnostic, quoted};
 use crate::library::{Function, OPERATORS, conversion};
 use crate::source::Span;
 use crate::syntax::{Call, Expression, Operator, Way};
 use crate::typed::{Expr, Kind};
-use crate::types::{ANY_INTEGER, ANY_REAL, BOOL, Class, Elementary, TypeId, Types};
+use crate::types::{ANY_INTEGER, ANY_REAL, Class, Elementary, TypeId, Types};
 
 /// The remedy for a number without a conversion to or from STRING.
 pub(super) const TO_TEXT: &str = "whole numbers, BOOL and TIME have one; make a whole number first: LINT_TO_STRING(LREAL_TO_LINT(x * 1000.0))";
@@ -237,21 +238,13 @@ impl<'a> Checker<'a> {
             }
             _ => Kind::Convert(Box::new(value), one, other),
         };
-        Some(Expr {
-            kind,
-            ty: to,
-            span: call.span,
-        })
+        Some(Expr::new(kind, to, call.span))
     }
 
     /// What to write where X_TO_Y is given a value of a third type that does not become an X.
     fn other_conversion(&self, value: &Expr, from: TypeId, to: TypeId) -> Option<String> {
-        let plain = |ty: TypeId| {
-            self.types
-                .elementary(ty)
-                .filter(|_| !self.types.is_enumeration(ty))
-        };
-        let (given, wanted, target) = (plain(value.ty)?, plain(from)?, self.types.elementary(to)?);
+        let (given, wanted) = (self.types.computed(value.ty)?, self.types.computed(from)?);
+        let target = self.types.elementary(to)?;
         if given.widens_to(wanted) {
             return None;
         }
@@ -316,8 +309,7 @@ impl<'a> Checker<'a> {
                     it.class() != Class::Bool
                 })
             }
-            Function::Sel => self.choice(function, arguments, Some(BOOL), span, expected),
-            Function::Mux => self.choice(function, arguments, None, span, expected),
+            Function::Sel | Function::Mux => self.choice(function, arguments, span, expected),
             Function::Move => {
                 let value = self.expression(first, expected);
                 self.settle(value)
@@ -347,11 +339,8 @@ impl<'a> Checker<'a> {
     ) -> Expr {
         let value = self.expression(value, expected);
         let value = self.settle(value);
-        let of = self
-            .types
-            .elementary(value.ty)
-            .filter(|it| it.is_integer() || it.is_real());
-        match of.filter(|_| !self.types.is_enumeration(value.ty)) {
+        let of = self.types.computed(value.ty);
+        match of.filter(|it| it.is_integer() || it.is_real()) {
             Some(of) => {
                 let ty = value.ty;
                 made(function, of, vec![value], ty, span)
@@ -374,11 +363,7 @@ impl<'a> Checker<'a> {
             (ANY_INTEGER, None) => self.convert(value, Types::of(Elementary::Lreal)),
             _ => self.settle(value),
         };
-        let of = self
-            .types
-            .elementary(value.ty)
-            .filter(|_| !self.types.is_enumeration(value.ty));
-        let (value, of) = match of {
+        let (value, of) = match self.types.computed(value.ty) {
             Some(it) if it.is_real() => (value, it),
             Some(it) if it.widens_to(Elementary::Lreal) => (
                 self.convert(value, Types::of(Elementary::Lreal)),
@@ -402,11 +387,7 @@ impl<'a> Checker<'a> {
         let to = asked.unwrap_or(Elementary::Dint);
         // It is truncated first; then every conversion gives the same.
         let cut = made(Function::Trunc, of, vec![value], Types::of(of), span);
-        Expr {
-            kind: Kind::Convert(Box::new(cut), of, to),
-            ty: Types::of(to),
-            span,
-        }
+        Expr::new(Kind::Convert(Box::new(cut), of, to), Types::of(to), span)
     }
 
     pub(super) fn no_input(&mut self, function: Function, value: &Expr, wanted: &str) -> Expr {
@@ -511,11 +492,7 @@ impl<'a> Checker<'a> {
         if self.is_text(ty) && function != Function::Atan2 {
             return made(function, ADDRESS, values, ty, span);
         }
-        let of = self
-            .types
-            .elementary(ty)
-            .filter(|_| !self.types.is_enumeration(ty));
-        match (of.filter(|it| good(*it)), values.first()) {
+        match (self.types.computed(ty).filter(|it| good(*it)), values.first()) {
             (Some(of), _) => made(function, of, values, ty, span),
             (None, Some(first)) => {
                 let first = first.clone();
@@ -538,24 +515,19 @@ impl<'a> Checker<'a> {
         &mut self,
         function: Function,
         arguments: &[&'a Expression],
-        decides: Option<TypeId>,
         span: Span,
         expected: Option<TypeId>,
     ) -> Expr {
         let Some((first, rest)) = arguments.split_first() else {
             return Expr::wrong(span);
         };
-        let decider = match decides {
-            Some(_) => self.condition(first),
-            None => {
+        let decider = match function {
+            Function::Sel => self.condition(first),
+            _ => {
                 let value = self.expression(first, None);
                 let value = self.settle(value);
-                match self.types.elementary(value.ty) {
-                    Some(it) if it.is_integer() && !self.types.is_enumeration(value.ty) => Expr {
-                        span: value.span,
-                        ty: Types::of(Elementary::Lint),
-                        kind: Kind::Convert(Box::new(value), it, Elementary::Lint),
-                    },
+                match self.types.computed(value.ty) {
+                    Some(it) if it.is_integer() => as_lint(value, it),
                     _ => self.no_input(function, &value, "a whole number as K"),
                 }
             }
@@ -614,21 +586,12 @@ impl<'a> Checker<'a> {
         };
         let by = self.expression(by, None);
         let by = self.settle(by);
-        let whole = self
-            .types
-            .elementary(by.ty)
-            .filter(|it| it.is_integer() || it.class() == Class::Bits);
-        let Some(whole) = whole.filter(|_| !self.types.is_enumeration(by.ty)) else {
+        let whole = self.types.computed(by.ty);
+        let Some(whole) = whole.filter(|it| it.is_integer() || it.class() == Class::Bits) else {
             return self.no_input(function, &by, "a whole number as N");
         };
-        let by_span = by.span;
-        let by = Expr {
-            kind: Kind::Convert(Box::new(by), whole, Elementary::Lint),
-            ty: Types::of(Elementary::Lint),
-            span: by_span,
-        };
         let ty = value.ty;
-        made(function, of, vec![value, by], ty, span)
+        made(function, of, vec![value, as_lint(by, whole)], ty, span)
     }
 }
 
@@ -645,9 +608,5 @@ fn place_of(key: &str, names: &[&str], open: bool) -> Option<usize> {
 }
 
 fn made(function: Function, of: Elementary, values: Vec<Expr>, ty: TypeId, span: Span) -> Expr {
-    Expr {
-        kind: Kind::Library(function, of, values),
-        ty,
-        span,
-    }
+    Expr::new(Kind::Library(function, of, values), ty, span)
 }

@@ -6,7 +6,7 @@ use crate::library::{Function, blocks, conversion};
 use crate::source::Span;
 use crate::syntax::{Expression, Ident, Path, Selector};
 use crate::typed::{Base, Expr, Index, Kind, Place};
-use crate::types::{Class, Constant, Member, MemberKind, Start, Type, TypeId, UnitId};
+use crate::types::{Class, Constant, Elementary, Member, MemberKind, Start, Type, TypeId, UnitId};
 
 /// The remedy for a member of AXIS_REF that only other systems have.
 const OF_AN_AXIS: &str = "it has `Number`; blocks read the rest of an axis: MC_ReadActualPosition, MC_ReadActualVelocity, MC_ReadStatus, MC_ReadAxisError";
@@ -436,8 +436,7 @@ impl<'a> Checker<'a> {
             if value.is_wrong() {
                 return false;
             }
-            let whole = self.types.elementary(value.ty).filter(|it| it.is_integer());
-            if whole.is_none() || self.types.is_enumeration(value.ty) {
+            if !self.types.computed(value.ty).is_some_and(Elementary::is_integer) {
                 let message = format!("an index is a whole number, not {}", self.type_name(value.ty));
                 let help = match self.types.elementary(value.ty) {
                     Some(it) => format!("convert it: {}_TO_INT(..)", self.conversion_name(value.ty, it)),
@@ -474,11 +473,8 @@ impl<'a> Checker<'a> {
     }
 
     fn bit(&mut self, place: &mut Place, bit: u32, span: Span) -> bool {
-        let of = self
-            .types
-            .elementary(place.ty)
-            .filter(|it| it.is_integer() || it.class() == Class::Bits);
-        let Some(of) = of.filter(|_| !self.types.is_enumeration(place.ty)) else {
+        let of = self.types.computed(place.ty);
+        let Some(of) = of.filter(|it| it.is_integer() || it.class() == Class::Bits) else {
             let message = format!("{} has no bits", self.type_name(place.ty));
             self.error(
                 Code::WrongType,
@@ -576,11 +572,7 @@ impl<'a> Checker<'a> {
             Some((element, number)) => {
                 let (number, text) = (*number, format!("{element} := {number}"));
                 self.look_at_element(name.span, ty, text);
-                Some(Expr {
-                    kind: Kind::Integer(number),
-                    ty,
-                    span: name.span,
-                })
+                Some(Expr::new(Kind::Integer(number), ty, name.span))
             }
             None => {
                 let guess = self.guess(&name.text, of.elements.iter().map(|(name, _)| name.as_str()));

@@ -1,6 +1,7 @@
 //! Statements.
 
 use super::Checker;
+use super::convert::widened;
 use super::path::Named;
 use crate::error::{Code, Diagnostic};
 use crate::source::Span;
@@ -304,9 +305,8 @@ impl<'a> Checker<'a> {
         };
         let declared = found.as_ref().map(|place| place.ty);
         let of = declared
-            .and_then(|ty| self.types.elementary(ty))
+            .and_then(|ty| self.types.computed(ty))
             .filter(|it| it.is_integer());
-        let of = of.filter(|_| declared.is_some_and(|ty| !self.types.is_enumeration(ty)));
         if let (Some(ty), None) = (declared, of)
             && ty != crate::types::WRONG
         {
@@ -326,11 +326,7 @@ impl<'a> Checker<'a> {
         let to = self.value(&each.to, ty);
         let by = match &each.by {
             Some(by) => self.step_value(by),
-            None => Expr {
-                kind: Kind::Integer(1),
-                ty: Types::of(Elementary::Lint),
-                span: each.from.span,
-            },
+            None => Expr::new(Kind::Integer(1), Types::of(Elementary::Lint), each.from.span),
         };
         let around = self.body.controls.len();
         self.body.controls.extend(control);
@@ -379,22 +375,10 @@ impl<'a> Checker<'a> {
             );
             return Expr::wrong(span);
         }
-        let ty = Types::of(Elementary::Lint);
-        match value.kind {
-            Kind::Integer(0) => {
-                self.error(Code::OutOfRange, span, "a FOR with a step of 0 never ends", "");
-                Expr::wrong(span)
-            }
-            Kind::Integer(number) => Expr {
-                kind: Kind::Integer(number),
-                ty,
-                span,
-            },
-            _ => Expr {
-                kind: Kind::Convert(Box::new(value), it, Elementary::Lint),
-                ty,
-                span,
-            },
+        if let Kind::Integer(0) = value.kind {
+            self.error(Code::OutOfRange, span, "a FOR with a step of 0 never ends", "");
+            return Expr::wrong(span);
         }
+        widened(value, it, Elementary::Lint)
     }
 }

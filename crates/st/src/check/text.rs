@@ -1,6 +1,7 @@
 //! Strings: their literals, comparisons and functions.
 
 use super::Checker;
+use super::convert::as_lint;
 use crate::error::{Code, Diagnostic};
 use crate::library::Function;
 use crate::source::Span;
@@ -85,15 +86,15 @@ impl<'a> Checker<'a> {
         if matches!(function, Function::Len | Function::Find) {
             let of = Elementary::Int;
             let (kind, ty) = (Kind::Library(function, of, values), Types::of(of));
-            return Expr { kind, ty, span };
+            return Expr::new(kind, ty, span);
         }
         let buffer = self.layout.take(u32::from(TEXT_MOST) + 1);
         self.check_memory(span);
-        Expr {
-            kind: Kind::Join(function, values, buffer),
-            ty: self.types.text(TEXT_MOST),
+        Expr::new(
+            Kind::Join(function, values, buffer),
+            self.types.text(TEXT_MOST),
             span,
-        }
+        )
     }
 
     fn text_input(&mut self, function: Function, value: Expr) -> Expr {
@@ -114,13 +115,9 @@ impl<'a> Checker<'a> {
 
     /// A length or position, as LINT.
     fn text_number(&mut self, function: Function, value: Expr) -> Expr {
-        let of = self.types.elementary(value.ty).filter(|it| it.is_integer());
+        let of = self.types.computed(value.ty).filter(|it| it.is_integer());
         match of.filter(|it| *it != Elementary::Ulint || matches!(value.kind, Kind::Integer(_))) {
-            Some(of) if !self.types.is_enumeration(value.ty) => Expr {
-                span: value.span,
-                ty: Types::of(Elementary::Lint),
-                kind: Kind::Convert(Box::new(value), of, Elementary::Lint),
-            },
+            Some(of) => as_lint(value, of),
             _ => self.no_input(function, &value, "whole numbers up to LINT as L and P"),
         }
     }
