@@ -60,6 +60,22 @@ pub(crate) struct Unit {
     pub damaged: bool,
 }
 
+impl Unit {
+    /// A unit without contents.
+    pub(crate) const fn new(kind: UnitKind, name: Ident, result: Option<TypeSpec>) -> Self {
+        Self {
+            kind,
+            name,
+            result,
+            sections: Vec::new(),
+            body: Vec::new(),
+            methods: Vec::new(),
+            private: false,
+            damaged: false,
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SectionKind {
     Var,
@@ -81,6 +97,19 @@ pub(crate) struct Section {
     pub variables: Vec<Variables>,
     /// Whether others of its variables could not be read, which has been reported.
     pub damaged: bool,
+}
+
+impl Section {
+    /// A section without CONSTANT and RETAIN.
+    pub(crate) const fn plain(kind: SectionKind, variables: Vec<Variables>, damaged: bool) -> Self {
+        Self {
+            kind,
+            constant: false,
+            retain: false,
+            variables,
+            damaged,
+        }
+    }
 }
 
 /// Names that are declared together.

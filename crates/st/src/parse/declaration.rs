@@ -105,9 +105,7 @@ impl Parser<'_> {
 
     /// The name here, of something at the top of a file that is refused or cannot be read.
     fn name_of_damaged(&self) -> Option<Item> {
-        let span = self.span();
-        let text = self.text_of(span).to_owned();
-        (self.token() == Token::Name).then_some(Item::Damaged(Ident { text, span }))
+        (self.token() == Token::Name).then(|| Item::Damaged(self.ident_at(self.span())))
     }
 
     /// Something that could not be read: any unknown name may be its name.
@@ -118,14 +116,8 @@ impl Parser<'_> {
 
     /// Behind the end of a unit whose beginning could not be read.
     fn pass_end(&mut self) {
-        let ends = [
-            Word::EndProgram,
-            Word::EndFunction,
-            Word::EndFunctionBlock,
-            Word::EndType,
-        ];
-        if let Token::Word(word) = self.token()
-            && ends.contains(&word)
+        if let Token::Word(Word::EndProgram | Word::EndFunction | Word::EndFunctionBlock | Word::EndType) =
+            self.token()
         {
             self.next();
         }
@@ -138,13 +130,8 @@ impl Parser<'_> {
             UnitKind::Program | UnitKind::FunctionBlock => SectionKind::Input,
         };
         let names = std::mem::take(&mut self.refused);
-        unit.sections.extend(names.into_iter().map(|name| Section {
-            kind,
-            constant: false,
-            retain: false,
-            variables: vec![Self::of_unknown_type(vec![(name, None)])],
-            damaged: false,
-        }));
+        let section = |name| Section::plain(kind, vec![Self::of_unknown_type(vec![(name, None)])], false);
+        unit.sections.extend(names.into_iter().map(section));
     }
 
     /// Notes the name here as that of a part of a unit that is refused.
@@ -153,9 +140,7 @@ impl Parser<'_> {
             self.next();
         }
         if self.token() == Token::Name {
-            let span = self.span();
-            let text = self.text_of(span).to_owned();
-            self.refused.push(Ident { text, span });
+            self.refused.push(self.ident_at(self.span()));
         }
     }
 
@@ -293,16 +278,8 @@ impl Parser<'_> {
             self.type_spec(&mut None);
         }
         self.take(Token::Semicolon);
-        let mut unit = Unit {
-            kind,
-            name,
-            result,
-            sections: Vec::new(),
-            body: Vec::new(),
-            methods: Vec::new(),
-            private: false,
-            damaged,
-        };
+        let mut unit = Unit::new(kind, name, result);
+        unit.damaged = damaged;
         self.rest_of_unit(&mut unit, end, open);
         Some(Item::Unit(unit))
     }
@@ -346,16 +323,8 @@ impl Parser<'_> {
         };
         let result = self.take(Token::Colon).then(|| self.type_spec(&mut None));
         self.take(Token::Semicolon);
-        let mut method = Unit {
-            kind: UnitKind::Method,
-            name,
-            result,
-            sections: Vec::new(),
-            body: Vec::new(),
-            methods: Vec::new(),
-            private,
-            damaged: false,
-        };
+        let mut method = Unit::new(UnitKind::Method, name, result);
+        method.private = private;
         self.rest_of_unit(&mut method, Word::EndMethod, open);
         Some(method)
     }
@@ -389,13 +358,7 @@ impl Parser<'_> {
                     let span = self.span();
                     let (variables, damaged) =
                         self.losing(|parser| parser.variables(Word::EndVar, span, "VAR"));
-                    sections.push(Section {
-                        kind: SectionKind::Var,
-                        constant: false,
-                        retain: false,
-                        variables,
-                        damaged,
-                    });
+                    sections.push(Section::plain(SectionKind::Var, variables, damaged));
                 }
                 _ => return sections,
             }
@@ -721,7 +684,7 @@ impl Parser<'_> {
                     if self.take_name("ON") {
                         self.ident("the kind of a processor");
                     }
-                    self.resource(&mut configuration, Some(resource));
+                    self.resource(&mut configuration, resource);
                 }
                 Token::Word(Word::EndResource) => {
                     self.tell_here(
@@ -742,15 +705,10 @@ impl Parser<'_> {
         Some(Item::Configuration(configuration))
     }
 
-    fn resource(&mut self, into: &mut Configuration, open: Option<Span>) {
-        loop {
-            if self.take_word(Word::EndResource) {
-                return;
-            }
+    fn resource(&mut self, into: &mut Configuration, open: Span) {
+        while !self.take_word(Word::EndResource) {
             if !self.resource_part(into) {
-                if let Some(open) = open {
-                    self.not_closed(Word::EndResource, open, "RESOURCE");
-                }
+                self.not_closed(Word::EndResource, open, "RESOURCE");
                 return;
             }
         }
@@ -761,14 +719,8 @@ impl Parser<'_> {
         match self.token() {
             Token::Word(Word::VarGlobal) => into.globals.extend(self.section()),
             Token::Word(word @ (Word::VarAccess | Word::VarConfig)) => self.refused_section(word),
-            Token::Word(Word::Program) => {
-                let instance = self.program_instance();
-                into.programs.extend(instance);
-            }
-            Token::Name if self.is_name("TASK") => {
-                let task = self.task();
-                into.tasks.extend(task);
-            }
+            Token::Word(Word::Program) => into.programs.extend(self.program_instance()),
+            Token::Name if self.is_name("TASK") => into.tasks.extend(self.task()),
             Token::Semicolon => {
                 self.next();
             }

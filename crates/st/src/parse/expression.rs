@@ -124,15 +124,8 @@ impl Parser<'_> {
     /// Continues after the statement, behind a part that is nested too deep.
     fn given_up(&mut self, span: Span) -> Expression {
         let told = self.told_at == Some(self.at);
-        while !matches!(
-            self.token(),
-            Token::End | Token::Semicolon | Token::Word(Word::Then | Word::Do | Word::Of)
-        ) {
-            if let Token::Word(word) = self.token()
-                && (super::skip::is_item(word) || super::skip::is_section(word))
-            {
-                break;
-            }
+        let ends = [Word::Then, Word::Do, Word::Of].map(Token::Word);
+        while self.token() != Token::Semicolon && !ends.contains(&self.token()) && !self.at_declaration() {
             self.next();
         }
         if told {
@@ -320,11 +313,7 @@ impl Parser<'_> {
                 let text = self.text_of(span);
                 match text.strip_prefix("%X").or_else(|| text.strip_prefix("%x")) {
                     Some(digits) => digits.to_owned(),
-                    None if self.addresses => {
-                        let text = text.to_owned();
-                        self.next();
-                        return Some(Selector::Member(Ident { text, span }));
-                    }
+                    None if self.addresses => return Some(Selector::Member(self.next_ident())),
                     None => {
                         let what = format!("{} of a variable", quoted(text));
                         self.unsupported(
@@ -338,11 +327,7 @@ impl Parser<'_> {
                 }
             }
             // Members may have names that are keywords elsewhere; the declaration decides.
-            Token::Word(_) => {
-                self.next();
-                let text = self.text_of(span).to_owned();
-                return Some(Selector::Member(Ident { text, span }));
-            }
+            Token::Word(_) => return Some(Selector::Member(self.next_ident())),
             _ => return self.ident("a member").map(Selector::Member),
         };
         self.next();
@@ -486,11 +471,8 @@ impl Parser<'_> {
     }
 
     fn argument_name(&mut self) -> Option<Ident> {
-        let span = self.next();
+        let name = self.next_ident();
         self.next();
-        Some(Ident {
-            text: self.text_of(span).to_owned(),
-            span,
-        })
+        Some(name)
     }
 }

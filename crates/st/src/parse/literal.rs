@@ -124,9 +124,7 @@ impl Parser<'_> {
             Token::Word(Word::True) => self.boolean(true),
             Token::Word(Word::False) => self.boolean(false),
             Token::Name if !negative => {
-                let span = self.next();
-                let text = self.text_of(span).to_owned();
-                return Kind::Element(ty, Ident { text, span });
+                return Kind::Element(ty, self.next_ident());
             }
             Token::Text if !negative => self.text(),
             Token::WideText => {

@@ -91,8 +91,12 @@ impl<'a> Parser<'a> {
     }
 
     fn span(&self) -> Span {
+        self.ahead_span(0)
+    }
+
+    fn ahead_span(&self, by: usize) -> Span {
         self.tokens
-            .get(self.at)
+            .get(self.at + by)
             .map_or_else(Span::default, |(_, span)| *span)
     }
 
@@ -122,6 +126,17 @@ impl<'a> Parser<'a> {
             self.at += 1;
         }
         span
+    }
+
+    /// Takes the token as a name, whatever it is.
+    fn next_ident(&mut self) -> Ident {
+        let span = self.next();
+        self.ident_at(span)
+    }
+
+    fn ident_at(&self, span: Span) -> Ident {
+        let text = self.text_of(span).to_owned();
+        Ident { text, span }
     }
 
     /// Passes a token behind a mistake; a name in front of `:` or `,` was probably a declaration.
@@ -221,13 +236,7 @@ impl<'a> Parser<'a> {
     /// A name to be declared or used; any other text is reported and not taken.
     fn ident(&mut self, what: &str) -> Option<Ident> {
         match self.token() {
-            Token::Name => {
-                let span = self.next();
-                Some(Ident {
-                    text: self.text_of(span).to_owned(),
-                    span,
-                })
-            }
+            Token::Name => Some(self.next_ident()),
             Token::Word(word) => {
                 let message = format!("{what} is expected, and `{}` is a keyword", word.text());
                 self.tell_here(Code::BadName, message, "");
@@ -249,13 +258,11 @@ impl<'a> Parser<'a> {
                 Token::Colon | Token::Comma | Token::Assign | Token::Close | Token::Semicolon
             )
         {
-            let span = self.span();
-            let text = self.text_of(span).to_owned();
+            let text = self.text_of(self.span());
             let message = format!("`{text}` is a keyword and cannot be the name of {what}");
             let help = format!("choose another name, such as `{text}Value`");
-            self.tell(Diagnostic::error(Code::BadName, span, message).help(help));
-            self.next();
-            return Some(Ident { text, span });
+            self.tell_here(Code::BadName, message, &help);
+            return Some(self.next_ident());
         }
         self.ident(&format!("the name of {what}"))
     }

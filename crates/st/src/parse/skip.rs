@@ -87,19 +87,10 @@ impl Parser<'_> {
         }
     }
 
-    /// Behind one of these words, or before an item at the top level of a file.
+    /// Behind this word.
     pub(super) fn skip_past(&mut self, end: Word) {
-        loop {
-            match self.token() {
-                Token::End => return,
-                Token::Word(word) if word == end => {
-                    self.next();
-                    return;
-                }
-                _ => {
-                    self.next();
-                }
-            }
+        while self.token() != Token::End && !self.take_word(end) {
+            self.next();
         }
     }
 
@@ -107,30 +98,28 @@ impl Parser<'_> {
     pub(super) fn skip_action(&mut self) {
         self.next();
         self.note_refused();
-        loop {
-            match self.token() {
-                Token::End => return,
-                Token::Word(word) if is_item(word) => return,
-                Token::Name if self.is_name("END_ACTION") => {
-                    self.next();
-                    return;
-                }
-                _ => {
-                    self.next();
-                }
-            }
+        while !self.at_item() && !self.take_name("END_ACTION") {
+            self.next();
         }
     }
 
     /// Before the next item at the top level of a file.
     pub(super) fn skip_to_item(&mut self) {
-        while !matches!(self.token(), Token::End) {
-            if let Token::Word(word) = self.token()
-                && is_item(word)
-            {
-                return;
-            }
+        while !self.at_item() {
             self.next();
         }
+    }
+
+    /// Whether an item at the top level of a file begins here, or the file ends.
+    fn at_item(&self) -> bool {
+        match self.token() {
+            Token::Word(word) => is_item(word),
+            token => token == Token::End,
+        }
+    }
+
+    /// The same, or a section of variables.
+    pub(super) fn at_declaration(&self) -> bool {
+        self.at_item() || matches!(self.token(), Token::Word(word) if is_section(word))
     }
 }

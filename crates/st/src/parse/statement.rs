@@ -117,7 +117,6 @@ impl Parser<'_> {
     }
 
     fn keyword_statement(&mut self, word: Word) -> Option<Kind> {
-        let from = self.span();
         let compound = match word {
             Word::If => Self::if_,
             Word::Case => Self::case,
@@ -126,16 +125,12 @@ impl Parser<'_> {
             Word::Repeat => Self::repeat,
             _ => return self.simple_statement(word),
         };
-        match self.deeper(compound) {
-            Some(kind) => kind,
-            None => {
-                // Reading continues after the whole construct, whose end is unknown.
-                self.skip_to_item();
-                self.told_at = Some(self.at);
-                let _ = from;
-                None
-            }
-        }
+        self.deeper(compound).unwrap_or_else(|| {
+            // Reading continues after the whole construct, whose end is unknown.
+            self.skip_to_item();
+            self.told_at = Some(self.at);
+            None
+        })
     }
 
     fn simple_statement(&mut self, word: Word) -> Option<Kind> {
@@ -331,12 +326,6 @@ impl Parser<'_> {
         }
         self.end(Word::EndIf, open, "IF");
         Some(Kind::If(branches, other))
-    }
-
-    fn ahead_span(&self, by: usize) -> Span {
-        self.tokens
-            .get(self.at + by)
-            .map_or_else(Span::default, |(_, span)| *span)
     }
 
     fn same_line(&self, one: Span, other: Span) -> bool {

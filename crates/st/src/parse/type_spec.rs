@@ -202,12 +202,7 @@ impl Parser<'_> {
     }
 
     fn skip_to_semicolon_or_close(&mut self) {
-        while !matches!(self.token(), Token::End | Token::Semicolon | Token::Close) {
-            if let Token::Word(word) = self.token()
-                && (super::skip::is_item(word) || super::skip::is_section(word))
-            {
-                return;
-            }
+        while !matches!(self.token(), Token::Semicolon | Token::Close) && !self.at_declaration() {
             self.pass();
         }
     }
