@@ -101,15 +101,13 @@ fn asked<T>(
     byte: usize,
     ask: impl FnOnce(&Sources, &[crate::syntax::Item], usize, u32) -> T,
 ) -> (Sources, Option<T>) {
-    let prelude = crate::library::prelude(given);
-    let mut files = given.to_vec();
-    files.push(crate::library_source(&prelude));
-    let (sources, wrong) = Sources::new(&files);
+    let mut found = Found::default();
+    let sources = crate::project(given, &mut found);
     let (text, start) = sources.text_of(file);
-    if !wrong.is_empty() || file >= given.len() || byte > text.len() {
+    if found.has_errors() || file >= given.len() || byte > text.len() {
         return (sources, None);
     }
-    let items = crate::parse::parse(&sources, &mut Found::default());
-    let found = ask(&sources, &items, file, start + byte as u32);
-    (sources, Some(found))
+    let items = crate::parse::parse(&sources, &mut found);
+    let answer = ask(&sources, &items, file, start + byte as u32);
+    (sources, Some(answer))
 }

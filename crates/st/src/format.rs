@@ -2,7 +2,7 @@
 //! comments are not changed.
 
 use crate::error::{Found, Report};
-use crate::lex::{Token, Word, lex};
+use crate::lex::{Token, Word, lex_with_comments};
 use crate::parse;
 use crate::source::{Source, Sources};
 use crate::types::Elementary;
@@ -14,9 +14,8 @@ const STEP: usize = 2;
 /// # Errors
 /// The [`Report`] of a text that cannot be read, because its structure is then unknown.
 pub fn format(name: &str, bytes: &[u8]) -> Result<String, Box<Report>> {
-    let (sources, wrong) = Sources::new(&[Source { name, bytes }]);
     let mut found = Found::default();
-    wrong.into_iter().for_each(|it| found.add(it));
+    let sources = Sources::new(&[Source { name, bytes }], &mut found);
     if found.has_errors() {
         return Err(Box::new(found.report(sources)));
     }
@@ -26,16 +25,29 @@ pub fn format(name: &str, bytes: &[u8]) -> Result<String, Box<Report>> {
     }
     let (text, start) = sources.text_of(0);
     let mut layout = Layout::default();
-    let tokens = lex(text, start, &mut Found::default());
-    let mut before = 0;
+    let (tokens, comments) = lex_with_comments(text, start, &mut Found::default());
+    let mut comments = comments.into_iter().peekable();
+    let piece = |from: u32, to: u32| {
+        let bytes = (from - start) as usize..(to - start) as usize;
+        text.get(bytes).unwrap_or_default()
+    };
+    let line_ends = |from: u32, to: u32| piece(from, to).matches('\n').count();
+    let mut before = start;
     for (place, (token, span)) in tokens.iter().enumerate() {
-        let (from, to) = ((span.start - start) as usize, (span.end - start) as usize);
-        let lines = layout.gap(text.get(before..from).unwrap_or_default());
+        // A comment to the end of its line has a line end behind it.
+        let mut least = 0;
+        while let Some(comment) = comments.next_if(|it| it.start < span.start) {
+            let text = piece(comment.start, comment.end).trim_end();
+            layout.comment(text, line_ends(before, comment.start).max(least));
+            least = usize::from(text.starts_with("//"));
+            before = comment.end;
+        }
+        let lines = line_ends(before, span.start).max(least);
         if *token != Token::End {
             let rest = tokens.get(place..).unwrap_or_default();
-            layout.token(rest, text.get(from..to).unwrap_or_default(), lines);
+            layout.token(rest, piece(span.start, span.end), lines);
         }
-        before = to;
+        before = span.end;
     }
     layout.out.push('\n');
     Ok(layout.out.trim_start().to_owned())
@@ -72,72 +84,19 @@ struct Layout {
     label: bool,
 }
 
-/// The comments and pragmas between two tokens, each with the line ends before it.
-fn pieces(gap: &str) -> (Vec<(usize, &str)>, usize) {
-    let mut found = Vec::new();
-    let mut lines = 0;
-    let mut rest = gap;
-    while let Some(first) = rest.chars().next() {
-        let end = if rest.starts_with("//") {
-            rest.find('\n').unwrap_or(rest.len())
-        } else if rest.starts_with("(*") {
-            nested(rest, "(*", "*)")
-        } else if rest.starts_with("/*") {
-            nested(rest, "/*", "*/")
-        } else if first == '{' {
-            rest.find('}').map_or(rest.len(), |end| end + 1)
-        } else {
-            lines += usize::from(first == '\n');
-            rest = rest.get(first.len_utf8()..).unwrap_or_default();
-            continue;
-        };
-        let (comment, behind) = rest.split_at(end);
-        found.push((lines, comment.trim_end()));
-        lines = 0;
-        rest = behind;
-    }
-    (found, lines)
-}
-
-/// Where a comment that may hold others ends.
-fn nested(text: &str, open: &str, close: &str) -> usize {
-    let (mut depth, mut at) = (0_usize, 0);
-    while let Some(rest) = text.get(at..).filter(|rest| !rest.is_empty()) {
-        if rest.starts_with(open) {
-            depth += 1;
-            at += 2;
-        } else if rest.starts_with(close) {
-            depth = depth.saturating_sub(1);
-            at += 2;
-            if depth == 0 {
-                return at;
-            }
-        } else {
-            at += rest.chars().next().map_or(1, char::len_utf8);
-        }
-    }
-    text.len()
-}
-
 impl Layout {
-    /// Writes the comments between two tokens; returns the number of line ends behind them.
-    fn gap(&mut self, gap: &str) -> usize {
-        let (comments, lines) = pieces(gap);
-        let mut forced = 0;
-        for (lines, comment) in comments {
-            self.begin(lines.max(forced), 0);
-            if !self.out.is_empty() && !self.out.ends_with(['\n', ' ']) {
-                self.out.push(' ');
-            }
-            // Line ends are LF, however many CR stood before one.
-            for (index, line) in comment.split('\n').enumerate() {
-                self.out.push_str(if index == 0 { "" } else { "\n" });
-                self.out.push_str(line.trim_end_matches('\r'));
-            }
-            forced = usize::from(comment.starts_with("//"));
-            self.last = None;
+    /// Writes a comment or a pragma, with this number of line ends before it.
+    fn comment(&mut self, comment: &str, lines: usize) {
+        self.begin(lines, 0);
+        if !self.out.is_empty() && !self.out.ends_with(['\n', ' ']) {
+            self.out.push(' ');
         }
-        lines.max(forced)
+        // Line ends are LF, however many CR stood before one.
+        for (index, line) in comment.split('\n').enumerate() {
+            self.out.push_str(if index == 0 { "" } else { "\n" });
+            self.out.push_str(line.trim_end_matches('\r'));
+        }
+        self.last = None;
     }
 
     /// Ends the line, if it ends here, and indents the next one, by `less` steps less than the open

@@ -26,11 +26,8 @@ pub fn references(text: &str) -> Result<Vec<Reference>, Box<Report>> {
         name: "expression",
         bytes: text.as_bytes(),
     };
-    let (sources, wrong) = Sources::new(&[source]);
     let mut found = Found::default();
-    for diagnostic in wrong {
-        found.add(diagnostic);
-    }
+    let sources = Sources::new(&[source], &mut found);
     let expression = parse::expression(&sources, &mut found);
     if found.has_errors() {
         return Err(Box::new(found.report(sources)));

@@ -107,6 +107,15 @@ pub(crate) enum Token {
 
 /// Cuts a text into tokens, the last of which is [`Token::End`]. Places count from `start`.
 pub(crate) fn lex(text: &str, start: u32, found: &mut Found) -> Vec<(Token, Span)> {
+    lex_with_comments(text, start, found).0
+}
+
+/// The same, and the comments and pragmas between the tokens.
+pub(crate) fn lex_with_comments(
+    text: &str,
+    start: u32,
+    found: &mut Found,
+) -> (Vec<(Token, Span)>, Vec<Span>) {
     let mut lexer = Lexer {
         text,
         bytes: text.as_bytes(),
@@ -114,6 +123,7 @@ pub(crate) fn lex(text: &str, start: u32, found: &mut Found) -> Vec<(Token, Span
         start,
         told_space: false,
         told_names: BTreeSet::new(),
+        comments: Vec::new(),
         found,
     };
     let mut tokens = Vec::with_capacity(text.len() / 4);
@@ -122,7 +132,7 @@ pub(crate) fn lex(text: &str, start: u32, found: &mut Found) -> Vec<(Token, Span
         let from = lexer.at;
         if from >= text.len() {
             tokens.push((Token::End, lexer.span(from)));
-            return tokens;
+            return (tokens, lexer.comments);
         }
         if let Some(token) = lexer.token() {
             tokens.push((token, lexer.span(from)));
@@ -139,6 +149,7 @@ struct Lexer<'a> {
     told_space: bool,
     /// Names with other letters that were reported.
     told_names: BTreeSet<&'a str>,
+    comments: Vec<Span>,
     found: &'a mut Found,
 }
 
@@ -240,9 +251,11 @@ impl<'a> Lexer<'a> {
                 self.pragma(from);
             } else if let Some(space) = self.char_here().filter(|it| SPACES.contains(it)) {
                 self.foreign_space(space);
+                continue;
             } else {
                 return;
             }
+            self.comments.push(self.span(from));
         }
     }
 

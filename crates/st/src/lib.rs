@@ -97,27 +97,23 @@ pub fn compile(sources: &[Source<'_>], options: &Options) -> Result<Compiled, Bo
     }
 }
 
-/// The library's own text as the last file of a project.
-fn library_source(prelude: &str) -> Source<'_> {
-    Source {
+/// The files of a project, and the library's own text as the last one.
+fn project(given: &[Source<'_>], found: &mut Found) -> Sources {
+    let prelude = library::prelude(given);
+    let mut files = given.to_vec();
+    files.push(Source {
         name: "library",
         bytes: prelude.as_bytes(),
-    }
+    });
+    Sources::new(&files, found)
 }
 
 type Built = (Option<(Vec<u8>, Symbols)>, Report);
 
 fn build(given: &[Source<'_>], options: &Options, module: bool) -> Result<Built, Report> {
-    let mut files = given.to_vec();
-    let prelude = library::prelude(given);
-    files.push(library_source(&prelude));
-    let (sources, wrong) = Sources::new(&files);
     let mut found = Found::default();
-    let unreadable = !wrong.is_empty();
-    for diagnostic in wrong {
-        found.add(diagnostic);
-    }
-    if unreadable {
+    let sources = project(given, &mut found);
+    if found.has_errors() {
         return Err(found.report(sources));
     }
     let items = parse::parse(&sources, &mut found);

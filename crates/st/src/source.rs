@@ -1,6 +1,6 @@
 //! The files of a project as one sequence of bytes, and places in it.
 
-use crate::error::{Code, Diagnostic};
+use crate::error::{Code, Diagnostic, Found};
 
 /// Largest number of bytes of all sources together.
 pub const SOURCES_MOST: usize = 16 << 20;
@@ -97,9 +97,8 @@ fn markup(text: &str) -> Option<(u32, &'static str)> {
 
 impl Sources {
     /// Takes the files; a byte order mark is left out. Reports text that is no UTF-8, and too much text.
-    pub(crate) fn new(sources: &[Source<'_>]) -> (Self, Vec<Diagnostic>) {
+    pub(crate) fn new(sources: &[Source<'_>], found: &mut Found) -> Self {
         let mut files = Vec::new();
-        let mut wrong = Vec::new();
         let mut start = 0_u32;
         let total = total(sources);
         for source in sources {
@@ -119,7 +118,7 @@ impl Sources {
             let after = start + text.len() as u32 + 1;
             if let Some(at) = bad {
                 let at = start + at as u32;
-                wrong.push(
+                found.add(
                     Diagnostic::error(
                         Code::Encoding,
                         Span { start: at, end: at },
@@ -134,7 +133,7 @@ impl Sources {
                     end: start + length,
                 };
                 let message = "this file is XML, not Structured Text";
-                wrong.push(Diagnostic::error(Code::Syntax, span, message).help(help));
+                found.add(Diagnostic::error(Code::Syntax, span, message).help(help));
             }
             let starts = text.bytes().zip(1..).filter(|(byte, _)| *byte == b'\n');
             let lines = std::iter::once(0).chain(starts.map(|(_, at)| at)).collect();
@@ -147,7 +146,7 @@ impl Sources {
             start = after;
         }
         if total > SOURCES_MOST {
-            wrong.push(
+            found.add(
                 Diagnostic::error(
                     Code::TooLarge,
                     Span::default(),
@@ -164,7 +163,7 @@ impl Sources {
                 lines: vec![0],
             });
         }
-        (Self { files }, wrong)
+        Self { files }
     }
 
     /// The number of files.
