@@ -56,6 +56,23 @@ pub struct Completion {
     pub doc: String,
 }
 
+impl Completion {
+    pub(crate) fn new(
+        name: &str,
+        kind: CompletionKind,
+        detail: impl Into<String>,
+        doc: impl Into<String>,
+    ) -> Self {
+        Self {
+            name: name.to_owned(),
+            insert: name.to_owned(),
+            kind,
+            detail: detail.into(),
+            doc: doc.into(),
+        }
+    }
+}
+
 /// The name at byte `byte` of file `file` of `sources`, if it is known; the table of files belongs to its
 /// spans. A place at the end of a name counts as in it. Cost: linear in the bytes of the sources.
 #[must_use]

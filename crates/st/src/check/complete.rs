@@ -1,6 +1,6 @@
 //! The names that may be written at a place in the text, according to the tokens before it.
 
-use super::look::{function_text, functions, library_blocks, pin_doc};
+use super::look::{function_text, functions, library_blocks};
 use super::{Checker, UnitKind};
 use crate::editor::{Completion, CompletionKind, Hover};
 use crate::error::Found;
@@ -71,22 +71,18 @@ struct Before<'t> {
 impl Before<'_> {
     /// The token `back` tokens before the place.
     fn token(&self, back: usize) -> Token {
-        let place = self.tokens.len().checked_sub(back + 1);
-        place
-            .and_then(|place| self.tokens.get(place))
+        self.tokens
+            .iter()
+            .nth_back(back)
             .map_or(Token::End, |(token, _)| *token)
     }
 
     fn text(&self, back: usize) -> &str {
-        let place = self.tokens.len().checked_sub(back + 1);
-        let span = place
-            .and_then(|place| self.tokens.get(place))
-            .map(|(_, span)| *span);
-        span.and_then(|span| {
-            self.text
-                .get((span.start - self.start) as usize..(span.end - self.start) as usize)
-        })
-        .unwrap_or_default()
+        let found = self.tokens.iter().nth_back(back).and_then(|(_, span)| {
+            let bytes = (span.start - self.start) as usize..(span.end - self.start) as usize;
+            self.text.get(bytes)
+        });
+        found.unwrap_or_default()
     }
 
     fn around(&self) -> Around {
@@ -266,7 +262,7 @@ impl Checker<'_> {
         let Part::Name(name) = parts.get(last)? else {
             return None;
         };
-        let mut found = match parts.get(..last)? {
+        let found = match parts.get(..last)? {
             [] => match self.local(name) {
                 Some((unit, place)) => self.told_of(self.unit(unit).members.list.get(place)?, ""),
                 None => self.told_of(&self.globals.get(*self.global_names.get(name)?)?.member, ""),
@@ -275,21 +271,12 @@ impl Checker<'_> {
                 let ty = self.type_of(owner, false)?;
                 match self.types.get(ty) {
                     Type::Structure(of) => self.told_of(of.members.find(name)?.1, ""),
-                    Type::Block(unit) => {
-                        let member = self.unit(*unit).members.find(name)?.1;
-                        Hover {
-                            doc: self.doc_in(*unit, member),
-                            ..self.told_of(member, &format!(" of {}", self.unit(*unit).name))
-                        }
-                    }
+                    Type::Block(unit) => self.told_in(*unit, self.unit(*unit).members.find(name)?.1),
                     _ => return None,
                 }
             }
         };
-        found.declared = found
-            .declared
-            .filter(|span| *span != Span::default() && !self.sources.in_library(*span));
-        Some(found)
+        Some(self.in_sources(found))
     }
 
     fn unit_at(&self, around: &Around) -> Option<UnitId> {
@@ -445,12 +432,9 @@ impl Checker<'_> {
         match self.types.get(ty) {
             Type::Enumeration(of) => {
                 let elements = of.elements.iter();
-                let offered = elements.map(|(name, number)| Completion {
-                    name: name.clone(),
-                    insert: name.clone(),
-                    kind: CompletionKind::Element,
-                    detail: format!("{} := {number}", of.name),
-                    doc: String::new(),
+                let offered = elements.map(|(name, number)| {
+                    let detail = format!("{} := {number}", of.name);
+                    Completion::new(name, CompletionKind::Element, detail, "")
                 });
                 offered.collect()
             }
@@ -496,47 +480,18 @@ impl Checker<'_> {
         offered
     }
 
-    /// The description of a variable in the table of blocks or in the text.
-    fn doc_in(&self, unit: UnitId, member: &Member) -> String {
-        match self.unit(unit).kind {
-            UnitKind::Library(block) => block
-                .pins()
-                .find(|pin| pin.name == member.name)
-                .map_or_else(String::new, pin_doc),
-            _ => self.remark(member.span),
-        }
-    }
-
     fn variable_offered(&self, member: &Member) -> Completion {
-        Completion {
-            name: member.name.clone(),
-            insert: member.name.clone(),
-            kind: CompletionKind::Variable,
-            detail: self.type_name(member.ty),
-            doc: self.remark(member.span),
-        }
+        let (detail, doc) = (self.type_name(member.ty), self.remark(member.span));
+        Completion::new(&member.name, CompletionKind::Variable, detail, doc)
     }
 
     fn unit_offered(&self, unit: UnitId, kind: CompletionKind, detail: &str) -> Completion {
         let info = self.unit(unit);
-        Completion {
-            name: info.name.clone(),
-            insert: info.name.clone(),
-            kind,
-            detail: detail.to_owned(),
-            doc: self.remark(info.span),
-        }
+        Completion::new(&info.name, kind, detail, self.remark(info.span))
     }
 
     /// Types, and blocks of which instances are declared.
     fn all_types(&self) -> Vec<Completion> {
-        let word = |name: &str, detail: &str, doc: &str, kind| Completion {
-            name: name.to_owned(),
-            insert: name.to_owned(),
-            kind,
-            detail: detail.to_owned(),
-            doc: doc.to_owned(),
-        };
         let mut offered = Vec::new();
         for (named, syntax) in self.named.values().map(|it| (it.found.0, it.syntax)) {
             if !self.sources.in_library(syntax.name.span) {
@@ -546,7 +501,12 @@ impl Checker<'_> {
                     _ => self.type_name(named),
                 };
                 let doc = self.remark(syntax.name.span);
-                offered.push(word(&syntax.name.text, &detail, &doc, CompletionKind::Type));
+                offered.push(Completion::new(
+                    &syntax.name.text,
+                    CompletionKind::Type,
+                    detail,
+                    doc,
+                ));
             }
         }
         for (index, info) in self.units.iter().enumerate() {
@@ -556,14 +516,17 @@ impl Checker<'_> {
             }
         }
         let blocks = library_blocks();
-        offered.extend(blocks.map(|(name, doc)| word(name, "of the library", doc, CompletionKind::Block)));
+        offered.extend(
+            blocks.map(|(name, doc)| Completion::new(name, CompletionKind::Block, "of the library", doc)),
+        );
         let library = self.library_types.values().map(|ty| self.type_name(*ty));
-        offered.extend(library.map(|name| word(&name, "of the library", "", CompletionKind::Type)));
+        offered
+            .extend(library.map(|name| Completion::new(&name, CompletionKind::Type, "of the library", "")));
         let elementary = Elementary::ALL.iter().map(|it| it.name());
         let elementary = elementary.chain([super::spec::TEXT]);
-        offered.extend(elementary.map(|name| word(name, "", "", CompletionKind::Type)));
+        offered.extend(elementary.map(|name| Completion::new(name, CompletionKind::Type, "", "")));
         for (text, doc) in [("ARRAY", "ARRAY [0..9] OF INT"), ("STRUCT", "")] {
-            offered.push(word(text, "", doc, CompletionKind::Keyword));
+            offered.push(Completion::new(text, CompletionKind::Keyword, "", doc));
         }
         offered
     }
@@ -610,17 +573,11 @@ impl Checker<'_> {
                     .filter(|it| seen.insert(it.name.to_ascii_uppercase())),
             );
         }
-        let plain = |name: &str, detail: String, kind| Completion {
-            name: name.to_owned(),
-            insert: name.to_owned(),
-            kind,
-            detail,
-            doc: String::new(),
-        };
-        offered.extend(functions().map(|name| plain(name, function_text(name), CompletionKind::Function)));
+        let function = |name| Completion::new(name, CompletionKind::Function, function_text(name), "");
+        offered.extend(functions().map(function));
+        let keyword = |word: &Word| Completion::new(word.text(), CompletionKind::Keyword, "", "");
         if self.scope.is_some() && !around.declaring {
-            let words = STATEMENT_WORDS.iter().map(|word| word.text());
-            offered.extend(words.map(|word| plain(word, String::new(), CompletionKind::Keyword)));
+            offered.extend(STATEMENT_WORDS.iter().map(keyword));
         }
         if self.scope.is_none() {
             let words = [
@@ -631,10 +588,7 @@ impl Checker<'_> {
                 Word::VarGlobal,
                 Word::Configuration,
             ];
-            let words = words.iter().map(|word| word.text());
-            return words
-                .map(|word| plain(word, String::new(), CompletionKind::Keyword))
-                .collect();
+            return words.iter().map(keyword).collect();
         }
         offered
     }

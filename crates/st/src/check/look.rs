@@ -43,11 +43,17 @@ impl Checker<'_> {
                 }
             }
         }
-        let mut found = self.look.found.take()?;
-        found.declared = found
-            .declared
-            .filter(|span| *span != Span::default() && !self.sources.in_library(*span));
-        Some(found)
+        let found = self.look.found.take()?;
+        Some(self.in_sources(found))
+    }
+
+    /// Without a declaration that is not in the files of the user.
+    pub(super) fn in_sources(&self, found: Hover) -> Hover {
+        let is_there = |span: &Span| *span != Span::default() && !self.sources.in_library(*span);
+        Hover {
+            declared: found.declared.filter(is_there),
+            ..found
+        }
     }
 
     /// Records the name at `span` if that is the requested place; the last one counts.
@@ -60,18 +66,8 @@ impl Checker<'_> {
 
     pub(super) fn look_at_member(&mut self, span: Span, unit: UnitId, place: usize) {
         self.look_at(span, |checker| {
-            let info = checker.unit(unit);
-            let of = format!(" of {}", info.name);
-            match (info.members.list.get(place), info.kind) {
-                (Some(member), UnitKind::Library(block)) => {
-                    let pin = block.pins().find(|pin| pin.name == member.name);
-                    let mut told = checker.told_of(member, &of);
-                    told.doc = pin.map_or_else(String::new, pin_doc);
-                    told
-                }
-                (Some(member), _) => checker.told_of(member, &of),
-                (None, _) => Hover::default(),
-            }
+            let member = checker.unit(unit).members.list.get(place);
+            member.map_or_else(Hover::default, |member| checker.told_in(unit, member))
         });
     }
 
@@ -207,6 +203,26 @@ impl Checker<'_> {
         }
     }
 
+    /// A variable of a unit.
+    pub(super) fn told_in(&self, unit: UnitId, member: &Member) -> Hover {
+        let of = format!(" of {}", self.unit(unit).name);
+        Hover {
+            doc: self.doc_in(unit, member),
+            ..self.told_of(member, &of)
+        }
+    }
+
+    /// The description of a variable in the table of blocks or in the text.
+    pub(super) fn doc_in(&self, unit: UnitId, member: &Member) -> String {
+        match self.unit(unit).kind {
+            UnitKind::Library(block) => block
+                .pins()
+                .find(|pin| pin.name == member.name)
+                .map_or_else(String::new, pin_doc),
+            _ => self.remark(member.span),
+        }
+    }
+
     /// `name AT %IX0.0 : type := value`
     pub(super) fn declaration(&self, member: &Member) -> String {
         let at = member.address.as_ref().map(|it| format!(" AT {it}"));
@@ -321,7 +337,7 @@ pub(super) fn function_text(key: &str) -> String {
 }
 
 /// The text of the table of blocks for a pin.
-pub(super) fn pin_doc(pin: &Pin) -> String {
+fn pin_doc(pin: &Pin) -> String {
     let unit = match pin.unit {
         "" => String::new(),
         unit => format!(" ({unit})"),
