@@ -228,6 +228,13 @@ pub(crate) enum MemberKind {
     Result,
 }
 
+impl MemberKind {
+    /// Whether a call gives it.
+    pub(crate) const fn is_given(self) -> bool {
+        matches!(self, Self::Input | Self::InOut)
+    }
+}
+
 #[derive(Clone, Debug)]
 pub(crate) struct Member {
     pub name: String,
@@ -241,6 +248,23 @@ pub(crate) struct Member {
     pub retain: bool,
     /// `%IX0.0`
     pub address: Option<String>,
+}
+
+impl Member {
+    /// A variable without a place and a first value.
+    pub(crate) fn new(name: &str, ty: TypeId, kind: MemberKind, span: Span) -> Self {
+        Self {
+            name: name.to_owned(),
+            ty,
+            kind,
+            offset: 0,
+            start: Start::Default,
+            span,
+            constant: false,
+            retain: false,
+            address: None,
+        }
+    }
 }
 
 /// The initial value of a variable.

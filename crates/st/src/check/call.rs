@@ -7,7 +7,7 @@ use crate::library::{Function, blocks, conversion};
 use crate::source::Span;
 use crate::syntax::{self, Call, Expression, ExpressionKind, Path, Selector, Way};
 use crate::typed::{Argument, Base, BlockCall, Expr, FunctionCall, Kind, Place, StmtKind};
-use crate::types::{Constant, Member, MemberKind, Start, Type, TypeId, UnitId, WRONG};
+use crate::types::{Constant, Elementary, Member, MemberKind, Start, Type, TypeId, UnitId, WRONG};
 
 /// Largest number of pins that a message lists.
 const PINS_SHOWN: usize = 10;
@@ -100,13 +100,9 @@ impl<'a> Checker<'a> {
         arguments: &'a [syntax::Argument],
     ) -> Vec<(usize, &'a syntax::Argument)> {
         let mut matched: Vec<(usize, &'a syntax::Argument)> = Vec::new();
-        let takes = |kind: MemberKind| matches!(kind, MemberKind::Input | MemberKind::InOut);
-        let mut positions = Vec::new();
-        for (place, member) in self.unit(unit).members.list.iter().enumerate() {
-            if takes(member.kind) {
-                positions.push(place);
-            }
-        }
+        let members = self.unit(unit).members.list.iter().enumerate();
+        let given = members.filter(|(_, member)| member.kind.is_given());
+        let positions: Vec<usize> = given.map(|(place, _)| place).collect();
         let mut positions = positions.into_iter();
         for argument in arguments {
             let info = self.unit(unit);
@@ -128,7 +124,7 @@ impl<'a> Checker<'a> {
             }
             let info = self.unit(unit);
             let good = match argument.way {
-                Way::In => takes(member.kind),
+                Way::In => member.kind.is_given(),
                 Way::Out | Way::OutInverted => member.kind == MemberKind::Output,
             };
             if !good {
@@ -189,7 +185,7 @@ impl<'a> Checker<'a> {
         let (mut count, mut missing) = (0, Vec::new());
         for (place, member) in info.members.list.iter().enumerate() {
             let input = member.kind == MemberKind::Input;
-            if !input && member.kind != MemberKind::InOut {
+            if !member.kind.is_given() {
                 continue;
             }
             count += 1;
@@ -230,8 +226,8 @@ impl<'a> Checker<'a> {
         let info = self.unit(unit);
         match &argument.name {
             None => {
-                let takes = |member: &&Member| matches!(member.kind, MemberKind::Input | MemberKind::InOut);
-                let count = info.members.list.iter().filter(takes).count();
+                let members = info.members.list.iter();
+                let count = members.filter(|member| member.kind.is_given()).count();
                 let message = format!("{} takes {}", info.name, inputs(count));
                 self.error(Code::BadArgument, argument.span, message, "");
             }
@@ -249,7 +245,7 @@ impl<'a> Checker<'a> {
     /// The pins that can be given in this direction, for a message.
     fn pins_for(&self, unit: UnitId, way: Way) -> Option<String> {
         let pins = self.unit(unit).members.list.iter().filter(|member| match way {
-            Way::In => matches!(member.kind, MemberKind::Input | MemberKind::InOut),
+            Way::In => member.kind.is_given(),
             Way::Out | Way::OutInverted => member.kind == MemberKind::Output,
         });
         let names: Vec<&str> = pins.map(|member| member.name.as_str()).collect();
@@ -332,18 +328,11 @@ impl<'a> Checker<'a> {
         let ty = self.types.value_type(member.ty);
         let mut loaded = Expr::new(Kind::Load(member), ty, argument.span);
         if argument.way == Way::OutInverted {
-            match self
-                .types
-                .elementary(ty)
-                .filter(|it| it.size() == 1 && *it == crate::types::Elementary::Bool)
-            {
-                Some(of) => loaded.kind = Kind::Not(of, Box::new(loaded.clone())),
-                None => self.error(
-                    Code::WrongType,
-                    argument.span,
-                    "NOT goes with outputs that are BOOL",
-                    "",
-                ),
+            if self.types.elementary(ty) == Some(Elementary::Bool) {
+                loaded.kind = Kind::Not(Elementary::Bool, Box::new(loaded.clone()));
+            } else {
+                let message = "NOT goes with outputs that are BOOL";
+                self.error(Code::WrongType, argument.span, message, "");
             }
         }
         let wanted = if target.bit.is_some() {

@@ -63,14 +63,16 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn every_scan(name: &str, unit: UnitId, span: Span) -> (Vec<Task>, Vec<Instance<'a>>) {
+    /// The instance of a PROGRAM that runs alone, in every scan.
+    fn every_scan(&self, unit: UnitId) -> (Vec<Task>, Vec<Instance<'a>>) {
+        let info = self.unit(unit);
         let instance = Instance {
-            name: name.to_owned(),
+            name: info.name.clone(),
             unit,
             task: 0,
             address: 0,
             arguments: &[],
-            span,
+            span: info.span,
         };
         (vec![always()], vec![instance])
     }
@@ -99,8 +101,7 @@ impl<'a> Checker<'a> {
             self.error(Code::NoProgram, Span::default(), message, &help);
             return (Vec::new(), Vec::new());
         };
-        let (name, span) = (self.unit(unit).name.clone(), self.unit(unit).span);
-        Self::every_scan(&name, unit, span)
+        self.every_scan(unit)
     }
 
     fn only_program(&mut self) -> (Vec<Task>, Vec<Instance<'a>>) {
@@ -117,10 +118,7 @@ impl<'a> Checker<'a> {
                 );
                 (Vec::new(), Vec::new())
             }
-            [one] => {
-                let (name, span) = (self.unit(*one).name.clone(), self.unit(*one).span);
-                Self::every_scan(&name, *one, span)
-            }
+            [one] => self.every_scan(*one),
             _ if self.options.library => (Vec::new(), Vec::new()),
             [first, second, ..] => {
                 let (one, other) = (self.unit(*first), self.unit(*second));

@@ -8,37 +8,22 @@ use crate::syntax::{self, Ident, Item, Section, SectionKind, SpecKind, TypeSpec}
 use crate::types::{Elementary, Member, MemberKind, Members, Start, Type, UnitId, WRONG};
 use std::collections::BTreeMap;
 
-/// Types of the language that are refused, and their replacements.
-pub(super) const REFUSED_TYPES: &[(&str, &str)] = &[
-    ("WSTRING", "use STRING"),
-    ("CHAR", "use BYTE"),
-    ("WCHAR", "use WORD"),
-    ("DATE", "use TIME, which counts from the start of the run: TIME()"),
-    ("LDATE", "use LTIME"),
-    (
-        "TIME_OF_DAY",
-        "use TIME, which counts from the start of the run: TIME()",
-    ),
-    ("TOD", "use TIME, which counts from the start of the run: TIME()"),
-    ("LTOD", "use LTIME"),
-    (
-        "DATE_AND_TIME",
-        "use TIME, which counts from the start of the run: TIME()",
-    ),
-    ("DT", "use TIME, which counts from the start of the run: TIME()"),
-    ("LDT", "use LTIME"),
-    ("ANY", "write a function for each type"),
-    ("ANY_NUM", "write a function for each type"),
-    ("ANY_INT", "write a function for each type"),
-    ("ANY_REAL", "write a function for each type"),
-    ("ANY_BIT", "write a function for each type"),
-    ("ANY_ELEMENTARY", "write a function for each type"),
-    ("ANY_DERIVED", "write a function for each type"),
-    ("ANY_MAGNITUDE", "write a function for each type"),
-    ("ANY_STRING", "write a function for each type"),
-    ("ANY_DATE", "write a function for each type"),
-    ("POINTER", "hand variables over as VAR_IN_OUT"),
-];
+/// The replacement for a type of the language that is refused.
+pub(super) fn in_place_of(key: &str) -> Option<&'static str> {
+    Some(match key {
+        "WSTRING" => "use STRING",
+        "CHAR" => "use BYTE",
+        "WCHAR" => "use WORD",
+        "DATE" | "TIME_OF_DAY" | "TOD" | "DATE_AND_TIME" | "DT" => {
+            "use TIME, which counts from the start of the run: TIME()"
+        }
+        "LDATE" | "LTOD" | "LDT" => "use LTIME",
+        "ANY" | "ANY_NUM" | "ANY_INT" | "ANY_REAL" | "ANY_BIT" | "ANY_ELEMENTARY" | "ANY_DERIVED"
+        | "ANY_MAGNITUDE" | "ANY_STRING" | "ANY_DATE" => "write a function for each type",
+        "POINTER" => "hand variables over as VAR_IN_OUT",
+        _ => return None,
+    })
+}
 
 impl<'a> Checker<'a> {
     /// Records the names at the top level of files.
@@ -128,10 +113,7 @@ impl<'a> Checker<'a> {
     /// Reports a name that is also the name of an elementary type, or whose spelling other compilers refuse.
     pub(super) fn check_name(&mut self, name: &Ident) {
         let key = name.key();
-        if Elementary::find(&key).is_some()
-            || key == super::spec::TEXT
-            || REFUSED_TYPES.iter().any(|(it, _)| *it == key)
-        {
+        if Elementary::find(&key).is_some() || key == super::spec::TEXT || in_place_of(&key).is_some() {
             let message = format!("`{}` is the name of a type of the language", name.text);
             self.error(Code::BadName, name.span, message, "choose another name");
         }
@@ -237,15 +219,10 @@ impl<'a> Checker<'a> {
                 let place = self.globals.len();
                 self.globals.push(Global {
                     member: Member {
-                        name: name.text.clone(),
-                        ty: WRONG,
-                        kind: MemberKind::External(place),
-                        offset: 0,
-                        start: Start::Default,
-                        span: name.span,
                         constant: section.constant,
                         retain: section.retain,
                         address: address.as_ref().map(|address| address.text.clone()),
+                        ..Member::new(&name.text, WRONG, MemberKind::External(place), name.span)
                     },
                     spec: Some(&variables.spec),
                     initial: variables.initial.as_ref(),

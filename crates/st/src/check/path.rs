@@ -6,7 +6,7 @@ use crate::library::{Function, blocks, conversion};
 use crate::source::Span;
 use crate::syntax::{Expression, Ident, Path, Selector};
 use crate::typed::{Base, Expr, Index, Kind, Place};
-use crate::types::{Class, Constant, Elementary, Member, MemberKind, Start, Type, TypeId, UnitId};
+use crate::types::{Class, Constant, Elementary, Member, MemberKind, Type, TypeId, UnitId};
 
 /// The remedy for a member of AXIS_REF that only other systems have.
 const OF_AN_AXIS: &str = "it has `Number`; blocks read the rest of an axis: MC_ReadActualPosition, MC_ReadActualVelocity, MC_ReadStatus, MC_ReadAxisError";
@@ -212,15 +212,8 @@ impl<'a> Checker<'a> {
         self.check_memory(span);
         self.globals.push(Global {
             member: Member {
-                name,
-                ty,
-                kind: MemberKind::External(place),
                 offset,
-                start: Start::Default,
-                span: own,
-                constant: false,
-                retain: false,
-                address: None,
+                ..Member::new(&name, ty, MemberKind::External(place), own)
             },
             spec: None,
             initial: None,

@@ -1,6 +1,6 @@
 //! From the types of the syntax tree to resolved types.
 
-use super::declare::REFUSED_TYPES;
+use super::declare::in_place_of;
 use super::{Checker, ElementOf, State, UnitKind};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::library::blocks;
@@ -36,6 +36,14 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// The type of variables that are declared together, and their initial value.
+    pub(super) fn declared(&mut self, variables: &'a Variables) -> (TypeId, Start) {
+        let (ty, default) = self.spec(&variables.spec);
+        let initial = variables.initial.as_ref();
+        let start = initial.map(|initial| self.start(initial, ty));
+        (ty, start.unwrap_or(default))
+    }
+
     /// The type of a name in the text.
     pub(super) fn type_by_name(&mut self, name: &Ident) -> (TypeId, Start) {
         let key = name.key();
@@ -43,7 +51,7 @@ impl<'a> Checker<'a> {
             self.look_at_type(name.span, found.0, &key);
             return found;
         }
-        if let Some((_, instead)) = REFUSED_TYPES.iter().find(|(it, _)| *it == key) {
+        if let Some(instead) = in_place_of(&key) {
             let message = format!("{key} is not supported");
             self.error(Code::Unsupported, name.span, message, instead);
             return (WRONG, Start::Default);
@@ -312,12 +320,7 @@ impl<'a> Checker<'a> {
     fn structure(&mut self, variables: &'a [Variables], name: Option<&Ident>) -> TypeId {
         let mut members = Members::default();
         for group in variables {
-            let (ty, default) = self.spec(&group.spec);
-            let start = group
-                .initial
-                .as_ref()
-                .map(|initial| self.start(initial, ty))
-                .unwrap_or(default);
+            let (ty, start) = self.declared(group);
             self.no_program(ty, group.spec.span);
             for (name, address) in &group.names {
                 self.check_name(name);
@@ -336,15 +339,8 @@ impl<'a> Checker<'a> {
                 }
                 let (size, align) = self.size(ty);
                 let member = Member {
-                    name: name.text.clone(),
-                    ty,
-                    kind: MemberKind::Field,
-                    offset: 0,
                     start: start.clone(),
-                    span: name.span,
-                    constant: false,
-                    retain: false,
-                    address: None,
+                    ..Member::new(&name.text, ty, MemberKind::Field, name.span)
                 };
                 self.look_at(name.span, |checker| checker.told_of(&member, ""));
                 members.add(member, size, align);

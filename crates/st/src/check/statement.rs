@@ -239,13 +239,8 @@ impl<'a> Checker<'a> {
             .iter()
             .filter(|(_, number)| {
                 let behind = seen.partition_point(|(from, ..)| from <= number);
-                !seen
-                    .get(..behind)
-                    .unwrap_or_default()
-                    .iter()
-                    .rev()
-                    .take(1)
-                    .any(|(_, to, _)| number <= to)
+                let before = seen.get(..behind).and_then(<[_]>::last);
+                before.is_none_or(|(_, to, _)| number > to)
             })
             .map(|(name, _)| name.as_str())
             .take(4)

@@ -5,7 +5,7 @@ use crate::error::{Code, Diagnostic, quoted};
 use crate::library::blocks;
 use crate::source::Span;
 use crate::syntax::{Ident, Section, SectionKind, Variables};
-use crate::types::{Member, MemberKind, Start, Type, UnitId, WRONG};
+use crate::types::{Member, MemberKind, Type, UnitId, WRONG};
 
 /// Largest number of inputs of a FUNCTION: interpreters limit the parameters of one.
 const INPUTS_MOST: usize = 32;
@@ -61,15 +61,9 @@ impl<'a> Checker<'a> {
             checker.in_scope(Some(id), |checker| {
                 if let Some(result) = &syntax.result {
                     let (ty, start) = checker.spec(result);
-                    checker.add_member(
-                        id,
-                        &syntax.name,
-                        ty,
-                        MemberKind::Result,
-                        start,
-                        (false, false),
-                        None,
-                    );
+                    let name = &syntax.name;
+                    let member = Member::new(&name.text, ty, MemberKind::Result, name.span);
+                    checker.add_member(id, name, Member { start, ..member });
                     let unit = checker.unit_mut(id);
                     unit.result = Some(unit.members.list.len() - 1);
                 }
@@ -78,10 +72,9 @@ impl<'a> Checker<'a> {
                 }
             });
         });
-        let taken = |member: &&Member| matches!(member.kind, MemberKind::Input | MemberKind::InOut);
-        if self.unit(id).kind.has_frame()
-            && self.unit(id).members.list.iter().filter(taken).count() > INPUTS_MOST
-        {
+        let members = self.unit(id).members.list.iter();
+        let inputs = members.filter(|member| member.kind.is_given()).count();
+        if self.unit(id).kind.has_frame() && inputs > INPUTS_MOST {
             let message = format!("a FUNCTION or METHOD has at most {INPUTS_MOST} inputs");
             self.error(Code::TooLarge, span, message, "hand over a structure");
         }
@@ -118,16 +111,17 @@ impl<'a> Checker<'a> {
                     "make it a variable of a FUNCTION_BLOCK",
                 );
             }
-            let (ty, default) = self.spec(&variables.spec);
-            let start = variables
-                .initial
-                .as_ref()
-                .map(|initial| self.start(initial, ty))
-                .unwrap_or(default);
+            let (ty, start) = self.declared(variables);
             self.check_kind(id, kind, ty, variables);
             for (name, address) in &variables.names {
-                let flags = (section.constant, section.retain);
-                self.add_member(id, name, ty, kind, start.clone(), flags, address.as_ref());
+                let member = Member {
+                    start: start.clone(),
+                    constant: section.constant,
+                    retain: section.retain,
+                    address: address.as_ref().map(|address| address.text.clone()),
+                    ..Member::new(&name.text, ty, kind, name.span)
+                };
+                self.add_member(id, name, member);
             }
         }
     }
@@ -179,38 +173,17 @@ impl<'a> Checker<'a> {
         }
     }
 
-    #[allow(clippy::too_many_arguments)]
-    fn add_member(
-        &mut self,
-        id: UnitId,
-        name: &Ident,
-        ty: crate::types::TypeId,
-        kind: MemberKind,
-        start: Start,
-        (constant, retain): (bool, bool),
-        address: Option<&Ident>,
-    ) {
+    fn add_member(&mut self, id: UnitId, name: &Ident, member: Member) {
         self.check_name(name);
         if let Some((_, other)) = self.unit(id).members.find(&name.key()) {
             let other = other.span;
             self.twice(name, other);
             return;
         }
-        let (size, align) = if kind == MemberKind::InOut {
+        let (size, align) = if member.kind == MemberKind::InOut {
             (4, 4)
         } else {
-            self.size(ty)
-        };
-        let member = Member {
-            name: name.text.clone(),
-            ty,
-            kind,
-            offset: 0,
-            start,
-            span: name.span,
-            constant,
-            retain,
-            address: address.map(|address| address.text.clone()),
+            self.size(member.ty)
         };
         let place = self.unit(id).members.list.len();
         self.unit_mut(id).members.add(member, size, align);
@@ -221,34 +194,17 @@ impl<'a> Checker<'a> {
     fn externals(&mut self, id: UnitId, variables: &'a Variables) {
         let (ty, _) = self.spec(&variables.spec);
         for (name, _) in &variables.names {
-            let known = self.global_names.get(&name.key()).copied();
-            if known.is_none() && self.may_be_damaged(&name.key()) {
-                self.add_member(
-                    id,
-                    name,
-                    WRONG,
-                    MemberKind::Var,
-                    Start::Default,
-                    (false, false),
-                    None,
-                );
-                continue;
-            }
-            let Some(place) = known else {
-                let guess = self.guess(&name.text, self.declared_globals());
-                let message = format!("there is no global variable {}", quoted(&name.text));
-                let wrong = Diagnostic::error(Code::UnknownName, name.span, message);
-                self.tell(wrong.maybe_help(guess.or_else(|| Some("declare it in VAR_GLOBAL".to_owned()))));
+            let Some(place) = self.global_names.get(&name.key()).copied() else {
+                if !self.may_be_damaged(&name.key()) {
+                    let guess = self.guess(&name.text, self.declared_globals());
+                    let message = format!("there is no global variable {}", quoted(&name.text));
+                    let wrong = Diagnostic::error(Code::UnknownName, name.span, message);
+                    let guess = guess.or_else(|| Some("declare it in VAR_GLOBAL".to_owned()));
+                    self.tell(wrong.maybe_help(guess));
+                }
                 // It is known from here on, so that its uses are not reported, too.
-                self.add_member(
-                    id,
-                    name,
-                    WRONG,
-                    MemberKind::Var,
-                    Start::Default,
-                    (false, false),
-                    None,
-                );
+                let member = Member::new(&name.text, WRONG, MemberKind::Var, name.span);
+                self.add_member(id, name, member);
                 continue;
             };
             self.global(place);

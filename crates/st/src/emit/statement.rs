@@ -64,9 +64,7 @@ pub(super) fn unit(context: &mut Context<'_, '_>, id: UnitId) -> Function {
     let members = &info.members.list;
     let result = info.result.and_then(|place| members.get(place));
     let (parameters, value) = if is_function {
-        let taken = members
-            .iter()
-            .filter(|member| matches!(member.kind, MemberKind::Input | MemberKind::InOut));
+        let taken = members.iter().filter(|member| member.kind.is_given());
         let taken = taken.map(|member| match member.kind {
             MemberKind::InOut => ValType::I32,
             _ => Emitter::parameter(program.types.elementary(member.ty)),
@@ -110,9 +108,7 @@ impl Emitter<'_, '_, '_> {
     /// Copies the parameters of a FUNCTION, from local variable `first` on, to the addresses of its
     /// variables.
     fn take_parameters(&mut self, members: &[Member], frame: u32, first: u32) {
-        let taken = members
-            .iter()
-            .filter(|member| matches!(member.kind, MemberKind::Input | MemberKind::InOut));
+        let taken = members.iter().filter(|member| member.kind.is_given());
         for (local, member) in (first..).zip(taken) {
             let offset = frame + member.offset;
             match (member.kind, self.type_of(member.ty)) {

@@ -121,15 +121,8 @@ fn enumeration(info: &EnumInfo) -> Type {
 
 fn field(name: &str, ty: TypeId, kind: MemberKind, offset: u32) -> Member {
     Member {
-        name: name.to_owned(),
-        ty,
-        kind,
         offset,
-        start: Start::Default,
-        span: Span::default(),
-        constant: false,
-        retain: false,
-        address: None,
+        ..Member::new(name, ty, kind, Span::default())
     }
 }
 

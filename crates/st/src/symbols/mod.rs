@@ -8,12 +8,12 @@ pub(crate) use bind::bind;
 pub use columns::BlockAt;
 pub use writers::Writer;
 
-use crate::check::{Instance, Program, UnitKind};
+use crate::check::{Program, UnitKind};
 use crate::coverage::Counter;
 use crate::emit::{FaultKind, Site};
 use crate::source::{Position, Sources, Span};
 use crate::start;
-use crate::types::{Elementary, Member, MemberKind, Members, Start, Type, TypeId, Types};
+use crate::types::{Elementary, Member, MemberKind, Members, Type, TypeId, Types};
 use standstill_fb::BlockInfo;
 
 /// The use of a variable.
@@ -151,12 +151,15 @@ impl Symbols {
         });
         let mut roots: Vec<Root> = globals.collect();
         let mut types = program.types;
-        roots.extend(program.instances.iter().map(|instance| Root {
-            member: instance_member(instance, types.shared(Type::Block(instance.unit))),
-            address: instance.address,
-            section: Section::Internal,
-            instance: true,
-            list: String::new(),
+        roots.extend(program.instances.iter().map(|instance| {
+            let ty = types.shared(Type::Block(instance.unit));
+            Root {
+                member: Member::new(&instance.name, ty, MemberKind::Var, Span::default()),
+                address: instance.address,
+                section: Section::Internal,
+                instance: true,
+                list: String::new(),
+            }
         }));
         let tasks = program.tasks.iter().map(|task| Task {
             name: task.name.clone(),
@@ -391,20 +394,6 @@ fn next_name<'p>(rest: &mut &'p str) -> Option<&'p str> {
     let (name, behind) = rest.split_at(end);
     *rest = behind;
     (!name.is_empty()).then_some(name)
-}
-
-fn instance_member(instance: &Instance<'_>, ty: TypeId) -> Member {
-    Member {
-        name: instance.name.clone(),
-        ty,
-        kind: MemberKind::Var,
-        offset: 0,
-        start: Start::Default,
-        span: Span::default(),
-        constant: false,
-        retain: false,
-        address: None,
-    }
 }
 
 /// Writes the contents of the memory before the first scan.
