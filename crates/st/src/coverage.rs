@@ -36,7 +36,7 @@ impl Counters {
     pub(crate) fn new(program: &mut Program<'_>, sources: &Sources) -> Self {
         let mut keys = Vec::new();
         for body in &program.bodies {
-            if !sources.in_library(program.units[body.unit.0 as usize].span) {
+            if !sources.in_library(program.unit(body.unit).span) {
                 statements(&body.statements, &mut keys);
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::check::{Program, UnitKind};
 use crate::library::blocks;
-use crate::types::{Constant, Elementary, Member, MemberKind, Start, Type, TypeId, Types};
+use crate::types::{Array, Constant, Elementary, Member, MemberKind, Start, Type, TypeId, Types};
 
 /// The number that a variable of an elementary type has by default.
 pub(crate) fn first(types: &Types, ty: TypeId) -> i128 {
@@ -20,7 +20,7 @@ pub(crate) fn write(program: &Program<'_>, ty: TypeId, start: &Start, memory: &m
             members(program, &structure.members.list, start, memory, at);
         }
         (Type::Block(unit), Start::Default | Start::Members(_)) => {
-            let unit = &program.units[unit.0 as usize];
+            let unit = program.unit(*unit);
             if let UnitKind::Library(info) = unit.kind {
                 use standstill_fb::flat::Pointer;
                 let inputs = info.flat_inputs(Pointer::Bits32).size as i128;
@@ -34,7 +34,7 @@ pub(crate) fn write(program: &Program<'_>, ty: TypeId, start: &Start, memory: &m
             put(&[bytes.len() as u8], memory, at);
             put(bytes, memory, at + 1);
         }
-        (Type::Array(array), _) => elements(program, ty, array, start, memory, at),
+        (Type::Array(array), _) => elements(program, array, start, memory, at),
         _ => {
             let Some(of) = program.types.elementary(ty) else {
                 return;
@@ -69,18 +69,10 @@ fn members(program: &Program<'_>, list: &[Member], start: &Start, memory: &mut [
     }
 }
 
-fn elements(
-    program: &Program<'_>,
-    _ty: TypeId,
-    array: &crate::types::Array,
-    start: &Start,
-    memory: &mut [u8],
-    at: u32,
-) {
-    let whole = [(array.count, Start::Default)];
+fn elements(program: &Program<'_>, array: &Array, start: &Start, memory: &mut [u8], at: u32) {
     let rows: &[(u32, Start)] = match start {
         Start::List(rows) => rows,
-        _ => &whole,
+        _ => &[],
     };
     let mut done = 0_u32;
     for (times, start) in rows.iter().chain([&(array.count, Start::Default)]) {
@@ -91,14 +83,7 @@ fn elements(
 }
 
 /// The same element several times: it is made once and copied.
-fn repeat(
-    program: &Program<'_>,
-    array: &crate::types::Array,
-    start: &Start,
-    times: u32,
-    memory: &mut [u8],
-    at: u32,
-) {
+fn repeat(program: &Program<'_>, array: &Array, start: &Start, times: u32, memory: &mut [u8], at: u32) {
     if times == 0 {
         return;
     }
@@ -136,6 +121,6 @@ fn put(bytes: &[u8], memory: &mut [u8], at: u32) {
 
 /// Writes the first values of the variables of a program.
 pub(crate) fn members_of(program: &Program<'_>, unit: crate::types::UnitId, memory: &mut [u8], at: u32) {
-    let unit = &program.units[unit.0 as usize];
+    let unit = program.unit(unit);
     members(program, &unit.members.list, &Start::Default, memory, at);
 }

@@ -153,11 +153,14 @@ pub(crate) struct Program<'a> {
     pub layout: Layout,
 }
 
-impl Program<'_> {
+impl<'a> Program<'a> {
+    pub(crate) fn unit(&self, id: UnitId) -> &UnitInfo<'a> {
+        &self.units[id.0 as usize]
+    }
+
     /// Bytes of a type.
     pub(crate) fn size(&self, ty: TypeId) -> u32 {
-        let of_unit = |unit: UnitId| self.units[unit.0 as usize].members.size;
-        self.types.size(ty, of_unit).0
+        self.types.size(ty, |unit| self.unit(unit).members.size).0
     }
 }
 

@@ -4,7 +4,7 @@ use super::expression::Emitter;
 use super::function::{at, value_type};
 use super::place::Root;
 use super::text::Helper;
-use super::{FaultKind, Target, kind_of};
+use super::{FaultKind, Target};
 use crate::check::UnitKind;
 use crate::library::blocks;
 use crate::source::Span;
@@ -87,12 +87,13 @@ impl Emitter<'_, '_, '_> {
             self.assign(place, value);
         }
         let program = self.context.program;
-        let members = &program.units[call.unit.0 as usize].members.list;
+        let unit = program.unit(call.unit);
+        let members = &unit.members.list;
         for (member, bound) in &call.references {
             let Some(member) = members.get(*member) else {
                 continue;
             };
-            match kind_of(program, call.unit) {
+            match unit.kind {
                 UnitKind::Library(_) => self.reference(root, offset + member.offset, bound),
                 _ => {
                     self.push_root(root);
@@ -101,7 +102,7 @@ impl Emitter<'_, '_, '_> {
                 }
             }
         }
-        if let UnitKind::Library(info) = kind_of(program, call.unit) {
+        if let UnitKind::Library(info) = unit.kind {
             self.library_block(info, root, offset);
         } else {
             for member in call.kept.iter().filter_map(|place| members.get(*place)) {

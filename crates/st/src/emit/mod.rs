@@ -14,7 +14,7 @@ mod place;
 mod statement;
 mod text;
 
-use crate::check::{Body, Program, UnitKind};
+use crate::check::{Body, Program};
 use crate::coverage::Counters;
 use crate::error::{Code, Diagnostic};
 use crate::layout;
@@ -179,7 +179,7 @@ pub(crate) fn emit(
         };
         if function.code.len() > FUNCTION_MOST {
             return Err(too_large(match target {
-                Target::Unit(unit) => program.units[unit.0 as usize].span,
+                Target::Unit(unit) => program.unit(unit).span,
                 _ => Span::default(),
             }));
         }
@@ -354,9 +354,4 @@ fn runs(image: &[u8], gap: usize) -> Vec<std::ops::Range<usize>> {
         }
     }
     runs
-}
-
-/// Whether a unit is a function whose value is passed by address.
-fn kind_of(program: &Program<'_>, unit: UnitId) -> UnitKind {
-    program.units[unit.0 as usize].kind
 }

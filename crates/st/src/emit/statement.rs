@@ -1,9 +1,9 @@
 //! Statements, and the functions made of units and tasks.
 
+use super::Context;
 use super::expression::Emitter;
 use super::function::{Function, at, value_type};
 use super::place::Root;
-use super::{Context, kind_of};
 use crate::check::{Task, UnitKind};
 use crate::layout;
 use crate::source::Span;
@@ -58,9 +58,9 @@ pub(super) fn scan(context: &mut Context<'_, '_>, only: Option<usize>) -> Functi
 /// A program, a function block, a FUNCTION or a METHOD, which gets its instance before its parameters.
 pub(super) fn unit(context: &mut Context<'_, '_>, id: UnitId) -> Function {
     let program = context.program;
-    let info = &program.units[id.0 as usize];
-    let is_function = kind_of(program, id).has_frame();
-    let is_method = kind_of(program, id) == UnitKind::Method;
+    let info = program.unit(id);
+    let is_function = info.kind.has_frame();
+    let is_method = info.kind == UnitKind::Method;
     let members = &info.members.list;
     let result = info.result.and_then(|place| members.get(place));
     let (parameters, value) = if is_function {

@@ -394,17 +394,16 @@ impl Walk<'_, '_, '_> {
     /// The variable of a place, and the offset in it; for an array of blocks, the offset in its first element.
     fn variable(&self, place: &Place) -> Option<(Variable, u32)> {
         let program = self.program;
-        let info = |unit: UnitId| program.units.get(unit.0 as usize);
         let (unit, offset) = match (place.base, self.unit) {
             // A method works on the variables of its block.
-            (Base::This, Some(unit)) => (info(unit)?.owner.or(Some(unit)), place.offset),
-            (Base::ThisPointer(offset), Some(unit)) => (info(unit)?.owner.or(Some(unit)), offset),
-            (Base::Memory | Base::MemoryPointer(_), Some(unit)) if info(unit)?.kind.has_frame() => {
+            (Base::This, Some(unit)) => (program.unit(unit).owner.or(Some(unit)), place.offset),
+            (Base::ThisPointer(offset), Some(unit)) => (program.unit(unit).owner.or(Some(unit)), offset),
+            (Base::Memory | Base::MemoryPointer(_), Some(unit)) if program.unit(unit).kind.has_frame() => {
                 let address = match place.base {
                     Base::MemoryPointer(address) => address,
                     _ => place.offset,
                 };
-                let (frame, size) = (info(unit)?.frame, info(unit)?.members.size);
+                let (frame, size) = (program.unit(unit).frame, program.unit(unit).members.size);
                 match address.checked_sub(frame).filter(|offset| *offset < size) {
                     Some(offset) => (Some(unit), offset),
                     None => (None, address),
@@ -421,7 +420,7 @@ impl Walk<'_, '_, '_> {
                     _ => held,
                 };
                 let member = spans.at(offset)?;
-                (member, info(unit)?.members.list.get(member)?)
+                (member, program.unit(unit).members.list.get(member)?)
             }
             None => {
                 let member = self.places.globals.at(offset)?;

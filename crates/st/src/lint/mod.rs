@@ -13,24 +13,22 @@ use crate::error::{Diagnostic, Found};
 use crate::source::Sources;
 
 /// Searches for all lints. Cost: linear in the program, except for the calls of one instance in one unit.
-/// unit.
 pub(crate) fn lint(program: &Program<'_>, sources: &Sources, found: &mut Found) {
-    let off = Off::new(sources);
-    for diagnostic in rules::all(program, &facts::gather(program)) {
-        if !off.holds(&diagnostic) {
-            found.add(diagnostic);
-        }
-    }
+    let told = rules::all(program, &facts::gather(program));
+    tell(told, sources, found);
 }
 
 /// Variables of type AXIS_REF of PROGRAMs, and global ones, that name no axis. `image` is the initial memory. No
 /// statement gives any variable of this type another value.
 pub(crate) fn without_axis(program: &Program<'_>, image: &[u8], sources: &Sources, found: &mut Found) {
+    let told = rules::without_axis(program, &facts::gather(program), image);
+    tell(told, sources, found);
+}
+
+fn tell(told: Vec<Diagnostic>, sources: &Sources, found: &mut Found) {
     let off = Off::new(sources);
-    for diagnostic in rules::without_axis(program, &facts::gather(program), image) {
-        if !off.holds(&diagnostic) {
-            found.add(diagnostic);
-        }
+    for diagnostic in told.into_iter().filter(|it| !off.holds(it)) {
+        found.add(diagnostic);
     }
 }
 

@@ -48,27 +48,23 @@ pub(super) fn all(program: &Program<'_>, facts: &Facts) -> Vec<Diagnostic> {
 fn member<'p>(program: &'p Program<'_>, variable: Variable) -> Option<&'p Member> {
     match variable.unit {
         None => program.globals.get(variable.member).map(|global| &global.member),
-        Some(unit) => program
-            .units
-            .get(unit.0 as usize)?
-            .members
-            .list
-            .get(variable.member),
+        Some(unit) => program.unit(unit).members.list.get(variable.member),
     }
+}
+
+fn name<'p>(program: &'p Program<'_>, variable: Variable) -> &'p str {
+    member(program, variable).map_or("", |member| &member.name)
 }
 
 /// The block of a call, if it is one of motion.
 fn motion(program: &Program<'_>, unit: UnitId) -> bool {
-    matches!(
-        program.units.get(unit.0 as usize).map(|info| &info.kind),
-        Some(UnitKind::Library(info)) if info.name.starts_with("MC_")
-    )
+    matches!(program.unit(unit).kind, UnitKind::Library(info) if info.name.starts_with("MC_"))
 }
 
 /// The offset of the pin of a unit in an instance.
 fn pin(program: &Program<'_>, unit: UnitId, key: &str) -> Option<u32> {
-    let members = &program.units.get(unit.0 as usize)?.members;
-    members.find(key).map(|(_, member)| member.offset)
+    let found = program.unit(unit).members.find(key);
+    found.map(|(_, member)| member.offset)
 }
 
 /// ST50: there is a path on which a motion block is not called.
@@ -76,7 +72,7 @@ fn not_always(program: &Program<'_>, calls: &[&Call], told: &mut Vec<Diagnostic>
     let Some(first) = calls.first().filter(|call| motion(program, call.callee)) else {
         return;
     };
-    let name = member(program, first.variable).map_or("", |member| member.name.as_str());
+    let name = name(program, first.variable);
     let message = format!(
         "`{name}` is not called in every scan: while it is not, its outputs stand still and an edge may be missed"
     );
@@ -96,7 +92,7 @@ fn twice(program: &Program<'_>, calls: &[&Call], told: &mut Vec<Diagnostic>) {
                 && first.lists.last().is_some_and(|list| second.lists.contains(list))
         };
         if let Some(first) = calls.iter().take(place).find(on_path) {
-            let name = member(program, second.variable).map_or("", |member| member.name.as_str());
+            let name = name(program, second.variable);
             let message = format!("`{name}` is called a second time in the same scan");
             told.push(
                 Diagnostic::warning(Code::St54, second.span, message).related(first.span, "the first one"),
@@ -150,8 +146,7 @@ fn two_writers(program: &Program<'_>, facts: &Facts, told: &mut Vec<Diagnostic>)
                 Some(*first)
             };
             if let Some(other) = other {
-                let name =
-                    |call: &Call| member(program, call.variable).map_or("", |member| member.name.as_str());
+                let name = |call: &Call| name(program, call.variable);
                 let message = format!(
                     "`{}` and `{}` write the same variable: the one called last wins",
                     name(other),
@@ -185,7 +180,7 @@ fn refusals(
         if handed || is_read(error) || pins[1].is_some_and(is_read) {
             continue;
         }
-        let name = member(program, *variable).map_or("", |member| member.name.as_str());
+        let name = name(program, *variable);
         let message = format!("nobody reads `{name}.Error`: the program cannot notice a refusal");
         told.push(Diagnostic::warning(Code::St53, first.span, message));
     }
@@ -244,7 +239,7 @@ pub(super) fn without_axis(program: &Program<'_>, facts: &Facts, image: &[u8]) -
         return Vec::new();
     }
     let of_programs = program.instances.iter().flat_map(|instance| {
-        let members = program.units[instance.unit.0 as usize].members.list.iter();
+        let members = program.unit(instance.unit).members.list.iter();
         members.enumerate().map(|(place, member)| {
             let unit = Some(instance.unit);
             (Variable { unit, member: place }, member, instance.address)

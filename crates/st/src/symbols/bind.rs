@@ -27,7 +27,7 @@ pub(crate) fn bind(
         );
     }
     for instance in &program.instances {
-        let members = &program.units[instance.unit.0 as usize].members;
+        let members = &program.unit(instance.unit).members;
         let path = &instance.name;
         member_references(program, &members.list, path, instance.address, &mut found);
     }
@@ -128,7 +128,7 @@ fn references(program: &Program<'_>, ty: TypeId, path: &str, address: u32, found
             member_references(program, &structure.members.list, path, address, found)
         }
         Type::Block(unit) => {
-            let unit = &program.units[unit.0 as usize];
+            let unit = program.unit(*unit);
             if !matches!(unit.kind, UnitKind::Library(_)) {
                 member_references(program, &unit.members.list, path, address, found);
             }

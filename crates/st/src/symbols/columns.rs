@@ -1,7 +1,7 @@
 //! The variables that a trace shows, and the instances of blocks.
 
 use super::{Part, Section, Symbol, Symbols};
-use crate::types::{MemberKind, Type};
+use crate::types::{Member, Type};
 
 /// An instance of a function block of the library.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -134,11 +134,8 @@ impl Symbols {
             return;
         }
         if let Some(members) = self.members(part.ty) {
-            let held = |kind| !matches!(kind, MemberKind::InOut | MemberKind::External(_));
-            for member in members.list.iter().filter(|member| held(member.kind)) {
-                if self.symbol_type(member.ty) {
-                    continue;
-                }
+            let plain = |member: &Member| self.types.elementary(member.ty).is_some();
+            for member in members.list.iter().filter(|member| !plain(member)) {
                 if let Some(inner) = self.part_of(part, member) {
                     self.search_blocks(&inner, most, found);
                 }
@@ -160,10 +157,6 @@ impl Symbols {
         }
     }
 
-    fn symbol_type(&self, ty: crate::types::TypeId) -> bool {
-        self.types.elementary(ty).is_some()
-    }
-
     /// The elements of an array in order, while `go` returns TRUE.
     fn each_element(&self, part: &Part, go: &mut dyn FnMut(&Part) -> bool) {
         let Type::Array(array) = self.types.get(part.ty) else {
@@ -171,16 +164,7 @@ impl Symbols {
         };
         let mut indices: Vec<i64> = array.bounds.iter().map(|(low, _)| *low).collect();
         for number in 0..array.count {
-            let shown: Vec<_> = indices.iter().map(ToString::to_string).collect();
-            let element = Part {
-                path: format!("{}[{}]", part.path, shown.join(", ")),
-                ty: array.of,
-                address: part.address + number * array.stride,
-                section: part.section,
-                retain: part.retain,
-                at: None,
-            };
-            if !go(&element) {
+            if !go(&Self::element_at(part, array, &indices, number)) {
                 return;
             }
             for (index, (low, high)) in indices.iter_mut().zip(&array.bounds).rev() {

@@ -13,7 +13,7 @@ use crate::coverage::Counter;
 use crate::emit::{FaultKind, Site};
 use crate::source::{Position, Sources, Span};
 use crate::start;
-use crate::types::{Elementary, Member, MemberKind, Members, Type, TypeId, Types};
+use crate::types::{Array, Elementary, Member, MemberKind, Members, Type, TypeId, Types};
 use standstill_fb::BlockInfo;
 
 /// The use of a variable.
@@ -239,6 +239,11 @@ impl Symbols {
 
     /// The part at a path.
     fn part(&self, path: &str) -> Option<Part> {
+        self.follow(path, |_| ())
+    }
+
+    /// The part at a path; `visit` gets each part on the way, from the outside in, and the last one.
+    fn follow(&self, path: &str, mut visit: impl FnMut(&Part)) -> Option<Part> {
         let mut rest = path;
         let name = next_name(&mut rest)?;
         let named = |root: &&Root| root.member.name.eq_ignore_ascii_case(name);
@@ -248,6 +253,7 @@ impl Symbols {
             Some(part) => part,
             None => self.listed(name, &mut rest)?,
         };
+        visit(&part);
         while !rest.is_empty() {
             part = if let Some(behind) = rest.strip_prefix('.') {
                 rest = behind;
@@ -258,6 +264,7 @@ impl Symbols {
                 rest = behind;
                 self.element(&part, inner)?
             };
+            visit(&part);
         }
         Some(part)
     }
@@ -352,15 +359,20 @@ impl Symbols {
             }
             number = number * (high - low + 1) + (index - low);
         }
-        let shown: Vec<_> = given.iter().map(ToString::to_string).collect();
-        Some(Part {
+        Some(Self::element_at(of, array, &given, number as u32))
+    }
+
+    /// The element with these indices, which is this one in memory.
+    fn element_at(of: &Part, array: &Array, indices: &[i64], number: u32) -> Part {
+        let shown: Vec<_> = indices.iter().map(ToString::to_string).collect();
+        Part {
             path: format!("{}[{}]", of.path, shown.join(", ")),
             ty: array.of,
-            address: of.address + number as u32 * array.stride,
+            address: of.address + number * array.stride,
             section: of.section,
             retain: of.retain,
             at: None,
-        })
+        }
     }
 
     fn symbol(&self, part: &Part) -> Option<Symbol> {

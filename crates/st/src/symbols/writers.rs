@@ -1,6 +1,6 @@
 //! The statements that write a variable.
 
-use super::{Part, Symbol, Symbols, next_name};
+use super::{Symbol, Symbols};
 use crate::check::{Body, Program};
 use crate::source::{Position, Sources, Span};
 use crate::typed::{Argument, Base, Expr, Kind, Place, Stmt, StmtKind};
@@ -58,7 +58,7 @@ struct Finder<'p> {
 
 impl Finder<'_> {
     fn body(&mut self, body: &Body) {
-        let info = &self.program.units[body.unit.0 as usize];
+        let info = self.program.unit(body.unit);
         if !self.sources.in_library(info.span) {
             self.unit = Some(info.owner.unwrap_or(body.unit));
             self.statements(&body.statements);
@@ -185,33 +185,11 @@ impl Symbols {
     /// whole.
     fn owners(&self, path: &str) -> Vec<(Option<UnitId>, u32)> {
         let mut owners = vec![(None, 0)];
-        let mut note = |part: &Part| {
+        let _last = self.follow(path, |part| {
             if let Type::Block(unit) = self.types.get(part.ty) {
                 owners.push((Some(*unit), part.address));
             }
-        };
-        let mut rest = path;
-        let Some(name) = next_name(&mut rest) else {
-            return owners;
-        };
-        let named = self
-            .roots
-            .iter()
-            .find(|root| root.member.name.eq_ignore_ascii_case(name));
-        let mut part = named.map(|root| self.root(root));
-        while let Some(here) = &part {
-            note(here);
-            part = if let Some(behind) = rest.strip_prefix('.') {
-                rest = behind;
-                next_name(&mut rest).and_then(|name| self.member(here, name))
-            } else {
-                let inner = rest.strip_prefix('[').and_then(|rest| rest.split_once(']'));
-                inner.and_then(|(inner, behind)| {
-                    rest = behind;
-                    self.element(here, inner)
-                })
-            };
-        }
+        });
         owners
     }
 }
