@@ -5,9 +5,9 @@ use super::convert::widened;
 use super::path::Named;
 use crate::error::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::{Case, Expression, For, Path, Statement, StatementKind};
+use crate::syntax::{Case, Expression, For, Ident, Path, Statement, StatementKind};
 use crate::typed::{Branch, Expr, Kind, Place, Stmt, StmtKind};
-use crate::types::{BOOL, Constant, Elementary, MemberKind, Type, TypeId, Types};
+use crate::types::{BOOL, Constant, Elementary, MemberKind, Type, TypeId, Types, UnitId};
 
 impl<'a> Checker<'a> {
     pub(super) fn statements(&mut self, list: &'a [Statement]) -> Vec<Stmt> {
@@ -257,47 +257,8 @@ impl<'a> Checker<'a> {
     }
 
     fn for_(&mut self, each: &'a For) -> Option<StmtKind> {
-        let key = each.variable.key();
         let path_span = each.variable.span;
-        let mut control = None;
-        let found = match self.local(&key) {
-            Some((unit, place)) => {
-                self.look_at_member(path_span, unit, place);
-                control = Some(
-                    match self.unit(unit).members.list.get(place).map(|member| member.kind) {
-                        Some(MemberKind::External(global)) => (None, global),
-                        _ => (Some(unit), place),
-                    },
-                );
-                Some(self.member_place(unit, place))
-            }
-            None => match self.global_names.get(&key).copied() {
-                Some(place) => {
-                    self.look_at_global(path_span, place);
-                    control = Some((None, place));
-                    Some(self.global_place(place))
-                }
-                None if self.may_be_lost(&key) => None,
-                None => {
-                    let message = format!("there is no variable `{}`", each.variable.text);
-                    self.error(
-                        Code::UnknownName,
-                        path_span,
-                        message,
-                        "declare the control variable: `i : INT;`",
-                    );
-                    None
-                }
-            },
-        };
-        let found = match found {
-            Some((_, Some(why))) => {
-                self.error(Code::NotWritable, path_span, why, "use another control variable");
-                None
-            }
-            Some((place, None)) => Some(place),
-            None => None,
-        };
+        let (found, control) = self.control(&each.variable).unzip();
         let declared = found.as_ref().map(|place| place.ty);
         let of = declared
             .and_then(|ty| self.types.computed(ty))
@@ -344,6 +305,40 @@ impl<'a> Checker<'a> {
             by,
             body,
         })))
+    }
+
+    /// The control variable of a FOR, and how it is known while the loop runs.
+    fn control(&mut self, name: &Ident) -> Option<(Place, (Option<UnitId>, usize))> {
+        let key = name.key();
+        let local = self.local(&key);
+        let ((place, fixed), control) = match (local, self.global_names.get(&key).copied()) {
+            (Some((unit, place)), _) => {
+                self.look_at_member(name.span, unit, place);
+                let member = self.unit(unit).members.list.get(place);
+                let control = match member.map(|member| member.kind) {
+                    Some(MemberKind::External(global)) => (None, global),
+                    _ => (Some(unit), place),
+                };
+                (self.member_place(unit, place), control)
+            }
+            (None, Some(place)) => {
+                self.look_at_global(name.span, place);
+                (self.global_place(place), (None, place))
+            }
+            (None, None) => {
+                if !self.may_be_lost(&key) {
+                    let message = format!("there is no variable `{}`", name.text);
+                    let help = "declare the control variable: `i : INT;`";
+                    self.error(Code::UnknownName, name.span, message, help);
+                }
+                return None;
+            }
+        };
+        if let Some(why) = fixed {
+            self.error(Code::NotWritable, name.span, why, "use another control variable");
+            return None;
+        }
+        Some((place, control))
     }
 
     /// The step of FOR as a LINT: it may be negative if the control variable is unsigned.

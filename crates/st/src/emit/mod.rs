@@ -222,14 +222,9 @@ fn module(
     image: &[u8],
 ) -> Vec<u8> {
     let program = context.program;
-    let imported = context
-        .wanted
-        .iter()
-        .filter(|it| matches!(it, Target::Import(_)))
-        .count() as u32;
-    let mut indices: BTreeMap<Target, u32> = BTreeMap::new();
     let imports = context.wanted.iter().filter(|it| matches!(it, Target::Import(_)));
-    indices.extend(imports.copied().zip(0..));
+    let mut indices: BTreeMap<Target, u32> = imports.copied().zip(0..).collect();
+    let imported = indices.len() as u32;
     indices.extend(functions.iter().map(|(target, _)| *target).zip(imported..));
 
     let mut exports = ExportSection::new();
@@ -240,21 +235,7 @@ fn module(
         functions.push((Target::Fault, function));
     }
 
-    let mut types = TypeSection::new();
-    let mut known: BTreeMap<Vec<u8>, u32> = BTreeMap::new();
-    let mut type_of = |parameters: &[ValType], result: Option<ValType>| {
-        let key: Vec<u8> = parameters
-            .iter()
-            .chain(&result)
-            .flat_map(|ty| format!("{ty:?}").into_bytes())
-            .chain([result.is_some() as u8])
-            .collect();
-        let count = known.len() as u32;
-        *known.entry(key).or_insert_with(|| {
-            types.ty().function(parameters.iter().copied(), result);
-            count
-        })
-    };
+    let mut types = Signatures::default();
     let mut import_section = ImportSection::new();
     for target in &context.wanted {
         let Target::Import(name) = target else { continue };
@@ -266,13 +247,13 @@ fn module(
         import_section.import(
             "standstill",
             name,
-            EntityType::Function(type_of(&parameters, Some(result))),
+            EntityType::Function(types.number(&parameters, Some(result))),
         );
     }
     let mut function_section = FunctionSection::new();
     let mut code = CodeSection::new();
     for (_, function) in functions {
-        function_section.function(type_of(&function.parameters, function.result));
+        function_section.function(types.number(&function.parameters, function.result));
         code.raw(&function.finish(|target| indices.get(&target).copied().unwrap_or(0)));
     }
     let mut memory = MemorySection::new();
@@ -284,26 +265,10 @@ fn module(
         shared: false,
         page_size_log2: None,
     });
-    let mut globals = GlobalSection::new();
-    let variables = program.globals.iter().map(|global| &global.member);
-    let variables = variables.filter(|member| program.types.elementary(member.ty).is_some());
-    let free = |name: &str| name != "memory" && !name.starts_with("plc_");
-    for (place, member) in variables
-        .filter(|member| free(&member.name))
-        .take(EXPORTS_MOST)
-        .enumerate()
-    {
-        let ty = GlobalType {
-            val_type: ValType::I32,
-            mutable: false,
-            shared: false,
-        };
-        globals.global(ty, &ConstExpr::i32_const(member.offset.cast_signed()));
-        exports.export(&member.name, ExportKind::Global, place as u32);
-    }
+    let globals = variables(program, &mut exports);
 
     let mut module = Module::new();
-    module.section(&types);
+    module.section(&types.section);
     if imported > 0 {
         module.section(&import_section);
     }
@@ -321,6 +286,47 @@ fn module(
         module.section(&data);
     }
     module.finish()
+}
+
+/// The types of functions, each once.
+#[derive(Default)]
+struct Signatures {
+    section: TypeSection,
+    known: Vec<(Vec<ValType>, Option<ValType>)>,
+}
+
+impl Signatures {
+    fn number(&mut self, parameters: &[ValType], result: Option<ValType>) -> u32 {
+        let same = |known: &(Vec<ValType>, Option<ValType>)| known.0 == parameters && known.1 == result;
+        let place = self.known.iter().position(same).unwrap_or_else(|| {
+            self.section.ty().function(parameters.iter().copied(), result);
+            self.known.push((parameters.to_vec(), result));
+            self.known.len() - 1
+        });
+        place as u32
+    }
+}
+
+/// Exports the addresses of global variables of elementary types by their names.
+fn variables(program: &Program<'_>, exports: &mut ExportSection) -> GlobalSection {
+    let mut globals = GlobalSection::new();
+    let variables = program.globals.iter().map(|global| &global.member);
+    let variables = variables.filter(|member| program.types.elementary(member.ty).is_some());
+    let free = |name: &str| name != "memory" && !name.starts_with("plc_");
+    for (place, member) in variables
+        .filter(|member| free(&member.name))
+        .take(EXPORTS_MOST)
+        .enumerate()
+    {
+        let ty = GlobalType {
+            val_type: ValType::I32,
+            mutable: false,
+            shared: false,
+        };
+        globals.global(ty, &ConstExpr::i32_const(member.offset.cast_signed()));
+        exports.export(&member.name, ExportKind::Global, place as u32);
+    }
+    globals
 }
 
 /// The parts of the memory that are not 0; at most 400, because interpreters limit them.

@@ -1,10 +1,10 @@
 //! Statements.
 
 use super::{Parser, skip};
-use crate::error::{Code, Diagnostic};
+use crate::error::{Code, Diagnostic, quoted};
 use crate::lex::{Token, Word};
 use crate::source::Span;
-use crate::syntax::{Branch, Case, Expression, ExpressionKind, For, Statement, StatementKind as Kind};
+use crate::syntax::{Branch, Case, Expression, ExpressionKind, For, Path, Statement, StatementKind as Kind};
 
 impl Parser<'_> {
     /// Statements up to a word that begins none and that closes an open construct.
@@ -476,31 +476,8 @@ impl Parser<'_> {
     }
 
     fn assignment_or_call(&mut self) -> Option<Kind> {
-        if self.ahead(1) == Token::Colon {
-            let span = self.span();
-            self.unsupported(
-                span,
-                "a label",
-                "use IF, CASE, EXIT and CONTINUE in place of jumps",
-            );
-            self.next();
-            self.next();
+        if self.refused_statement() {
             return None;
-        }
-        if self.ahead(1) == Token::Name {
-            if self.is_name("ACTION") {
-                let span = self.span();
-                self.unsupported(span, "ACTION", super::declaration::ACTION);
-                self.skip_action();
-                return None;
-            }
-            let words = ["STEP", "TRANSITION"];
-            if words.iter().any(|word| self.is_name(word)) {
-                let span = self.span();
-                self.unsupported(span, "SFC", "write the steps as CASE State OF ..");
-                self.skip_to_item();
-                return None;
-            }
         }
         if matches!(
             self.ahead(1),
@@ -520,60 +497,23 @@ impl Parser<'_> {
             return None;
         };
         match self.token() {
-            Token::Assign => {
-                self.next();
-            }
-            Token::Equal => {
-                self.tell_here(
-                    Code::Syntax,
-                    "`=` compares, and its result goes nowhere",
-                    "assign with `:=`",
-                );
-                self.next();
-            }
-            Token::Foreign => {
-                let message = format!("{} is no operator of Structured Text", self.shown());
-                let help = format!(
-                    "write `{0} := {0} + 1;`, and compare with `=`",
-                    self.text_of(path.span)
-                );
-                self.tell_here(Code::Syntax, message, &help);
-                self.skip_to_semicolon();
-                return None;
-            }
+            Token::Assign => {}
+            Token::Equal => self.tell_here(
+                Code::Syntax,
+                "`=` compares, and its result goes nowhere",
+                "assign with `:=`",
+            ),
             Token::Open => {
                 let call = self.call(path);
                 self.semicolon("behind the call");
                 return Some(Kind::Call(call));
             }
-            Token::Name if self.ahead(1) == Token::Equal && self.is_vendor_assignment() => {
-                let (sign, target) = (self.shown(), self.text_of(path.span).to_owned());
-                let what = format!("{}=`", sign.trim_end_matches('`'));
-                let help = match sign.to_ascii_uppercase().as_str() {
-                    "`S`" => format!("write IF .. THEN {target} := TRUE; END_IF;"),
-                    "`R`" => format!("write IF .. THEN {target} := FALSE; END_IF;"),
-                    _ => "hand variables over as VAR_IN_OUT".to_owned(),
-                };
-                self.unsupported(self.span(), &what, &help);
-                self.skip_to_semicolon();
-                return None;
-            }
-            Token::Name if path.selectors.is_empty() && self.is_instruction(path.span) => {
-                self.unsupported(path.span, "Instruction List", "write it as Structured Text");
-                self.skip_to_item();
-                return None;
-            }
             _ => {
-                let message = format!(
-                    "`:=` or `(` is expected behind {}",
-                    crate::error::quoted(self.text_of(path.span))
-                );
-                let wrong = Diagnostic::error(Code::Syntax, path.span.after(), message);
-                self.tell(wrong.help("a value is assigned with `:=`, a block is called with `()`"));
-                self.skip_to_semicolon();
+                self.no_assignment(&path);
                 return None;
             }
         }
+        self.next();
         let value = self.expression();
         if self.token() == Token::Assign {
             self.unsupported(
@@ -591,6 +531,65 @@ impl Parser<'_> {
             self.semicolon("behind the assignment");
         }
         Some(Kind::Assign(path, value))
+    }
+
+    /// Whether a label, an ACTION or SFC is here, which is reported and passed.
+    fn refused_statement(&mut self) -> bool {
+        let span = self.span();
+        match self.ahead(1) {
+            Token::Colon => {
+                self.unsupported(
+                    span,
+                    "a label",
+                    "use IF, CASE, EXIT and CONTINUE in place of jumps",
+                );
+                self.next();
+                self.next();
+            }
+            Token::Name if self.is_name("ACTION") => {
+                self.unsupported(span, "ACTION", super::declaration::ACTION);
+                self.skip_action();
+            }
+            Token::Name if self.is_name("STEP") || self.is_name("TRANSITION") => {
+                self.unsupported(span, "SFC", "write the steps as CASE State OF ..");
+                self.skip_to_item();
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    /// Reports and passes what stands behind a variable in place of `:=` or `(`.
+    fn no_assignment(&mut self, path: &Path) {
+        let target = self.text_of(path.span).to_owned();
+        match self.token() {
+            Token::Foreign => {
+                let message = format!("{} is no operator of Structured Text", self.shown());
+                let help = format!("write `{target} := {target} + 1;`, and compare with `=`");
+                self.tell_here(Code::Syntax, message, &help);
+            }
+            Token::Name if self.ahead(1) == Token::Equal && self.is_vendor_assignment() => {
+                let sign = self.shown();
+                let what = format!("{}=`", sign.trim_end_matches('`'));
+                let help = match sign.to_ascii_uppercase().as_str() {
+                    "`S`" => format!("write IF .. THEN {target} := TRUE; END_IF;"),
+                    "`R`" => format!("write IF .. THEN {target} := FALSE; END_IF;"),
+                    _ => "hand variables over as VAR_IN_OUT".to_owned(),
+                };
+                self.unsupported(self.span(), &what, &help);
+            }
+            Token::Name if path.selectors.is_empty() && self.is_instruction(path.span) => {
+                self.unsupported(path.span, "Instruction List", "write it as Structured Text");
+                self.skip_to_item();
+                return;
+            }
+            _ => {
+                let message = format!("`:=` or `(` is expected behind {}", quoted(&target));
+                let wrong = Diagnostic::error(Code::Syntax, path.span.after(), message);
+                self.tell(wrong.help("a value is assigned with `:=`, a block is called with `()`"));
+            }
+        }
+        self.skip_to_semicolon();
     }
 
     /// Whether the assignment is one of those that some systems have: `S=`, `R=`, `REF=`.
