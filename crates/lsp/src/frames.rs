@@ -84,26 +84,14 @@ fn frame(input: &mut impl BufRead) -> Result<Option<Vec<u8>>, FrameError> {
     Err(FrameError::Header("a header without an end".to_owned()))
 }
 
-/// The receiver of messages.
-pub(crate) trait Sink {
-    /// Whether the messages are still received.
-    fn put(&self, message: Message) -> bool;
-}
-
-impl<F: Fn(Message) -> bool> Sink for F {
-    fn put(&self, message: Message) -> bool {
-        self(message)
-    }
-}
-
-/// Reads messages until the input ends or the receiver has gone. A frame without a message is answered
+/// Reads messages until the input ends or `put` says that the receiver has gone. A frame without a message is answered
 /// with the JSON-RPC error for it, and the next one is read.
-pub(crate) fn read_all(input: &mut impl BufRead, to: &impl Sink) -> Result<(), FrameError> {
+pub(crate) fn read_all(input: &mut impl BufRead, put: impl Fn(Message) -> bool) -> Result<(), FrameError> {
     while let Some(bytes) = frame(input)? {
         match serde_json::from_slice(&bytes) {
             Ok(message) => {
                 let over = matches!(&message, Message::Notification(it) if it.method == "exit");
-                if !to.put(message) || over {
+                if !put(message) || over {
                     return Ok(());
                 }
             }

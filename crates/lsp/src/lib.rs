@@ -40,7 +40,7 @@ pub fn stdio(dialect: &Dialect) -> Result<Ended, FrameError> {
     // It ends with the process, because a read of standard input cannot be cancelled.
     let reader = thread::spawn(move || {
         let put = |message| incoming.send(message).is_ok();
-        frames::read_all(&mut BufReader::new(io::stdin().lock()), &put)
+        frames::read_all(&mut BufReader::new(io::stdin().lock()), put)
     });
     let ended = serve(&ours, dialect);
     drop(ours);

@@ -10,8 +10,8 @@ use lsp_types::{
     TextDocumentIdentifier, TextDocumentPositionParams, TextDocumentSyncCapability, TextDocumentSyncKind,
     TextEdit, Uri,
 };
-use serde::Deserialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use standstill_st::{Dialect, SOURCES_MOST};
 use std::collections::BTreeMap;
@@ -90,6 +90,13 @@ impl Server<'_> {
         let _gone = self.connection.sender.send(message);
     }
 
+    fn notify(&self, method: &str, params: impl Serialize) {
+        self.send(Message::Notification(Notification::new(
+            method.to_owned(),
+            params,
+        )));
+    }
+
     fn request(&mut self, request: Request) {
         let id = request.id.clone();
         let answer = match self.answer(request) {
@@ -154,12 +161,14 @@ impl Server<'_> {
         Project::new(&self.documents, &self.documents.project(path), self.dialect)
     }
 
+    fn script(&self, path: &Path, at: &TextDocumentPositionParams) -> Option<Asked<'_>> {
+        Asked::new(&self.documents, path, at.position, self.dialect)
+    }
+
     fn hover(&self, path: &Path, kind: Kind, at: &TextDocumentPositionParams) -> Value {
         let found = match kind {
             Kind::StructuredText => self.project(path).hover(path, at.position),
-            Kind::Script => {
-                Asked::new(&self.documents, path, at.position, self.dialect).and_then(|it| it.hover())
-            }
+            Kind::Script => self.script(path, at).and_then(|it| it.hover()),
         };
         json!(found)
     }
@@ -167,9 +176,7 @@ impl Server<'_> {
     fn definition(&self, path: &Path, kind: Kind, at: &TextDocumentPositionParams) -> Value {
         let found = match kind {
             Kind::StructuredText => self.project(path).definition(path, at.position),
-            Kind::Script => {
-                Asked::new(&self.documents, path, at.position, self.dialect).and_then(|it| it.definition())
-            }
+            Kind::Script => self.script(path, at).and_then(|it| it.definition()),
         };
         json!(found)
     }
@@ -177,9 +184,10 @@ impl Server<'_> {
     fn completion(&self, path: &Path, kind: Kind, at: &TextDocumentPositionParams) -> Value {
         let found = match kind {
             Kind::StructuredText => self.project(path).completions(path, at.position),
-            Kind::Script => Asked::new(&self.documents, path, at.position, self.dialect)
-                .map(|it| it.completions())
-                .unwrap_or_default(),
+            Kind::Script => {
+                let asked = self.script(path, at);
+                asked.map(|it| it.completions()).unwrap_or_default()
+            }
         };
         json!(found)
     }
@@ -261,11 +269,7 @@ impl Server<'_> {
             "{} has {bytes} bytes, more than the {SOURCES_MOST} that are read",
             uri.as_str()
         );
-        let params = json!({"type": 2, "message": message});
-        self.send(Message::Notification(Notification::new(
-            "window/showMessage".to_owned(),
-            params,
-        )));
+        self.notify("window/showMessage", json!({"type": 2, "message": message}));
     }
 
     /// Publishes the mistakes of every document, if they have changed.
@@ -309,10 +313,7 @@ impl Server<'_> {
             diagnostics,
             version,
         };
-        self.send(Message::Notification(Notification::new(
-            "textDocument/publishDiagnostics".to_owned(),
-            params,
-        )));
+        self.notify("textDocument/publishDiagnostics", params);
     }
 
     /// The mistakes of the open documents; each project is checked once.

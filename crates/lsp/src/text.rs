@@ -7,7 +7,7 @@ use lsp_types::{
     CompletionItem, CompletionItemKind, CompletionTextEdit, DiagnosticRelatedInformation, DiagnosticSeverity,
     Documentation, Location, MarkupContent, MarkupKind, NumberOrString, Position, Range, TextEdit,
 };
-use standstill_st::editor::{Completion, CompletionKind, Hover, complete, hover};
+use standstill_st::editor::{Completion, CompletionKind, complete, hover};
 use standstill_st::{Dialect, Options, Report, Severity, Source, Sources, Span};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -119,10 +119,8 @@ impl Project {
         let (file, byte, text) = self.place(path, position)?;
         let (sources, found) = hover(&self.sources(), &self.options, file, byte);
         let found = found?;
-        Some(lsp_types::Hover {
-            contents: lsp_types::HoverContents::Markup(shown(&found)),
-            range: Some(text.range(sources.locate(found.span).1)),
-        })
+        let range = text.range(sources.locate(found.span).1);
+        Some(hover_of(shown(&found.text, &found.doc), range))
     }
 
     pub(crate) fn definition(&self, path: &Path, position: Position) -> Option<Location> {
@@ -163,14 +161,21 @@ pub(crate) fn with_help(message: &str, help: Option<&str>) -> String {
 }
 
 /// A declaration and its description, as Markdown.
-pub(crate) fn shown(found: &Hover) -> MarkupContent {
-    let mut value = format!("```iecst\n{}\n```", found.text);
-    if !found.doc.is_empty() {
-        value.push_str(&format!("\n\n{}", plain(&found.doc)));
+pub(crate) fn shown(text: &str, doc: &str) -> String {
+    let mut shown = format!("```iecst\n{text}\n```");
+    if !doc.is_empty() {
+        shown.push_str(&format!("\n\n{}", plain(doc)));
     }
-    MarkupContent {
-        kind: MarkupKind::Markdown,
-        value,
+    shown
+}
+
+pub(crate) fn hover_of(value: String, range: Range) -> lsp_types::Hover {
+    lsp_types::Hover {
+        contents: lsp_types::HoverContents::Markup(MarkupContent {
+            kind: MarkupKind::Markdown,
+            value,
+        }),
+        range: Some(range),
     }
 }
 

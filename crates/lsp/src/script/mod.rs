@@ -5,13 +5,12 @@ mod scene;
 mod schema;
 
 use crate::documents::Documents;
-use crate::text::{at_least_a_character, plain, with_help};
+use crate::text::{at_least_a_character, hover_of, plain, shown, with_help};
 use crate::tree::{Node, Spot, Step};
 use crate::uri;
 use lsp_types::{
     CompletionItem, CompletionItemKind, CompletionTextEdit, Diagnostic, DiagnosticRelatedInformation,
-    DiagnosticSeverity, Documentation, Location, MarkupContent, MarkupKind, NumberOrString, Position, Range,
-    TextEdit,
+    DiagnosticSeverity, Documentation, Location, NumberOrString, Position, Range, TextEdit,
 };
 use scene::{Kind, STATES, Scene, Signal};
 use serde_json::Value;
@@ -137,24 +136,25 @@ impl<'d> Asked<'d> {
         keys.take(1).next().unwrap_or_default()
     }
 
+    /// The text at the place, with its quotes, and its begin.
+    fn whole(&self) -> (&str, usize) {
+        let (Spot::Key(span) | Spot::Value(span)) = &self.spot;
+        let text = self.scene.text().as_str().get(span.clone());
+        (text.unwrap_or_default(), span.start)
+    }
+
     /// The text at the place, without its quotes, and the place in it.
     fn inner(&self) -> (&str, usize) {
-        let (Spot::Key(span) | Spot::Value(span)) = &self.spot;
-        let text = self.scene.text().as_str().get(span.clone()).unwrap_or_default();
+        let (text, start) = self.whole();
         let Some(open) = text.strip_prefix('"') else {
-            return (text, span.start);
+            return (text, start);
         };
-        (open.strip_suffix('"').unwrap_or(open), span.start + 1)
+        (open.strip_suffix('"').unwrap_or(open), start + 1)
     }
 
     /// Whether the place is between quotes.
     fn is_quoted(&self) -> bool {
-        let (Spot::Key(span) | Spot::Value(span)) = &self.spot;
-        self.scene
-            .text()
-            .as_str()
-            .get(span.clone())
-            .is_some_and(|it| it.starts_with('"'))
+        self.whole().0.starts_with('"')
     }
 
     /// The name at the place in a text: all of it, or one of an expression.
@@ -222,13 +222,7 @@ impl<'d> Asked<'d> {
     pub(crate) fn hover(&self) -> Option<lsp_types::Hover> {
         let (word, span) = self.word();
         let value = self.hover_text(word)?;
-        Some(lsp_types::Hover {
-            contents: lsp_types::HoverContents::Markup(MarkupContent {
-                kind: MarkupKind::Markdown,
-                value,
-            }),
-            range: Some(self.scene.text().range(span)),
-        })
+        Some(hover_of(value, self.scene.text().range(span)))
     }
 
     fn hover_text(&self, word: &str) -> Option<String> {
@@ -242,11 +236,7 @@ impl<'d> Asked<'d> {
             self.is_signal() || self.is_axis() || self.inner().0.starts_with('=')
         };
         if signal && let Some(told) = self.scene.told(word) {
-            let doc = match told.doc.as_str() {
-                "" => String::new(),
-                doc => format!("\n\n{}", plain(doc)),
-            };
-            return Some(format!("```iecst\n{}\n```{doc}", told.text));
+            return Some(shown(&told.text, &told.doc));
         }
         if !is_key {
             let info = registry::find(word).filter(|_| self.last_key() == "type")?;
@@ -335,11 +325,8 @@ impl<'d> Asked<'d> {
             }
             let doc = schema.get("description").and_then(Value::as_str);
             offered.push(Offer {
-                label: key.to_owned(),
-                detail: String::new(),
                 doc: doc.unwrap_or_default().to_owned(),
-                kind: CompletionItemKind::PROPERTY,
-                text: true,
+                ..Offer::plain(key, CompletionItemKind::PROPERTY)
             });
         }
         offered
@@ -347,53 +334,28 @@ impl<'d> Asked<'d> {
 
     fn values(&self) -> Vec<Offer> {
         let (inner, _) = self.inner();
-        let name = |name: &str| Offer::plain(name, CompletionItemKind::VARIABLE);
+        let plain = |names: &[&str], kind: CompletionItemKind| -> Vec<Offer> {
+            names.iter().map(|name| Offer::plain(name, kind)).collect()
+        };
+        let named = |wanted: fn(Kind) -> bool| plain(&self.scene.names(wanted), CompletionItemKind::VARIABLE);
         if inner.starts_with('=') || self.is_signal() {
             let mut offered: Vec<_> = self.scene.signals().into_iter().map(Offer::signal).collect();
             if inner.starts_with('=') {
-                offered.extend(
-                    STATES
-                        .iter()
-                        .map(|it| Offer::plain(it, CompletionItemKind::ENUM_MEMBER)),
-                );
+                offered.extend(plain(STATES, CompletionItemKind::ENUM_MEMBER));
                 let words = [
                     "AND", "OR", "XOR", "NOT", "MOD", "TRUE", "FALSE", "ABS", "MIN", "MAX", "LIMIT",
                 ];
-                offered.extend(
-                    words
-                        .iter()
-                        .map(|it| Offer::plain(it, CompletionItemKind::KEYWORD)),
-                );
+                offered.extend(plain(&words, CompletionItemKind::KEYWORD));
             }
             return offered;
         }
         if self.is_axis() {
-            return self
-                .scene
-                .names(|kind| matches!(kind, Kind::Axis))
-                .into_iter()
-                .map(name)
-                .collect();
+            return named(|kind| matches!(kind, Kind::Axis));
         }
         match self.last_key() {
-            "task" => {
-                return self
-                    .scene
-                    .names(|kind| matches!(kind, Kind::Task))
-                    .into_iter()
-                    .map(name)
-                    .collect();
-            }
-            "param" => {
-                let parameters = self.scene.names(|kind| matches!(kind, Kind::Parameter));
-                return parameters.into_iter().map(name).collect();
-            }
-            key if key.ends_with(".State") => {
-                return STATES
-                    .iter()
-                    .map(|it| Offer::plain(it, CompletionItemKind::ENUM_MEMBER))
-                    .collect();
-            }
+            "task" => return named(|kind| matches!(kind, Kind::Task)),
+            "param" => return named(|kind| matches!(kind, Kind::Parameter)),
+            key if key.ends_with(".State") => return plain(STATES, CompletionItemKind::ENUM_MEMBER),
             _ => {}
         }
         let allowed = schema::allowed(self.scene.tree(), &self.path);
@@ -446,11 +408,9 @@ impl Offer {
 
     fn signal(it: Signal) -> Self {
         Self {
-            label: it.name,
             detail: it.detail,
             doc: it.doc,
-            kind: CompletionItemKind::VARIABLE,
-            text: true,
+            ..Self::plain(&it.name, CompletionItemKind::VARIABLE)
         }
     }
 }

@@ -304,39 +304,37 @@ impl<'d> Scene<'d> {
             .iter()
             .find(|it| it.name.eq_ignore_ascii_case(name))?;
         let declared = self.location(entity);
-        let told = |text: String, doc: String| Told {
+        let told = |text: String, doc: &str| Told {
             text,
-            doc,
+            doc: doc.to_owned(),
             declared: declared.clone(),
         };
+        let plain = |what: &str| told(format!("{}  // {what}", entity.name), "");
         Some(match (entity.kind, rest) {
-            (Kind::Axis, None) => told(format!("{} : AXIS_REF", entity.name), String::new()),
+            (Kind::Axis, None) => told(format!("{} : AXIS_REF", entity.name), ""),
             (Kind::Axis, Some(signal)) => {
                 let (signal, ty, doc) = AXIS_SIGNALS
                     .iter()
                     .find(|(it, ..)| it.eq_ignore_ascii_case(signal))?;
-                told(format!("{}.{signal} : {ty}", entity.name), (*doc).to_owned())
+                told(format!("{}.{signal} : {ty}", entity.name), doc)
             }
-            (Kind::Input, _) => told(format!("{}  // input of the script", entity.name), String::new()),
-            (Kind::Task, _) => told(format!("{}  // task", entity.name), String::new()),
-            (Kind::Parameter, _) => told(
-                format!("{}  // parameter of the script", entity.name),
-                String::new(),
-            ),
+            (Kind::Input, _) => plain("input of the script"),
+            (Kind::Task, _) => plain("task"),
+            (Kind::Parameter, _) => plain("parameter of the script"),
             (Kind::Block(info), None) => {
                 let ty = info.map_or("?", |info| info.name);
                 let doc = info.map_or("", |info| info.doc);
-                told(format!("{} : {ty}", entity.name), doc.to_owned())
+                told(format!("{} : {ty}", entity.name), doc)
             }
             (Kind::Block(info), Some(pin)) => {
                 let info = info?;
                 let pin = info.pins().find(|it| it.name.eq_ignore_ascii_case(pin))?;
                 told(
                     format!("{}.{} : {}", entity.name, pin.name, pin.ty.iec_name()),
-                    pin_doc(pin),
+                    &pin_doc(pin),
                 )
             }
-            (Kind::Program, None) => told(format!("{}  // program", entity.name), String::new()),
+            (Kind::Program, None) => plain("program"),
             (Kind::Program, Some(path)) => return self.told_of_variable(&entity.name, path),
         })
     }
@@ -356,7 +354,7 @@ impl<'d> Scene<'d> {
 }
 
 /// The description of a pin in the table of blocks.
-pub(crate) fn pin_doc(pin: &Pin) -> String {
+fn pin_doc(pin: &Pin) -> String {
     match pin.unit {
         "" => pin.doc.to_owned(),
         unit => format!("{} ({unit})", pin.doc),

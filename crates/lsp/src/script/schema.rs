@@ -13,7 +13,7 @@ fn schema() -> &'static Value {
 }
 
 /// All permitted schemas at one place.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Allowed {
     schemas: Vec<&'static Value>,
     names: Vec<&'static str>,
@@ -22,17 +22,11 @@ pub(crate) struct Allowed {
 /// The permitted schemas at the end of a path; `tree` decides if the value of one key determines another
 /// one.
 pub(crate) fn allowed(tree: &Node, path: &[Step]) -> Allowed {
-    let mut here = Allowed {
-        schemas: Vec::new(),
-        names: Vec::new(),
-    };
+    let mut here = Allowed::default();
     here.add(schema(), Some(tree), 0);
     let mut node = Some(tree);
     for step in path {
-        let mut next = Allowed {
-            schemas: Vec::new(),
-            names: Vec::new(),
-        };
+        let mut next = Allowed::default();
         node = node.and_then(|node| node.at(std::slice::from_ref(step)));
         for schema in here.schemas {
             let inner = match step {
