@@ -40,33 +40,30 @@ impl Dialect {
     pub fn new(name: &str) -> Result<Self, UnknownDialect> {
         let mut dialect = Self::default();
         let mut found = false;
+        let own = str::to_owned;
         for line in DATA.lines() {
             let words: Vec<_> = line.split_whitespace().collect();
             match words[..] {
                 ["dialect", other] => {
                     found = other == name;
                     if found {
-                        dialect.name = other.to_owned();
+                        dialect.name = own(other);
                     }
                 }
                 ["number", ty, number, element] if found => {
                     // A test reads all of them.
                     if let Ok(number) = number.parse() {
-                        dialect.numbers.push((ty.to_owned(), number, element.to_owned()));
+                        dialect.numbers.push((own(ty), number, own(element)));
                     }
                 }
                 ["pin", place, to] if found => {
                     if let Some((block, pin)) = place.split_once('.') {
-                        dialect
-                            .pins
-                            .push((block.to_owned(), pin.to_owned(), to.to_owned()));
+                        dialect.pins.push((own(block), own(pin), own(to)));
                     }
                 }
-                ["type", ty, to] if found => dialect.types.push((ty.to_owned(), to.to_owned())),
+                ["type", ty, to] if found => dialect.types.push((own(ty), own(to))),
                 ["element", ty, element, to] if found => {
-                    dialect
-                        .names
-                        .push((ty.to_owned(), element.to_owned(), to.to_owned()));
+                    dialect.names.push((own(ty), own(element), own(to)));
                 }
                 _ => {}
             }

@@ -11,10 +11,7 @@ use std::fmt::Write as _;
 
 pub(crate) fn files(prefix: &Prefix) -> Vec<File> {
     vec![
-        File {
-            name: format!("{}_guest.h", prefix.lower()),
-            text: prefix.applied(&header(prefix)),
-        },
+        File::new(prefix, "_guest.h", &header(prefix)),
         File {
             name: format!("{}_imports.json", prefix.lower()),
             text: imports(prefix),

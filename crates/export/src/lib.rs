@@ -70,33 +70,27 @@ pub struct File {
     pub text: String,
 }
 
+impl File {
+    /// A file whose name begins with the prefix, of a text with the default one.
+    fn new(prefix: &Prefix, rest: &str, text: &str) -> Self {
+        Self {
+            name: format!("{}{rest}", prefix.lower()),
+            text: prefix.applied(text),
+        }
+    }
+}
+
 /// All files of `target`. C names begin with `prefix`. `dialect` gives the pins and numbers of shims in
 /// Structured Text and of the XML library.
 pub fn export(target: Target, prefix: &Prefix, dialect: &Dialect) -> Vec<File> {
     let headers = || c::files(prefix);
     // A program in Structured Text may also become a guest, which needs only the header.
-    let for_both = || {
-        let mut files = headers();
-        files.extend(guest::files(prefix).into_iter().take(1));
-        files
-    };
+    let guest_header = || guest::files(prefix).into_iter().take(1).collect();
     match target {
         Target::C => headers(),
-        Target::StMatiec => {
-            let mut files = for_both();
-            files.extend(matiec::files(prefix, dialect));
-            files
-        }
-        Target::StStrucpp => {
-            let mut files = for_both();
-            files.extend(strucpp::files(prefix, dialect));
-            files
-        }
-        Target::StRusty => {
-            let mut files = headers();
-            files.extend(rusty::files(prefix, dialect));
-            files
-        }
+        Target::StMatiec => [headers(), guest_header(), matiec::files(prefix, dialect)].concat(),
+        Target::StStrucpp => [headers(), guest_header(), strucpp::files(prefix, dialect)].concat(),
+        Target::StRusty => [headers(), rusty::files(prefix, dialect)].concat(),
         Target::Wasm => guest::files(prefix),
         Target::PlcopenXml => plcopen::files(prefix, dialect),
     }

@@ -82,22 +82,17 @@ pub(crate) fn files(prefix: &Prefix, dialect: &Dialect) -> Vec<File> {
         block(&mut text, info, dialect);
     }
     vec![
-        File {
-            name: format!("{}_shim.h", prefix.lower()),
-            text: prefix.applied(&st::shim_header(TIME, dialect)),
-        },
-        File {
-            name: format!("{}_matiec.st", prefix.lower()),
-            text: prefix.applied(&text),
-        },
-        File {
-            name: format!("{}_matiec_main.c", prefix.lower()),
-            text: prefix.applied(&format!(
+        File::new(prefix, "_shim.h", &st::shim_header(TIME, dialect)),
+        File::new(prefix, "_matiec.st", &text),
+        File::new(
+            prefix,
+            "_matiec_main.c",
+            &format!(
                 "/* A program that matiec translated, as a guest in WebAssembly or linked to a host in C: plc_init and plc_scan.\n \
                  *\n{} */\n{MAIN}",
                 crate::c::NOTICE
-            )),
-        },
+            ),
+        ),
     ]
 }
 

@@ -4,9 +4,9 @@ use crate::File;
 use crate::c::{comment, tables};
 use crate::dialect::{Dialect, enumerations};
 use crate::names::{Prefix, pou};
-use crate::st::record_name;
+use crate::st::{plain_initial, record_name};
 use standstill_blocks::REGISTRY;
-use standstill_fb::{BlockInfo, Direction, Pin, PinType, Value};
+use standstill_fb::{BlockInfo, Direction, Pin, PinType};
 use std::fmt::Write as _;
 
 /// The schema requires a date; a file that is the same every day has this one.
@@ -104,18 +104,10 @@ fn structure(out: &mut String, name: &str, members: &str) {
 /// A type as an element.
 fn ty(ty: PinType) -> String {
     match ty {
-        PinType::Bool
-        | PinType::Int
-        | PinType::Lreal
-        | PinType::Uint
-        | PinType::Word
-        | PinType::Dword
-        | PinType::Time => {
-            format!("<{}/>", ty.iec_name())
-        }
         PinType::Axis(_) | PinType::Enum(_) | PinType::Table(_) => {
             format!("<derived name=\"{}\"/>", ty.iec_name())
         }
+        _ => format!("<{}/>", ty.iec_name()),
     }
 }
 
@@ -154,14 +146,10 @@ fn block(out: &mut String, info: &BlockInfo, prefix: &Prefix, dialect: &Dialect)
 }
 
 fn variable(out: &mut String, info: &BlockInfo, index: usize, pin: &Pin, dialect: &Dialect) {
-    let initial = match (info.default_of(index), pin.direction) {
-        (_, Direction::Output | Direction::InOut) => None,
-        (Some(Value::Bool(true)), _) => Some("TRUE".to_owned()),
-        (Some(Value::Lreal(value)), _) if value != 0.0 => Some(format!("{value:?}")),
-        (Some(Value::Int(value)), _) if value != 0 => Some(value.to_string()),
-        (Some(Value::Dword(value)), _) if value != 0 => Some(value.to_string()),
-        _ => None,
-    };
+    let given = info
+        .default_of(index)
+        .filter(|_| pin.direction == Direction::Input);
+    let initial = given.and_then(plain_initial);
     let initial = initial.map_or_else(String::new, |value| {
         format!("<initialValue><simpleValue value=\"{value}\"/></initialValue>")
     });

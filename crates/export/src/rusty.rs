@@ -31,18 +31,9 @@ pub(crate) fn files(prefix: &Prefix, dialect: &Dialect) -> Vec<File> {
         );
     }
     vec![
-        File {
-            name: format!("{}_shim.h", prefix.lower()),
-            text: prefix.applied(&st::shim_header("", dialect)),
-        },
-        File {
-            name: format!("{}_rusty.st", prefix.lower()),
-            text: prefix.applied(&text),
-        },
-        File {
-            name: format!("{}_rusty.c", prefix.lower()),
-            text: prefix.applied(&bodies(dialect)),
-        },
+        File::new(prefix, "_shim.h", &st::shim_header("", dialect)),
+        File::new(prefix, "_rusty.st", &text),
+        File::new(prefix, "_rusty.c", &bodies(dialect)),
     ]
 }
 

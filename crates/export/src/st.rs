@@ -117,18 +117,25 @@ fn initial(info: &BlockInfo, index: usize, pin: &Pin, dialect: &Dialect, syntax:
         return String::new();
     }
     let text = match (info.default_of(index), pin.ty) {
-        (Some(Value::Bool(true)), _) => "TRUE".to_owned(),
-        (Some(Value::Int(value)), _) if value != 0 => value.to_string(),
-        (Some(Value::Dword(value)), _) if value != 0 => value.to_string(),
-        (Some(Value::Lreal(value)), _) if value != 0.0 => format!("{value:?}"),
         (Some(Value::Time(ns)), _) if ns != 0 => format!("T#{}us", ns / 1000),
         (Some(Value::Enum(ours)), PinType::Enum(of)) => initial_element(&of, ours, dialect, syntax),
-        _ => String::new(),
+        (given, _) => given.and_then(plain_initial).unwrap_or_default(),
     };
     if text.is_empty() {
         text
     } else {
         format!(" := {text}")
+    }
+}
+
+/// An initial value that is a number or TRUE.
+pub(crate) fn plain_initial(value: Value) -> Option<String> {
+    match value {
+        Value::Bool(true) => Some("TRUE".to_owned()),
+        Value::Int(value) if value != 0 => Some(value.to_string()),
+        Value::Dword(value) if value != 0 => Some(value.to_string()),
+        Value::Lreal(value) if value != 0.0 => Some(format!("{value:?}")),
+        _ => None,
     }
 }
 

@@ -43,14 +43,8 @@ pub(crate) fn files(prefix: &Prefix, dialect: &Dialect) -> Vec<File> {
         block(&mut text, info, dialect);
     }
     vec![
-        File {
-            name: format!("{}_shim.h", prefix.lower()),
-            text: prefix.applied(&st::shim_header(VALUES, dialect)),
-        },
-        File {
-            name: format!("{}_strucpp.st", prefix.lower()),
-            text: prefix.applied(&text),
-        },
+        File::new(prefix, "_shim.h", &st::shim_header(VALUES, dialect)),
+        File::new(prefix, "_strucpp.st", &text),
     ]
 }
 
