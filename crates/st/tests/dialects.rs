@@ -1,8 +1,8 @@
 //! Names and numbers of other systems.
 
-use crate::common;
+use crate::common::{Running, compile_with};
 
-use standstill_st::{Compiled, Dialect, Options, Report, Source, compile};
+use standstill_st::{Compiled, Dialect, Options, Report};
 
 fn dialect() -> Dialect {
     let three = |one: &str, two: &str, there: &str| (one.to_owned(), two.to_owned(), there.to_owned());
@@ -23,15 +23,11 @@ fn compiled(body: &str) -> Result<Compiled, Box<Report>> {
     let text = format!(
         "PROGRAM Main VAR X : AXIS_OF_OTHERS; p : MC_Power; m : MC_MoveAbsolute; w : Ways; b : BOOL; END_VAR {body} END_PROGRAM"
     );
-    let source = Source {
-        name: "prog.st",
-        bytes: text.as_bytes(),
-    };
     let options = Options {
         dialect: dialect(),
         ..Options::default()
     };
-    compile(&[source], &options)
+    compile_with(&text, &options)
 }
 
 /// Covers: ST42
@@ -39,7 +35,7 @@ fn compiled(body: &str) -> Result<Compiled, Box<Report>> {
 fn names_and_numbers_of_a_dialect_are_ours() {
     let body = "p(Axis := X, Enable_Positive := FALSE); b := p.Enable_Positive; p.EnableNegative := TRUE;
         w := Up; w := Ways#Up; w := Ways.mcCurrentDirection; m.Direction := -1;";
-    let mut run = common::Running::of(compiled(body).unwrap_or_else(|report| panic!("{report}")));
+    let mut run = Running::of(compiled(body).unwrap_or_else(|report| panic!("{report}")));
     run.scan().unwrap();
     assert_eq!(run.whole("w"), 4);
     assert_eq!(run.whole("m.Direction"), 3);
@@ -75,12 +71,8 @@ fn a_pin_of_another_dialect_is_told_with_ours() {
         },
         ..Options::default()
     };
-    let text = b"PROGRAM P VAR c : CTU; END_VAR c(RESET := TRUE); c.RESET := TRUE; END_PROGRAM";
-    let source = Source {
-        name: "prog.st",
-        bytes: text,
-    };
-    let report = compile(&[source], &options).unwrap_err();
+    let text = "PROGRAM P VAR c : CTU; END_VAR c(RESET := TRUE); c.RESET := TRUE; END_PROGRAM";
+    let report = compile_with(text, &options).unwrap_err();
     let help = "here it is `R`; --dialect this or that takes the names of that system";
     let helps: Vec<_> = report.diagnostics().iter().map(|it| it.help.as_deref()).collect();
     assert_eq!(helps, [Some(help); 2], "{report}");

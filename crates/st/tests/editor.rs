@@ -1,5 +1,6 @@
 //! The information on names and the completions for an editor, at places marked by `|`.
 
+use crate::common::source;
 use standstill_st::editor::{Completion, CompletionKind, Hover, complete, hover, variable};
 use standstill_st::{Options, Source, Sources};
 
@@ -33,16 +34,7 @@ fn marked(text: &str) -> (String, usize) {
 
 fn ask<T>(text: &str, ask: impl FnOnce(&[Source<'_>], usize) -> T) -> T {
     let (text, at) = marked(text);
-    let sources = [
-        Source {
-            name: "types.st",
-            bytes: TYPES.as_bytes(),
-        },
-        Source {
-            name: "main.st",
-            bytes: text.as_bytes(),
-        },
-    ];
+    let sources = [source("types.st", TYPES), source("main.st", &text)];
     ask(&sources, at)
 }
 
@@ -302,10 +294,7 @@ fn no_place_of_a_broken_text_leads_to_a_panic() {
     for at in 0..=whole.len() {
         let cut = whole.get(..at).unwrap_or_default();
         for text in [whole.as_str(), cut] {
-            let source = [Source {
-                name: "main.st",
-                bytes: text.as_bytes(),
-            }];
+            let source = [source("main.st", text)];
             let _found = complete(&source, &options(), 0, at);
             let _found = hover(&source, &options(), 0, at);
         }
@@ -320,14 +309,10 @@ fn variables_are_found_by_the_paths_that_scripts_have() {
     let configured = "VAR_GLOBAL Guard : BOOL; // closed
 END_VAR CONFIGURATION C RESOURCE R ON PLC TASK t(INTERVAL := T#1ms); PROGRAM Left WITH t : Main; END_RESOURCE END_CONFIGURATION";
     let sources = [
-        ("types.st", TYPES),
-        ("main.st", text.as_str()),
-        ("conf.st", configured),
+        source("types.st", TYPES),
+        source("main.st", &text),
+        source("conf.st", configured),
     ];
-    let sources = sources.map(|(name, text)| Source {
-        name,
-        bytes: text.as_bytes(),
-    });
     for (path, declared, file) in [
         ("State", "State : E_State", Some("main.st")),
         ("valves[2].IsOpen", "IsOpen : BOOL", Some("types.st")),

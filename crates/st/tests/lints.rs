@@ -1,6 +1,7 @@
 //! Lints: the findings of each, and code without a finding.
 
-use standstill_st::{Options, Report, Source};
+use crate::common::{compile_with, source};
+use standstill_st::{Options, Report};
 
 /// The codes and lines of the warnings for a program with these variables and statements, from line 10 on.
 fn lints(variables: &str, statements: &str) -> Vec<(&'static str, u32)> {
@@ -22,15 +23,11 @@ fn codes(text: &str) -> Vec<&'static str> {
 
 /// The report of this text, which has no mistake.
 fn report(text: &str) -> Report {
-    let source = Source {
-        name: "p.st",
-        bytes: text.as_bytes(),
-    };
     let options = Options {
         lint: true,
         ..Options::default()
     };
-    let report = standstill_st::check(&[source], &options);
+    let report = standstill_st::check(&[source("p.st", text)], &options);
     assert!(!report.has_errors(), "{report}");
     report
 }
@@ -263,10 +260,6 @@ fn an_axis_that_nobody_names_is_told() {
             "PROGRAM P\nVAR\n  Power : MC_Power;\n{variables}\nEND_VAR\n{statements}\n\
              Power(Axis := X, Enable := TRUE);\nEND_PROGRAM\n"
         );
-        let source = Source {
-            name: "p.st",
-            bytes: text.as_bytes(),
-        };
         let options = Options {
             axes: axes.iter().map(ToString::to_string).collect(),
             bindings: bindings
@@ -275,7 +268,7 @@ fn an_axis_that_nobody_names_is_told() {
                 .collect(),
             ..Options::default()
         };
-        let report = standstill_st::compile(&[source], &options).unwrap().report;
+        let report = compile_with(&text, &options).unwrap().report;
         let told = report.diagnostics().iter();
         told.map(|it| (report.positions(it.span).0.line, it.message.clone()))
             .collect::<Vec<_>>()

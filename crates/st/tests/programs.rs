@@ -2,8 +2,8 @@
 
 use crate::common;
 
-use crate::common::{Running, compile, ran, wrong};
-use standstill_st::{FaultKind, Options, Source};
+use crate::common::{Running, compile, compile_with, ran, source, wrong};
+use standstill_st::{FaultKind, Options};
 
 fn run(text: &str) -> Running {
     let mut running = Running::new(text);
@@ -136,10 +136,7 @@ fn several_files_are_one_project() {
           Double := x * y; Twice := Double * 2; END_FUNCTION",
         ),
     ];
-    let sources = files.map(|(name, text)| Source {
-        name,
-        bytes: text.as_bytes(),
-    });
+    let sources = files.map(|(name, text)| source(name, text));
     let compiled =
         standstill_st::compile(&sources, &Options::default()).unwrap_or_else(|report| panic!("{report}"));
     let mut run = Running::of(compiled);
@@ -240,11 +237,7 @@ fn a_program_that_is_called_by_its_name_has_one_instance() {
         program: Some("Main".to_owned()),
         ..Options::default()
     };
-    let source = Source {
-        name: "prog.st",
-        bytes: text.as_bytes(),
-    };
-    let mut running = Running::of(standstill_st::compile(&[source], &main).unwrap());
+    let mut running = Running::of(compile_with(text, &main).unwrap());
     running.scan().unwrap();
     assert_eq!(running.whole("x"), 14);
     assert_eq!(running.whole("other.k"), 12);
@@ -507,16 +500,12 @@ fn every_block_of_the_registry_can_be_called() {
 fn a_reference_begins_as_the_axis_of_its_name_or_the_one_it_is_bound_to() {
     let text =
         "PROGRAM Cell VAR X, Feeder, Other : AXIS_REF; All : ARRAY [1..2] OF AXIS_REF; END_VAR END_PROGRAM";
-    let source = Source {
-        name: "cell.st",
-        bytes: text.as_bytes(),
-    };
     let options = Options {
         axes: vec!["W".to_owned(), "x".to_owned()],
         bindings: vec![("Feeder".to_owned(), 7), ("all[2]".to_owned(), 9)],
         ..Options::default()
     };
-    let run = Running::of(standstill_st::compile(&[source], &options).unwrap());
+    let run = Running::of(compile_with(text, &options).unwrap());
     let numbers =
         ["X", "Feeder", "Other", "All[1]", "All[2]"].map(|name| run.whole(&format!("{name}.Number")));
     assert_eq!(numbers, [2, 7, 0, 0, 9]);
@@ -524,12 +513,8 @@ fn a_reference_begins_as_the_axis_of_its_name_or_the_one_it_is_bound_to() {
         bindings: vec![("Feedr".to_owned(), 1)],
         ..Options::default()
     };
-    assert!(
-        standstill_st::compile(&[source], &wrong)
-            .unwrap_err()
-            .render()
-            .contains("Feedr")
-    );
+    let report = compile_with(text, &wrong).unwrap_err();
+    assert!(report.render().contains("Feedr"));
 }
 
 /// Covers: ST43
@@ -549,7 +534,6 @@ fn every_variable_has_a_path() {
         assert!(paths.iter().any(|it| it == path), "{path}: {paths:?}");
         assert_eq!(compiled.symbols.find(&path.to_lowercase()).unwrap().path, path);
     }
-    assert_eq!(compiled.symbols.block_of("cell.units[1].t"), Some("TON"));
     for path in [
         "Cell.Units[3].A",
         "Cell.Units",
@@ -663,17 +647,11 @@ fn the_default_of_a_type_may_name_what_the_type_declares() {
 
 /// The codes and messages of what is wrong or doubtful in a program that runs alone.
 fn told(text: &str) -> Vec<(&'static str, String)> {
-    let source = Source {
-        name: "prog.st",
-        bytes: text.as_bytes(),
-    };
     let options = Options {
         program: Some("P".to_owned()),
         ..Options::default()
     };
-    let report = standstill_st::check(&[source], &options);
-    let told = report.diagnostics().iter();
-    told.map(|it| (it.code.name(), it.message.clone())).collect()
+    common::told(&standstill_st::check(&[source("prog.st", text)], &options))
 }
 
 /// Covers: ST21
@@ -724,10 +702,6 @@ fn a_call_by_name_may_leave_an_input_out() {
 fn a_global_variable_is_found_by_its_list_too() {
     let list = "VAR_GLOBAL Axes : ARRAY [1..2] OF AXIS_REF; bStart : BOOL; END_VAR";
     let main = "PROGRAM P VAR n : INT; END_VAR IF GVL.bStart THEN n := 1; END_IF; END_PROGRAM";
-    let source = |name: &'static str, text: &'static str| Source {
-        name,
-        bytes: text.as_bytes(),
-    };
     let sources = [source("lists/GVL.st", list), source("main.st", main)];
     let options = Options {
         bindings: vec![("GVL.Axes[2]".to_owned(), 7)],
@@ -748,10 +722,6 @@ fn a_global_variable_is_found_by_its_list_too() {
 /// Covers: ST20
 #[test]
 fn two_lists_with_one_name_are_told_once() {
-    let source = |name: &'static str, text: &'static str| Source {
-        name,
-        bytes: text.as_bytes(),
-    };
     let sources = [
         source(
             "A.st",

@@ -2,7 +2,7 @@
 //! here, run for a scan, and its value compared; the tables must be those that this file writes. With
 //! `STANDSTILL_DOCS=update` they are written.
 
-use crate::common::{Running, compile, wrong};
+use crate::common::{Running, checked, compile, compile_with, wrong};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -225,15 +225,7 @@ fn supported() -> String {
 }
 
 fn help_of(source: &str) -> String {
-    let source = standstill_st::Source {
-        name: "prog.st",
-        bytes: source.as_bytes(),
-    };
-    let options = standstill_st::Options {
-        library: true,
-        ..standstill_st::Options::default()
-    };
-    let report = standstill_st::check(&[source], &options);
+    let report = checked(source);
     let refused = report
         .diagnostics()
         .iter()
@@ -263,11 +255,7 @@ fn what_the_page_says_is_supported_works() {
             program: Some("Main".to_owned()),
             ..standstill_st::Options::default()
         };
-        let source = standstill_st::Source {
-            name: "prog.st",
-            bytes: text.as_bytes(),
-        };
-        let compiled = standstill_st::compile(&[source], &main);
+        let compiled = compile_with(&text, &main);
         let compiled = compiled.unwrap_or_else(|report| panic!("{}", report.render()));
         let mut running = Running::of(compiled);
         running.scan().unwrap_or_else(|fault| panic!("{fault}\n{text}"));

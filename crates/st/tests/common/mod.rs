@@ -3,7 +3,7 @@ use standstill_axis::{IdealDrive, Standard};
 use standstill_fb::Value;
 use standstill_guest::{Fault, Guest, Program, Settings, SymbolType};
 use standstill_scan::{Machine, RUNTIME, ScanTime};
-use standstill_st::{Compiled, Elementary, FAULT_SITE, FAULT_VALUE, Options, Place, Report, Source};
+use standstill_st::{Compiled, Elementary, FAULT_SITE, FAULT_VALUE, Options, Place, Report, Source, Symbol};
 
 /// Compiles a text; a mistake fails the test with its message.
 pub fn compiled(text: &str) -> Compiled {
@@ -17,32 +17,42 @@ pub fn valid(compiled: &Compiled) {
     wasmparser::validate(&compiled.wasm).unwrap();
 }
 
-pub fn compile(text: &str) -> Result<Compiled, Box<Report>> {
-    let source = Source {
-        name: "prog.st",
+pub const fn source<'a>(name: &'a str, text: &'a str) -> Source<'a> {
+    Source {
+        name,
         bytes: text.as_bytes(),
-    };
-    standstill_st::compile(&[source], &Options::default())
+    }
 }
 
-/// The faults of a text: codes and messages.
-pub fn wrong(text: &str) -> Vec<(&'static str, String)> {
-    let source = Source {
-        name: "prog.st",
-        bytes: text.as_bytes(),
-    };
+pub fn compile(text: &str) -> Result<Compiled, Box<Report>> {
+    compile_with(text, &Options::default())
+}
+
+pub fn compile_with(text: &str, options: &Options) -> Result<Compiled, Box<Report>> {
+    standstill_st::compile(&[source("prog.st", text)], options)
+}
+
+/// The report of a text that need not have a program.
+pub fn checked(text: &str) -> Report {
     let options = Options {
         library: true,
         ..Options::default()
     };
-    let report = standstill_st::check(&[source], &options);
+    standstill_st::check(&[source("prog.st", text)], &options)
+}
+
+/// The faults of a text: codes and messages.
+pub fn wrong(text: &str) -> Vec<(&'static str, String)> {
+    let report = checked(text);
     // Rendering must not fail, for any fault.
     let _shown = report.render();
-    let told = report
-        .diagnostics()
-        .iter()
-        .map(|it| (it.code.name(), it.message.clone()));
-    told.collect()
+    told(&report)
+}
+
+/// Codes and messages.
+pub fn told(report: &Report) -> Vec<(&'static str, String)> {
+    let told = report.diagnostics().iter();
+    told.map(|it| (it.code.name(), it.message.clone())).collect()
 }
 
 /// A program between two scans.
@@ -84,13 +94,14 @@ impl Running {
         self.guest.scan(&mut context).map(|_fuel| ())
     }
 
+    fn symbol(&self, path: &str) -> Symbol {
+        let found = self.compiled.symbols.find(path);
+        found.unwrap_or_else(|| panic!("no {path}"))
+    }
+
     /// The whole number in a variable.
     pub fn whole(&self, path: &str) -> i128 {
-        let symbol = self
-            .compiled
-            .symbols
-            .find(path)
-            .unwrap_or_else(|| panic!("no {path}"));
+        let symbol = self.symbol(path);
         let bits = self.bits(symbol.address, symbol.ty.size());
         let width = symbol.ty.size() * 8;
         let signed = matches!(
@@ -112,11 +123,7 @@ impl Running {
 
     /// The number in a REAL or LREAL.
     pub fn real(&self, path: &str) -> f64 {
-        let symbol = self
-            .compiled
-            .symbols
-            .find(path)
-            .unwrap_or_else(|| panic!("no {path}"));
+        let symbol = self.symbol(path);
         let bits = self.bits(symbol.address, symbol.ty.size());
         match symbol.ty {
             Elementary::Real => f32::from_bits(bits as u32).into(),
@@ -139,11 +146,7 @@ impl Running {
     }
 
     pub fn set(&mut self, path: &str, value: u64) {
-        let symbol = self
-            .compiled
-            .symbols
-            .find(path)
-            .unwrap_or_else(|| panic!("no {path}"));
+        let symbol = self.symbol(path);
         for place in 0..symbol.ty.size() {
             let byte = standstill_guest::Symbol {
                 ty: SymbolType::Byte,
