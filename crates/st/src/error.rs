@@ -6,26 +6,17 @@ use std::borrow::Cow;
 use std::fmt;
 
 macro_rules! codes {
-    ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal,)*) => {
+    ($($(#[$doc:meta])+ $variant:ident = $name:literal,)*) => {
         /// The kinds of errors. The name is in the first line of a message; tools may rely on it.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         #[non_exhaustive]
-        pub enum Code { $($(#[doc = $doc])+ $variant,)* }
+        pub enum Code { $($(#[$doc])+ $variant,)* }
 
         impl Code {
-            /// All of them.
-            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
-
             /// The name in messages.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name,)* }
-            }
-
-            /// Its meaning, one sentence.
-            #[must_use]
-            pub const fn doc(self) -> &'static str {
-                match self { $(Self::$variant => concat!($($doc),+).trim_ascii(),)* }
             }
         }
     };
@@ -170,7 +161,7 @@ impl Diagnostic {
 }
 
 /// Largest number of errors, and of warnings, that are kept; further ones are counted.
-pub const DIAGNOSTICS_MOST: usize = 50;
+pub(crate) const DIAGNOSTICS_MOST: usize = 50;
 
 /// The faults found so far.
 #[derive(Clone, Debug, Default)]

@@ -11,8 +11,7 @@ macro_rules! elementary {
         pub enum Elementary { $($variant,)* }
 
         impl Elementary {
-            /// All of them.
-            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+            pub(crate) const ALL: &'static [Self] = &[$(Self::$variant),*];
 
             /// Its name.
             #[must_use]
@@ -66,8 +65,7 @@ pub(crate) enum Class {
 
 impl Elementary {
     /// The type of this name, without regard to case.
-    #[must_use]
-    pub fn find(name: &str) -> Option<Self> {
+    pub(crate) fn find(name: &str) -> Option<Self> {
         Self::ALL
             .iter()
             .copied()

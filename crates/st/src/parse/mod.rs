@@ -13,7 +13,7 @@ use crate::source::{Sources, Span};
 use crate::syntax::{Expression, Ident, Item};
 
 /// Deepest nesting of expressions, statements, types and initial values.
-pub const NESTING_MOST: usize = 200;
+pub(crate) const NESTING_MOST: usize = 200;
 
 /// Reads all files.
 pub(crate) fn parse(sources: &Sources, found: &mut Found) -> Vec<Item> {

@@ -80,15 +80,6 @@ impl Symbols {
         found
     }
 
-    /// The name of the function block a variable is an instance of.
-    #[must_use]
-    pub fn block_of(&self, path: &str) -> Option<&str> {
-        match self.types.get(self.part(path)?.ty) {
-            Type::Block(unit) => self.units.get(unit.0 as usize).map(|unit| unit.name.as_str()),
-            _ => None,
-        }
-    }
-
     /// Whether there is a STRING at a path, which is no signal.
     #[must_use]
     pub fn is_text(&self, path: &str) -> bool {

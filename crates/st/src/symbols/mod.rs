@@ -87,7 +87,6 @@ pub struct Task {
 
 #[derive(Clone, Debug)]
 struct Unit {
-    name: String,
     members: Members,
     /// The block, if it is one of the library.
     library: Option<&'static BlockInfo>,
@@ -172,7 +171,6 @@ impl Symbols {
                 UnitKind::Library(info) => Some(info),
                 _ => None,
             },
-            name: unit.name,
             members: unit.members,
         });
         Self {
@@ -421,18 +419,5 @@ pub(crate) fn image(program: &Program<'_>, memory: &mut [u8]) {
     }
     for instance in &program.instances {
         start::members_of(program, instance.unit, memory, instance.address);
-    }
-}
-
-/// Names of elementary types that the symbols of a guest have, too.
-impl Elementary {
-    /// The type by which the host of a guest reads it; `None` if no signal has 64 bits of that kind.
-    #[must_use]
-    pub const fn guest_type(self) -> Option<&'static str> {
-        match self {
-            Self::Lint | Self::Ulint | Self::Lword => None,
-            Self::Ltime => Some("TIME"),
-            other => Some(other.name()),
-        }
     }
 }
