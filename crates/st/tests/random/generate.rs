@@ -4,30 +4,8 @@
 //! Whole numbers are 128 bits wide in C and truncated to their type after every operator, so nothing
 //! overflows; divisors are not 0, indices are in their bounds, and loops end.
 
-use standstill_testkit as testkit;
+use standstill_testkit::Random;
 use std::fmt::Write;
-
-/// Numbers of the test kit, drawn as programs need them.
-pub struct Random(testkit::Random);
-
-impl Random {
-    /// Everything follows from `seed`.
-    pub const fn new(seed: u64) -> Self {
-        Self(testkit::Random(seed))
-    }
-
-    pub fn next(&mut self) -> u64 {
-        self.0.bits()
-    }
-
-    pub fn below(&mut self, count: usize) -> usize {
-        self.0.place(count)
-    }
-
-    fn pick<T: Copy>(&mut self, from: &[T]) -> T {
-        from[self.below(from.len())]
-    }
-}
 
 /// The operations on a type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -175,11 +153,11 @@ impl Generator<'_> {
     fn literal(&mut self, ty: Ty) -> Pair {
         match ty.kind {
             Kind::Bool => {
-                let value = self.random.below(2);
+                let value = self.random.place(2);
                 pair(["FALSE", "TRUE"][value], value.to_string())
             }
             Kind::Real => {
-                let text = self.random.pick(&[
+                let text = self.random.one_of(&[
                     "0.0",
                     "1.0",
                     "-1.0",
@@ -195,7 +173,7 @@ impl Generator<'_> {
                 pair(format!("{}#{text}", ty.name), format!("(({}){text})", ty.c()))
             }
             Kind::Time => {
-                let ns = self.random.next().cast_signed() >> (8 + self.random.below(50));
+                let ns = self.random.bits().cast_signed() >> (8 + self.random.place(50));
                 let sign = if ns < 0 { "-" } else { "" };
                 pair(
                     format!("T#{sign}{}ns", ns.unsigned_abs()),
@@ -203,11 +181,11 @@ impl Generator<'_> {
                 )
             }
             Kind::Whole | Kind::Bits => {
-                let value = match self.random.below(6) {
+                let value = match self.random.place(6) {
                     0 => ty.low(),
                     1 => ty.high(),
-                    2 | 3 => (self.random.below(20) as i128 - 5).max(ty.low()),
-                    _ => (i128::from(self.random.next()) >> self.random.below(60)).clamp(ty.low(), ty.high()),
+                    2 | 3 => (self.random.place(20) as i128 - 5).max(ty.low()),
+                    _ => (i128::from(self.random.bits()) >> self.random.place(60)).clamp(ty.low(), ty.high()),
                 };
                 let c = if value < 0 {
                     format!("(-(wide){}ULL)", value.unsigned_abs())
@@ -226,20 +204,20 @@ impl Generator<'_> {
             .filter(|it| it.ty == ty && !(written && self.locked.contains(&it.name)))
             .cloned()
             .collect();
-        if ty == self.elements && self.random.below(3) == 0 {
+        if ty == self.elements && self.random.place(3) == 0 {
             let index = self.index();
             return Some(pair(format!("arr[{}]", index.st), format!("v->arr[{}]", index.c)));
         }
         if fit.is_empty() {
             return None;
         }
-        let found = &fit[self.random.below(fit.len())];
+        let found = &fit[self.random.place(fit.len())];
         Some(pair(&found.name, &found.c))
     }
 
     /// An index within the bounds of the array, for any values of the variables.
     fn index(&mut self) -> Pair {
-        let ty = self.random.pick(&WHOLE);
+        let ty = self.random.one_of(&WHOLE);
         let value = self.expression(ty, 1);
         let size = INDEX_MOST + 1;
         pair(
@@ -250,8 +228,8 @@ impl Generator<'_> {
 
     /// A value of exactly this type, in parentheses where it needs them.
     fn expression(&mut self, ty: Ty, depth: usize) -> Pair {
-        if depth == 0 || self.random.below(6) == 0 {
-            let leaf = if self.random.below(4) > 0 {
+        if depth == 0 || self.random.place(6) == 0 {
+            let leaf = if self.random.place(4) > 0 {
                 self.variable(ty, false)
             } else {
                 None
@@ -259,7 +237,7 @@ impl Generator<'_> {
             return leaf.unwrap_or_else(|| self.literal(ty));
         }
         let depth = depth - 1;
-        match self.random.below(10) {
+        match self.random.place(10) {
             0 => self.conversion(ty, depth),
             1 => self.choice(ty, depth),
             _ => match ty.kind {
@@ -275,24 +253,24 @@ impl Generator<'_> {
     /// A value that is accepted where one of this type is expected, beside another one of that type.
     fn operand(&mut self, ty: Ty, depth: usize) -> Pair {
         let narrower = ty.narrower();
-        if narrower.is_empty() || self.random.below(3) > 0 {
+        if narrower.is_empty() || self.random.place(3) > 0 {
             return self.expression(ty, depth);
         }
-        let from = self.random.pick(&narrower);
+        let from = self.random.one_of(&narrower);
         let value = self.expression(from, depth);
         pair(value.st, format!("({})({})", ty.c(), value.c))
     }
 
     fn choice(&mut self, ty: Ty, depth: usize) -> Pair {
         let (one, other) = (self.expression(ty, depth), self.expression(ty, depth));
-        if self.random.below(2) == 0 {
+        if self.random.place(2) == 0 {
             let decides = self.expression(BOOL, depth);
             return pair(
                 format!("SEL({}, {}, {})", decides.st, one.st, other.st),
                 format!("(({}) ? ({}) : ({}))", decides.c, other.c, one.c),
             );
         }
-        let by = self.random.pick(&WHOLE[4..]);
+        let by = self.random.one_of(&WHOLE[4..]);
         let decides = self.expression(by, depth);
         pair(
             format!("MUX({} MOD 2, {}, {})", decides.st, one.st, other.st),
@@ -301,7 +279,7 @@ impl Generator<'_> {
     }
 
     fn conversion(&mut self, to: Ty, depth: usize) -> Pair {
-        let from = self.random.pick(&all());
+        let from = self.random.one_of(&all());
         let value = self.expression(from, depth);
         if from == to {
             return value;
@@ -337,14 +315,14 @@ impl Generator<'_> {
     }
 
     fn boolean(&mut self, depth: usize) -> Pair {
-        match self.random.below(7) {
+        match self.random.place(7) {
             0 => {
                 let value = self.expression(BOOL, depth);
                 pair(format!("(NOT {})", value.st), format!("(!({}))", value.c))
             }
             1 => {
                 let (one, other) = (self.expression(BOOL, depth), self.expression(BOOL, depth));
-                let (st, c) = self.random.pick(&[("AND_THEN", "&&"), ("OR_ELSE", "||")]);
+                let (st, c) = self.random.one_of(&[("AND_THEN", "&&"), ("OR_ELSE", "||")]);
                 pair(
                     format!("({} {st} {})", one.st, other.st),
                     format!("(({}) {c} ({}))", one.c, other.c),
@@ -359,15 +337,15 @@ impl Generator<'_> {
                 )
             }
             3 => {
-                let ty = self.random.pick(&BITS);
-                let bit = self.random.below(ty.bits as usize);
+                let ty = self.random.one_of(&BITS);
+                let bit = self.random.place(ty.bits as usize);
                 match self.variables.iter().find(|it| it.ty == ty).cloned() {
                     Some(it) => pair(format!("{}.{bit}", it.name), format!("(({} >> {bit}) & 1)", it.c)),
                     None => self.literal(BOOL),
                 }
             }
             _ => {
-                let ty = self.random.pick(&all());
+                let ty = self.random.one_of(&all());
                 let (one, other) = (self.expression(ty, depth), self.operand(ty, depth));
                 let signs = [
                     ("=", "=="),
@@ -378,7 +356,7 @@ impl Generator<'_> {
                     (">=", ">="),
                 ];
                 let signs = if ty == BOOL { &signs[..2] } else { &signs[..] };
-                let (st, c) = self.random.pick(signs);
+                let (st, c) = self.random.one_of(signs);
                 pair(
                     format!("({} {st} {})", one.st, other.st),
                     format!("(({}) {c} ({}))", one.c, other.c),
@@ -389,12 +367,12 @@ impl Generator<'_> {
 
     fn bits(&mut self, ty: Ty, depth: usize) -> Pair {
         let one = self.expression(ty, depth);
-        match self.random.below(6) {
+        match self.random.place(6) {
             0 => pair(format!("(NOT {})", one.st), ty.cut(&format!("~({})", one.c))),
             1 | 2 => {
-                let by = self.random.pick(&WHOLE[..7]);
+                let by = self.random.one_of(&WHOLE[..7]);
                 let count = self.expression(by, depth);
-                let (st, c) = self.random.pick(&[
+                let (st, c) = self.random.one_of(&[
                     ("SHL", "shifted_left"),
                     ("SHR", "shifted_right"),
                     ("ROL", "rotated_left"),
@@ -411,7 +389,7 @@ impl Generator<'_> {
                 let other = self.operand(ty, depth);
                 let (st, c) = self
                     .random
-                    .pick(&[("AND", "&"), ("OR", "|"), ("XOR", "^"), ("&", "&")]);
+                    .one_of(&[("AND", "&"), ("OR", "|"), ("XOR", "^"), ("&", "&")]);
                 pair(
                     format!("({} {st} {})", one.st, other.st),
                     format!("(({}) {c} ({}))", one.c, other.c),
@@ -422,7 +400,7 @@ impl Generator<'_> {
 
     fn whole(&mut self, ty: Ty, depth: usize) -> Pair {
         let one = self.expression(ty, depth);
-        match self.random.below(8) {
+        match self.random.place(8) {
             0 if ty.signed => pair(format!("(-{})", one.st), ty.cut(&format!("-({})", one.c))),
             1 => pair(
                 format!("ABS({})", one.st),
@@ -430,7 +408,7 @@ impl Generator<'_> {
             ),
             2 => {
                 let other = self.expression(ty, depth);
-                let (st, c) = self.random.pick(&[("MIN", "least"), ("MAX", "most")]);
+                let (st, c) = self.random.one_of(&[("MIN", "least"), ("MAX", "most")]);
                 pair(
                     format!("{st}({}, {})", one.st, other.st),
                     format!("{c}({}, {})", one.c, other.c),
@@ -444,7 +422,7 @@ impl Generator<'_> {
                 )
             }
             4 | 5 => {
-                let (st, c) = self.random.pick(&[("/", "quotient"), ("MOD", "rest")]);
+                let (st, c) = self.random.one_of(&[("/", "quotient"), ("MOD", "rest")]);
                 let other = self.divisor(ty, depth);
                 pair(
                     format!("({} {st} {})", one.st, other.st),
@@ -463,7 +441,7 @@ impl Generator<'_> {
             }
             _ => {
                 let other = self.operand(ty, depth);
-                let (st, c) = match self.random.below(3) {
+                let (st, c) = match self.random.place(3) {
                     0 => ("+", format!("({}) + ({})", one.c, other.c)),
                     1 => ("-", format!("({}) - ({})", one.c, other.c)),
                     _ => ("*", format!("product({}, {})", one.c, other.c)),
@@ -475,14 +453,14 @@ impl Generator<'_> {
 
     /// A whole number that is not 0.
     fn divisor(&mut self, ty: Ty, depth: usize) -> Pair {
-        if self.random.below(2) == 0 {
+        if self.random.place(2) == 0 {
             let value = self.expression(ty, depth);
             return pair(
                 format!("MAX({}, {}#1)", value.st, ty.name),
                 format!("most({}, 1)", value.c),
             );
         }
-        if ty.signed && self.random.below(2) == 0 {
+        if ty.signed && self.random.place(2) == 0 {
             let value = self.expression(ty, depth);
             return pair(
                 format!("MIN({}, {}#-1)", value.st, ty.name),
@@ -500,10 +478,10 @@ impl Generator<'_> {
     fn real(&mut self, ty: Ty, depth: usize) -> Pair {
         let one = self.expression(ty, depth);
         let single = if ty == REAL { "f" } else { "" };
-        match self.random.below(9) {
+        match self.random.place(9) {
             0 => pair(format!("(-{})", one.st), format!("(-({}))", one.c)),
             1 => {
-                let (st, c) = self.random.pick(&[
+                let (st, c) = self.random.one_of(&[
                     ("ABS", "fabs"),
                     ("SQRT", "sqrt"),
                     ("FLOOR", "floor"),
@@ -514,7 +492,7 @@ impl Generator<'_> {
             }
             2 => {
                 let other = self.expression(ty, depth);
-                let (st, c) = self.random.pick(&[("MIN", "least_real"), ("MAX", "most_real")]);
+                let (st, c) = self.random.one_of(&[("MIN", "least_real"), ("MAX", "most_real")]);
                 pair(
                     format!("{st}({}, {})", one.st, other.st),
                     format!("({}){c}({}, {})", ty.c(), one.c, other.c),
@@ -529,7 +507,7 @@ impl Generator<'_> {
             }
             _ => {
                 let other = self.operand(ty, depth);
-                let sign = self.random.pick(&["+", "-", "*", "/"]);
+                let sign = self.random.one_of(&["+", "-", "*", "/"]);
                 pair(
                     format!("({} {sign} {})", one.st, other.st),
                     format!("(({}) {sign} ({}))", one.c, other.c),
@@ -540,9 +518,9 @@ impl Generator<'_> {
 
     fn time(&mut self, depth: usize) -> Pair {
         let one = self.expression(TIME, depth);
-        match self.random.below(4) {
+        match self.random.place(4) {
             0 => {
-                let by = self.random.pick(&WHOLE[..7]);
+                let by = self.random.one_of(&WHOLE[..7]);
                 let other = self.expression(by, depth);
                 pair(
                     format!("({} * {})", one.st, other.st),
@@ -550,7 +528,7 @@ impl Generator<'_> {
                 )
             }
             1 => {
-                let by = self.random.pick(&WHOLE[..7]);
+                let by = self.random.one_of(&WHOLE[..7]);
                 let other = self.divisor(by, depth);
                 pair(
                     format!("({} / {})", one.st, other.st),
@@ -559,7 +537,7 @@ impl Generator<'_> {
             }
             _ => {
                 let other = self.expression(TIME, depth);
-                let sign = self.random.pick(&["+", "-"]);
+                let sign = self.random.one_of(&["+", "-"]);
                 pair(
                     format!("({} {sign} {})", one.st, other.st),
                     TIME.cut(&format!("({}) {sign} ({})", one.c, other.c)),
@@ -570,7 +548,7 @@ impl Generator<'_> {
 
     fn block(&mut self, depth: usize, most: usize) -> Pair {
         let mut block = pair("", "");
-        for _ in 0..=self.random.below(most) {
+        for _ in 0..=self.random.place(most) {
             let one = self.statement(depth);
             block.st.push_str(&one.st);
             block.c.push_str(&one.c);
@@ -579,11 +557,11 @@ impl Generator<'_> {
     }
 
     fn assignment(&mut self) -> Pair {
-        let ty = self.random.pick(&all());
-        if ty.kind == Kind::Bits && self.random.below(3) == 0 {
+        let ty = self.random.one_of(&all());
+        if ty.kind == Kind::Bits && self.random.place(3) == 0 {
             let target = self.variables.iter().find(|it| it.ty == ty).cloned();
             if let Some(target) = target {
-                let bit = self.random.below(ty.bits as usize);
+                let bit = self.random.place(ty.bits as usize);
                 let value = self.expression(BOOL, 2);
                 let mask = format!("((wide)1 << {bit})");
                 return pair(
@@ -617,7 +595,7 @@ impl Generator<'_> {
             return self.assignment();
         }
         let depth = depth - 1;
-        match self.random.below(9) {
+        match self.random.place(9) {
             0 | 1 => {
                 let (first, second) = (self.expression(BOOL, 2), self.expression(BOOL, 2));
                 let (one, two, three) = (self.block(depth, 2), self.block(depth, 2), self.block(depth, 2));
@@ -637,13 +615,13 @@ impl Generator<'_> {
             4 => self.while_(depth),
             5 if self.loops > 0 => {
                 let when = self.expression(BOOL, 1);
-                let (st, c) = self.random.pick(&[("EXIT", "break"), ("CONTINUE", "continue")]);
+                let (st, c) = self.random.one_of(&[("EXIT", "break"), ("CONTINUE", "continue")]);
                 pair(
                     format!("IF {} THEN {st}; END_IF;\n", when.st),
                     format!("if ({}) {c};\n", when.c),
                 )
             }
-            6 if self.random.below(4) == 0 => {
+            6 if self.random.place(4) == 0 => {
                 let when = self.expression(BOOL, 1);
                 pair(
                     format!("IF {} THEN RETURN; END_IF;\n", when.st),
@@ -655,10 +633,10 @@ impl Generator<'_> {
     }
 
     fn case(&mut self, depth: usize) -> Pair {
-        let ty = self.random.pick(&WHOLE);
+        let ty = self.random.one_of(&WHOLE);
         let selector = self.expression(ty, 2);
         let (a, b, c) = (self.block(depth, 2), self.block(depth, 2), self.block(depth, 2));
-        let far = self.random.below(100) + 20;
+        let far = self.random.place(100) + 20;
         // `s` has the same value in all comparisons.
         pair(
             format!(
@@ -673,7 +651,7 @@ impl Generator<'_> {
     }
 
     fn for_(&mut self, depth: usize) -> Pair {
-        let ty = self.random.pick(&WHOLE);
+        let ty = self.random.one_of(&WHOLE);
         let Some(control) = self
             .variables
             .iter()
@@ -682,12 +660,12 @@ impl Generator<'_> {
         else {
             return self.assignment();
         };
-        let step = self.random.pick(&[1_i128, 1, 2, 3, -1, -2]);
-        let count = self.random.below(5) as i128;
+        let step = self.random.one_of(&[1_i128, 1, 2, 3, -1, -2]);
+        let count = self.random.place(5) as i128;
         // Often at an end of the type.
-        let from = match (self.random.below(3), step > 0) {
-            (0, true) => ty.high() - self.random.below(6) as i128,
-            (0, false) => ty.low() + self.random.below(6) as i128,
+        let from = match (self.random.place(3), step > 0) {
+            (0, true) => ty.high() - self.random.place(6) as i128,
+            (0, false) => ty.low() + self.random.place(6) as i128,
             _ => 10,
         };
         let to = (from + count * step).clamp(ty.low(), ty.high());
@@ -738,12 +716,12 @@ impl Generator<'_> {
         });
         self.locked.push(name.clone());
         let condition = self.expression(BOOL, 1);
-        let most = self.random.below(5);
+        let most = self.random.place(5);
         self.loops += 1;
         let body = self.block(depth, 2);
         self.loops -= 1;
         // It stays locked, so that it counts to the end.
-        if self.random.below(2) == 0 {
+        if self.random.place(2) == 0 {
             pair(
                 format!(
                     "{name} := 0;\nWHILE {name} < {most} AND {} DO\n{name} := {name} + 1;\n{}END_WHILE;\n",
@@ -771,7 +749,7 @@ impl Generator<'_> {
 
 /// One program: a function block, and a structure with a function in C.
 pub fn generate(random: &mut Random, number: usize) -> Generated {
-    let elements = random.pick(&all());
+    let elements = random.one_of(&all());
     let mut generator = Generator {
         random,
         number,
@@ -790,7 +768,7 @@ pub fn generate(random: &mut Random, number: usize) -> Generated {
         generator.variables.push(Variable { name, ty, c });
     }
     let mut body = pair("", "");
-    for _ in 0..3 + generator.random.below(5) {
+    for _ in 0..3 + generator.random.place(5) {
         let one = generator.statement(3);
         body.st.push_str(&one.st);
         body.c.push_str(&one.c);

@@ -6,8 +6,9 @@
 mod generate;
 
 use crate::common::{Running, compile, valid};
-use generate::{Generated, Random, generate};
+use generate::{Generated, generate};
 use standstill_guest::Settings;
+use standstill_testkit::Random;
 use std::path::PathBuf;
 use std::process::Command;
 use std::{env, fs};
@@ -83,7 +84,7 @@ fn shown(run: &Running, n: usize, program: &Generated) -> String {
 
 /// Programs of one file, from one seed.
 fn same(seed: u64, count: usize) -> bool {
-    let mut random = Random::new(seed);
+    let mut random = Random(seed);
     let programs: Vec<Generated> = (0..count).map(|n| generate(&mut random, n)).collect();
     let Some(theirs) = in_c(&programs, seed) else {
         return false;
