@@ -5,11 +5,11 @@ use crate::storage::{ALIGN, List};
 use crate::{Code, NAME, Recorded, RecorderConfig, RecorderStatus, UNIT};
 use core::alloc::Layout;
 use core::ffi::c_char;
-use core::fmt;
+use core::fmt::{self, Write};
 use core::str;
 use standstill_axis::{self as axis, Axis, AxisConfig, AxisState, Log};
 use standstill_fb::{AnyInstance, BlockInfo, axis_number};
-use standstill_record::text::{Called, Form, integer, line};
+use standstill_record::text::{Called, Form, line};
 use standstill_record::{AXIS_WORDS, Ring, Setup, State, Trigger, write_axis};
 
 /// The largest number of scans and of records of a recorder.
@@ -58,7 +58,7 @@ impl<const N: usize> Text<N> {
     }
 }
 
-impl<const N: usize> fmt::Write for Text<N> {
+impl<const N: usize> Write for Text<N> {
     fn write_str(&mut self, text: &str) -> fmt::Result {
         for byte in text.bytes() {
             // The last byte stays 0.
@@ -219,8 +219,7 @@ impl Order<'_> {
         for axis in self.axes {
             let mut name = Text::EMPTY;
             // It has room for any number.
-            fmt::Write::write_str(&mut name, "axis").map_err(|_| Code::BadValue)?;
-            integer(&mut name, axis_number(axis.id()).into()).map_err(|_| Code::BadValue)?;
+            write!(name, "axis{}", axis_number(axis.id())).map_err(|_| Code::BadValue)?;
             recorder.names.push(AxisName {
                 name,
                 unit: Text::EMPTY,
@@ -417,7 +416,7 @@ struct Window<'a> {
     len: usize,
 }
 
-impl fmt::Write for Window<'_> {
+impl Write for Window<'_> {
     fn write_str(&mut self, text: &str) -> fmt::Result {
         let skipped = self.skip.min(text.len() as u64);
         self.skip -= skipped;

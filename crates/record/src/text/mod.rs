@@ -6,11 +6,11 @@
 mod number;
 mod sentence;
 
-pub use number::{integer, real, whole};
+use number::Real;
 pub use sentence::{Called, happened, shift, shifted, standing, subject};
 
 use crate::ring::{AXIS_WORDS, Ring, moved};
-use core::fmt::{self, Write};
+use core::fmt::{self, Display, Write};
 use standstill_axis::{AxisConfig, AxisState, Event, Order, Record};
 use standstill_fb::{BlockInfo, Direction, PinType, TableRef, Value};
 
@@ -103,20 +103,14 @@ fn instances(recorded: &impl Recorded) -> impl Iterator<Item = (&str, &'static B
 
 fn names(out: &mut impl Write, recorded: &impl Recorded) -> fmt::Result {
     out.write_str("scan,time_ns")?;
-    let mut column = |of: &str, signal: &str| {
-        for part in [",", of, ".", signal] {
-            out.write_str(part)?;
-        }
-        Ok(())
-    };
     for (axis, ..) in axes(recorded) {
         for signal in SIGNALS {
-            column(axis, signal)?;
+            write!(out, ",{axis}.{signal}")?;
         }
     }
     for (instance, block) in instances(recorded) {
         for pin in block.pins() {
-            column(instance, pin.name)?;
+            write!(out, ",{instance}.{}", pin.name)?;
         }
     }
     Ok(())
@@ -124,10 +118,11 @@ fn names(out: &mut impl Write, recorded: &impl Recorded) -> fmt::Result {
 
 fn row(out: &mut impl Write, form: Form, scan: u64, recorded: &impl Recorded, cycle_ns: u64) -> fmt::Result {
     let is_json = form == Form::JsonLines;
-    out.write_str(if is_json { "{\"scan\":" } else { "" })?;
-    whole(out, scan)?;
-    out.write_str(if is_json { ",\"time_ns\":" } else { "," })?;
-    whole(out, scan.wrapping_mul(cycle_ns))?;
+    let time_ns = scan.wrapping_mul(cycle_ns);
+    match is_json {
+        true => write!(out, "{{\"scan\":{scan},\"time_ns\":{time_ns}")?,
+        false => write!(out, "{scan},{time_ns}")?,
+    }
     let place = usize::try_from(scan)
         .ok()
         .and_then(|scan| recorded.ring().row(scan));
@@ -135,9 +130,7 @@ fn row(out: &mut impl Write, form: Form, scan: u64, recorded: &impl Recorded, cy
     let mut cell = |of: &str, signal: &str, value: Cell<'_>| {
         out.write_str(",")?;
         if is_json {
-            for part in ["\"", of, ".", signal, "\":"] {
-                out.write_str(part)?;
-            }
+            write!(out, "\"{of}.{signal}\":")?;
         }
         value.write(out, is_json)
     };
@@ -162,7 +155,17 @@ fn row(out: &mut impl Write, form: Form, scan: u64, recorded: &impl Recorded, cy
     out.write_str(if is_json { "}" } else { "" })
 }
 
-fn state(word: u64) -> &'static str {
+/// The order of the profiles of an axis.
+pub(crate) const fn order(config: &AxisConfig) -> u8 {
+    match config.limits.order() {
+        Order::Two => 2,
+        Order::Three => 3,
+        Order::Four => 4,
+    }
+}
+
+/// The name of a state by its word in a row.
+pub(crate) fn state(word: u64) -> &'static str {
     let found = AxisState::ALL.iter().find(|known| **known as u64 == word);
     found.map_or("", |known| known.name())
 }
@@ -212,14 +215,12 @@ impl<'a> Cell<'a> {
                 (false, true) => "false",
                 (false, false) => "FALSE",
             })?,
-            Self::Integer(value) => integer(out, value)?,
-            Self::Real(value) => real(out, value)?,
+            Self::Integer(value) => write!(out, "{value}")?,
+            Self::Real(value) => write!(out, "{}", Real(value))?,
             Self::Name(text) => out.write_str(text)?,
-            Self::Nameless(number) => integer(out, number.into())?,
-            Self::Records(records) => {
-                whole(out, records.into())?;
-                out.write_str(if records == 1 { " record" } else { " records" })?;
-            }
+            Self::Nameless(number) => write!(out, "{number}")?,
+            Self::Records(1) => out.write_str("1 record")?,
+            Self::Records(records) => write!(out, "{records} records")?,
         }
         out.write_str(quote)
     }
@@ -233,42 +234,30 @@ struct Members<'w, W> {
 
 impl<W: Write> Members<'_, W> {
     fn key(&mut self, key: &str) -> fmt::Result {
-        if !core::mem::take(&mut self.is_first) {
-            self.out.write_str(",")?;
-        }
-        for part in ["\"", key, "\":"] {
-            self.out.write_str(part)?;
-        }
-        Ok(())
+        let comma = if core::mem::take(&mut self.is_first) {
+            ""
+        } else {
+            ","
+        };
+        write!(self.out, "{comma}\"{key}\":")
     }
 
-    fn raw(&mut self, key: &str, value: &str) -> fmt::Result {
+    fn value(&mut self, key: &str, value: impl Display) -> fmt::Result {
         self.key(key)?;
-        self.out.write_str(value)
+        write!(self.out, "{value}")
     }
 
     /// A text without characters that need escaping.
     fn text(&mut self, key: &str, value: &str) -> fmt::Result {
         self.key(key)?;
-        for part in ["\"", value, "\""] {
-            self.out.write_str(part)?;
-        }
-        Ok(())
-    }
-
-    fn whole(&mut self, key: &str, value: u64) -> fmt::Result {
-        self.key(key)?;
-        whole(self.out, value)
+        write!(self.out, "\"{value}\"")
     }
 
     /// A limit; none if it is not finite.
     fn limit(&mut self, key: &str, value: Option<f64>) -> fmt::Result {
         match value.filter(|value| value.is_finite()) {
             None => Ok(()),
-            Some(value) => {
-                self.key(key)?;
-                real(self.out, value)
-            }
+            Some(value) => self.value(key, Real(value)),
         }
     }
 
@@ -303,24 +292,24 @@ fn list<W: Write, T>(
 
 fn header<W: Write>(out: &mut W, recorded: &impl Recorded, title: &str, cycle_ns: u64) -> fmt::Result {
     object(out, |header| {
-        header.whole("standstill_trace", 1)?;
+        header.value("standstill_trace", 1)?;
         header.text("runtime", env!("CARGO_PKG_VERSION"))?;
         header.text("title", title)?;
-        header.raw("covers", "[]")?;
+        header.value("covers", "[]")?;
         header.text("script_hash", "")?;
-        header.whole("cycle_ns", cycle_ns)?;
+        header.value("cycle_ns", cycle_ns)?;
         list(
             header.nested("axes")?,
             axes(recorded),
             |out, (name, unit, config)| axis(out, name, unit, config),
         )?;
-        header.raw("inputs", "[]")?;
+        header.value("inputs", "[]")?;
         list(
             header.nested("instances")?,
             instances(recorded),
             |out, (name, block)| instance(out, name, block),
         )?;
-        header.raw("claims", "[]")?;
+        header.value("claims", "[]")?;
         let out = header.nested("notes")?;
         out.write_str("[")?;
         note(out, 0, "recorder", |out| standing(out, recorded.ring(), recorded))?;
@@ -370,14 +359,7 @@ fn axis<W: Write>(out: &mut W, name: &str, unit: &str, config: &AxisConfig) -> f
     object(out, |axis| {
         axis.text("name", name)?;
         axis.text("unit", unit)?;
-        axis.whole(
-            "order",
-            match limits.order() {
-                Order::Two => 2,
-                Order::Three => 3,
-                Order::Four => 4,
-            },
-        )?;
+        axis.value("order", order(config))?;
         object(axis.nested("limits")?, |told| {
             told.limit("position_min", config.software_limits.map(|(min, _)| min))?;
             told.limit("position_max", config.software_limits.map(|(_, max)| max))?;
@@ -392,9 +374,9 @@ fn axis<W: Write>(out: &mut W, name: &str, unit: &str, config: &AxisConfig) -> f
             return Ok(());
         };
         object(axis.nested("scaling")?, |told| {
-            told.whole("increments", scaling.increments().into())?;
-            told.whole("units", scaling.units().into())?;
-            told.raw("invert", if scaling.invert() { "true" } else { "false" })?;
+            told.value("increments", scaling.increments())?;
+            told.value("units", scaling.units())?;
+            told.value("invert", scaling.invert())?;
             told.limit("offset", Some(scaling.offset()))
         })
     })
@@ -428,7 +410,7 @@ fn note<W: Write>(
     text: impl FnOnce(&mut W) -> fmt::Result,
 ) -> fmt::Result {
     object(out, |note| {
-        note.whole("scan", scan)?;
+        note.value("scan", scan)?;
         note.text("subject", subject)?;
         let out = note.nested("text")?;
         out.write_str("\"")?;

@@ -1,79 +1,45 @@
 //! Numbers as traces write them, without a heap and without a reachable panic.
 
-use core::fmt::{self, Write};
+use core::fmt::{self, Display, Write};
 
 /// Room for the significant digits of a number: the longest text of `ryu` has 24 bytes.
 const DIGITS: usize = 24;
 
-/// The shortest text that reads back as the same number, as `standstill_trace::shortest` gives it: NaN and infinities
-/// as words, -0.0 as `0.0`.
-///
-/// # Errors
-/// Those of `out`.
-pub fn real(out: &mut impl Write, value: f64) -> fmt::Result {
-    if value.is_nan() {
-        return out.write_str("NaN");
-    }
-    if value.is_infinite() {
-        return out.write_str(if value > 0.0 { "Infinity" } else { "-Infinity" });
-    }
-    if value == 0.0 {
-        return out.write_str("0.0");
-    }
-    if value < 0.0 {
-        out.write_str("-")?;
-    }
-    let mut buffer = ryu::Buffer::new();
-    let mut digits = Digits::of(buffer.format_finite(value.abs()));
-    digits.round_up(value.abs());
-    // From here on as `{:?}` does: powers of ten where plain digits would be long.
-    match digits.exponent {
-        exponent @ (-4..16) => digits.plain(out, exponent),
-        exponent => {
-            digits.put(out, 0, 1)?;
-            if digits.count > 1 {
-                out.write_str(".")?;
-                digits.put(out, 1, digits.count)?;
+/// A number as the shortest text that reads back as the same one, as `standstill_trace::shortest` gives it: NaN and
+/// infinities as words, -0.0 as `0.0`.
+pub struct Real(pub f64);
+
+impl Display for Real {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(value) = *self;
+        if value.is_nan() {
+            return out.write_str("NaN");
+        }
+        if value.is_infinite() {
+            return out.write_str(if value > 0.0 { "Infinity" } else { "-Infinity" });
+        }
+        if value == 0.0 {
+            return out.write_str("0.0");
+        }
+        if value < 0.0 {
+            out.write_str("-")?;
+        }
+        let mut buffer = ryu::Buffer::new();
+        let mut digits = Digits::of(buffer.format_finite(value.abs()));
+        digits.round_up(value.abs());
+        // From here on as `{:?}` does: powers of ten where plain digits would be long.
+        match digits.exponent {
+            exponent @ (-4..16) => digits.plain(out, exponent),
+            exponent => {
+                digits.put(out, 0, 1)?;
+                if digits.count > 1 {
+                    out.write_str(".")?;
+                    digits.put(out, 1, digits.count)?;
+                }
+                write!(out, "e{exponent}")
             }
-            out.write_str("e")?;
-            integer(out, exponent.into())
         }
     }
-}
-
-/// A whole number.
-///
-/// # Errors
-/// Those of `out`.
-pub fn integer(out: &mut impl Write, value: i64) -> fmt::Result {
-    if value < 0 {
-        out.write_str("-")?;
-    }
-    whole(out, value.unsigned_abs())
-}
-
-/// A whole number that is not negative.
-///
-/// # Errors
-/// Those of `out`.
-pub fn whole(out: &mut impl Write, value: u64) -> fmt::Result {
-    // 20 digits are enough for every u64.
-    let mut digits = [b'0'; 20];
-    let mut rest = value;
-    let mut count = 0;
-    for digit in digits.iter_mut().rev() {
-        *digit = b'0' + (rest % 10) as u8;
-        rest /= 10;
-        count += 1;
-        if rest == 0 {
-            break;
-        }
-    }
-    let text = digits
-        .len()
-        .checked_sub(count)
-        .and_then(|first| digits.get(first..));
-    put(out, text.unwrap_or_default())
 }
 
 fn put(out: &mut impl Write, digits: &[u8]) -> fmt::Result {
@@ -202,12 +168,10 @@ impl Digits {
 mod tests {
     use super::*;
     use std::format;
-    use std::string::String;
+    use std::string::{String, ToString};
 
     fn text(value: f64) -> String {
-        let mut out = String::new();
-        real(&mut out, value).unwrap();
-        out
+        Real(value).to_string()
     }
 
     /// The reference is `standstill_trace::shortest`, which prints with `{:?}`.
@@ -254,17 +218,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn whole_numbers_of_all_sizes() {
-        for value in [0, 7, 10, -1, i64::MAX, i64::MIN] {
-            let mut out = String::new();
-            integer(&mut out, value).unwrap();
-            assert_eq!(out, format!("{value}"));
-        }
-        let mut out = String::new();
-        whole(&mut out, u64::MAX).unwrap();
-        assert_eq!(out, format!("{}", u64::MAX));
     }
 }

@@ -1,9 +1,9 @@
 //! The records of the axes, and the state of a recorder, in words.
 
-use super::number::{integer, real, whole};
+use super::number::Real;
 use crate::ring::Ring;
 use core::fmt::{self, Write};
-use standstill_axis::{Approach, Event, Excess, Goal, Record};
+use standstill_axis::{Approach, ErrorId, Event, Excess, Goal, Record};
 
 /// Names of axes and block instances.
 pub trait Called {
@@ -57,8 +57,7 @@ const SHIFTED: &str = "coordinates moved by ";
 /// # Errors
 /// Those of `out`.
 pub fn shifted(out: &mut impl Write, by: f64) -> fmt::Result {
-    out.write_str(SHIFTED)?;
-    real(out, by)
+    write!(out, "{SHIFTED}{}", Real(by))
 }
 
 /// The shift (u) that a sentence reports, if it reports one.
@@ -79,31 +78,10 @@ pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> f
             limit,
             error,
         } => {
-            refusal(out, error.number(), error.name())?;
+            refusal(out, error)?;
             if !pin.is_empty() {
-                out.write_str(", ")?;
-                out.write_str(pin)?;
-                out.write_str(" ")?;
-                match pin {
-                    // Numbers of an enumeration.
-                    "BufferMode"
-                    | "Direction"
-                    | "ExecutionMode"
-                    | "CombineMode"
-                    | "MasterValueSource"
-                    | "MasterValueSourceM1"
-                    | "MasterValueSourceM2" => {
-                        integer(out, value as i64)?;
-                    }
-                    "Master" | "Master1" | "Master2" | "Slave" => match value as usize {
-                        0 => out.write_str("no axis")?,
-                        number => match names.axis(number - 1) {
-                            "" => whole(out, number as u64)?,
-                            name => out.write_str(name)?,
-                        },
-                    },
-                    _ => real(out, value)?,
-                }
+                write!(out, ", {pin} ")?;
+                refused_value(out, names, pin, value)?;
             }
             limited(out, limit)
         }
@@ -114,172 +92,107 @@ pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> f
             limit,
             error,
         } => {
-            refusal(out, error.number(), error.name())?;
-            out.write_str(", point ")?;
-            whole(out, point.into())?;
-            out.write_str(", ")?;
-            out.write_str(what)?;
-            out.write_str(" ")?;
-            real(out, value)?;
+            refusal(out, error)?;
+            write!(out, ", point {point}, {what} {}", Real(value))?;
             limited(out, limit)
         }
-        Event::Clamped { pin, value, limit } => changed(out, "clamped: ", pin, value, limit),
-        Event::Raised { pin, value, limit } => changed(out, "raised: ", pin, value, limit),
-        Event::Slowed { pin, value, limit } => changed(out, "slowed: ", pin, value, limit),
+        Event::Clamped { pin, value, limit } => changed(out, "clamped", pin, value, limit),
+        Event::Raised { pin, value, limit } => changed(out, "raised", pin, value, limit),
+        Event::Slowed { pin, value, limit } => changed(out, "slowed", pin, value, limit),
         Event::Unavoidable(excess) => {
             out.write_str("unavoidable: ")?;
             unavoidable(out, &excess)
         }
         Event::Planned { goal, scans } => {
-            out.write_str("plan")?;
-            if let Some(name) = names.instance(record.instance.0) {
-                out.write_str(" for ")?;
-                out.write_str(name)?;
-            }
+            named(out, names, record, "plan", "for")?;
             match goal {
-                Goal::Position(position) => {
-                    out.write_str(" to position ")?;
-                    real(out, position)?;
-                }
-                Goal::Velocity(velocity) => {
-                    out.write_str(" to velocity ")?;
-                    real(out, velocity)?;
-                }
+                Goal::Position(position) => write!(out, " to position {}", Real(position))?,
+                Goal::Velocity(velocity) => write!(out, " to velocity {}", Real(velocity))?,
                 Goal::Passing { position, velocity } => {
-                    out.write_str(" to velocity ")?;
-                    real(out, velocity)?;
-                    out.write_str(" at ")?;
-                    real(out, position)?;
+                    write!(out, " to velocity {} at {}", Real(velocity), Real(position))?;
                 }
             }
             in_scans(out, scans)
         }
         Event::Superimposed { distance, scans } => {
             match distance {
-                Some(distance) => {
-                    out.write_str("superimposes ")?;
-                    real(out, distance)?;
-                }
+                Some(distance) => write!(out, "superimposes {}", Real(distance))?,
                 None => out.write_str("superimposed motion to rest")?,
             }
             in_scans(out, scans)
         }
         Event::RoomAwaited => out.write_str("waits for room below the axis limits"),
         Event::Orphaned => out.write_str("orphaned: the motion goes on, and no block follows it"),
-        Event::Paused { error } => {
-            out.write_str("pauses: ")?;
-            whole(out, error.number().into())?;
-            out.write_str(" ")?;
-            out.write_str(error.name())
-        }
+        Event::Paused { error } => write!(out, "pauses: {} {}", error.number(), error.name()),
         Event::Coupled {
             master,
             numerator,
             denominator,
         } => {
-            out.write_str("coupled to ")?;
-            out.write_str(names.axis(master.index()))?;
-            out.write_str(", ")?;
-            integer(out, numerator.into())?;
-            out.write_str("/")?;
-            whole(out, denominator.into())
+            let master = names.axis(master.index());
+            write!(out, "coupled to {master}, {numerator}/{denominator}")
         }
         Event::Approaching { way, velocity, scans } => {
-            out.write_str("plan")?;
-            if let Some(name) = names.instance(record.instance.0) {
-                out.write_str(" for ")?;
-                out.write_str(name)?;
-            }
-            out.write_str(": ")?;
-            out.write_str(way.name())?;
+            named(out, names, record, "plan", "for")?;
+            write!(out, ": {}", way.name())?;
             if way != Approach::Difference {
-                out.write_str(" at ")?;
-                real(out, velocity)?;
+                write!(out, " at {}", Real(velocity))?;
             }
             in_scans(out, scans)
         }
         Event::InGear => out.write_str("in gear"),
         Event::LeadsOutside { position, limit } => {
-            out.write_str("leads to ")?;
-            real(out, position)?;
-            out.write_str(", outside the software limit ")?;
-            real(out, limit)
+            let (position, limit) = (Real(position), Real(limit));
+            write!(out, "leads to {position}, outside the software limit {limit}")
         }
         Event::CamSelected { velocity, limit } if velocity < limit => {
-            out.write_str("cam limits the master to ")?;
-            real(out, velocity)?;
-            out.write_str(", below its limit ")?;
-            real(out, limit)
+            let (velocity, limit) = (Real(velocity), Real(limit));
+            write!(
+                out,
+                "cam limits the master to {velocity}, below its limit {limit}"
+            )
         }
         Event::CamSelected { velocity, .. } => {
-            out.write_str("cam fast enough: the master may go up to ")?;
-            real(out, velocity)
+            write!(out, "cam fast enough: the master may go up to {}", Real(velocity))
         }
         Event::CamStops { row, what, jump } => {
-            write!(out, "cam stops its slave: row {row}, {what} jumps by ")?;
-            real(out, jump)
+            write!(
+                out,
+                "cam stops its slave: row {row}, {what} jumps by {}",
+                Real(jump)
+            )
         }
-        Event::OnCam { master, .. } => {
-            out.write_str("onto a cam behind ")?;
-            out.write_str(names.axis(master.index()))
-        }
+        Event::OnCam { master, .. } => write!(out, "onto a cam behind {}", names.axis(master.index())),
         Event::OntoCam { way, value, scans } => {
-            out.write_str("plan")?;
-            if let Some(name) = names.instance(record.instance.0) {
-                out.write_str(" for ")?;
-                out.write_str(name)?;
-            }
-            out.write_str(": ")?;
-            out.write_str(way.name())?;
+            named(out, names, record, "plan", "for")?;
+            write!(out, ": {}", way.name())?;
             if way != Approach::Difference {
                 let leads = matches!(way, Approach::Move | Approach::Corner);
-                out.write_str(if leads { " to " } else { " at " })?;
-                real(out, value)?;
+                write!(out, " {} {}", if leads { "to" } else { "at" }, Real(value))?;
             }
             in_scans(out, scans)
         }
         Event::InSync => out.write_str("in sync"),
         Event::SyncLost { what, value, limit } => {
-            out.write_str("sync lost: ")?;
-            out.write_str(what)?;
-            out.write_str(" ")?;
-            real(out, value)?;
+            write!(out, "sync lost: {what} {}", Real(value))?;
             limited(out, limit)
         }
-        Event::CamPassed { periods } => {
-            whole(out, periods.into())?;
-            out.write_str(" ends of the cam in one scan")
-        }
+        Event::CamPassed { periods } => write!(out, "{periods} ends of the cam in one scan"),
         Event::Phasing { to, scans } => {
-            out.write_str("phase")?;
-            if let Some(name) = names.instance(record.instance.0) {
-                out.write_str(" of ")?;
-                out.write_str(name)?;
-            }
-            out.write_str(" to ")?;
-            real(out, to)?;
+            named(out, names, record, "phase", "of")?;
+            write!(out, " to {}", Real(to))?;
             in_scans(out, scans)
         }
         Event::SyncLate { by } => {
-            out.write_str("sync late: the master is ")?;
-            real(out, by)?;
-            out.write_str(" past the sync point")
+            write!(out, "sync late: the master is {} past the sync point", Real(by))
         }
         Event::GearLost { what, value, limit } => {
-            out.write_str("gear lost: ")?;
-            out.write_str(what)?;
-            out.write_str(" ")?;
-            real(out, value)?;
+            write!(out, "gear lost: {what} {}", Real(value))?;
             limited(out, limit)
         }
         Event::Shifted { by } => shifted(out, by),
         Event::Fault { error, code } => {
-            out.write_str("fault ")?;
-            whole(out, error.number().into())?;
-            out.write_str(" ")?;
-            out.write_str(error.name())?;
-            out.write_str(", code ")?;
-            whole(out, code.into())
+            write!(out, "fault {} {}, code {code}", error.number(), error.name())
         }
     }
 }
@@ -290,72 +203,77 @@ pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> f
 /// Those of `out`.
 pub fn standing(out: &mut impl Write, ring: &Ring, names: &impl Called) -> fmt::Result {
     let (first, kept) = ring.scans();
-    out.write_str("scans ")?;
-    whole(out, first)?;
-    out.write_str(" to ")?;
-    whole(out, first + (kept as u64).saturating_sub(1))?;
-    out.write_str(" of the machine")?;
+    let last = first + (kept as u64).saturating_sub(1);
+    write!(out, "scans {first} to {last} of the machine")?;
     let Some((scan, axis)) = ring.tripped() else {
         return Ok(());
     };
-    out.write_str("; tripped by ")?;
     match axis {
-        None => out.write_str("the host")?,
-        Some(axis) => {
-            out.write_str("ErrorStop of ")?;
-            out.write_str(names.axis(axis))?;
-        }
+        None => out.write_str("; tripped by the host")?,
+        Some(axis) => write!(out, "; tripped by ErrorStop of {}", names.axis(axis))?,
     }
-    out.write_str(" in scan ")?;
-    whole(out, scan)?;
-    out.write_str(", here ")?;
-    whole(out, scan.saturating_sub(first))
+    write!(out, " in scan {scan}, here {}", scan.saturating_sub(first))
 }
 
-fn refusal(out: &mut impl Write, number: u16, name: &str) -> fmt::Result {
-    out.write_str("refused: ")?;
-    whole(out, number.into())?;
-    out.write_str(" ")?;
-    out.write_str(name)
+fn refusal(out: &mut impl Write, error: ErrorId) -> fmt::Result {
+    write!(out, "refused: {} {}", error.number(), error.name())
+}
+
+/// The refused value of a pin: enumerations as numbers, axes by name.
+fn refused_value(out: &mut impl Write, names: &impl Called, pin: &str, value: f64) -> fmt::Result {
+    match pin {
+        "BufferMode"
+        | "Direction"
+        | "ExecutionMode"
+        | "CombineMode"
+        | "MasterValueSource"
+        | "MasterValueSourceM1"
+        | "MasterValueSourceM2" => write!(out, "{}", value as i64),
+        "Master" | "Master1" | "Master2" | "Slave" => match value as usize {
+            0 => out.write_str("no axis"),
+            number => match names.axis(number - 1) {
+                "" => write!(out, "{number}"),
+                name => out.write_str(name),
+            },
+        },
+        _ => write!(out, "{}", Real(value)),
+    }
 }
 
 fn limited(out: &mut impl Write, limit: f64) -> fmt::Result {
     if limit.is_nan() {
         return Ok(());
     }
-    out.write_str(", limit ")?;
-    real(out, limit)
+    write!(out, ", limit {}", Real(limit))
 }
 
 fn changed(out: &mut impl Write, how: &str, pin: &str, from: f64, to: f64) -> fmt::Result {
-    out.write_str(how)?;
-    out.write_str(pin)?;
-    out.write_str(" ")?;
-    real(out, from)?;
-    out.write_str(" to ")?;
-    real(out, to)
+    write!(out, "{how}: {pin} {} to {}", Real(from), Real(to))
+}
+
+/// `what`, and with `of` before it the instance that is the cause, if it is known.
+fn named(out: &mut impl Write, names: &impl Called, record: &Record, what: &str, of: &str) -> fmt::Result {
+    out.write_str(what)?;
+    match names.instance(record.instance.0) {
+        Some(name) => write!(out, " {of} {name}"),
+        None => Ok(()),
+    }
 }
 
 fn in_scans(out: &mut impl Write, scans: u32) -> fmt::Result {
-    out.write_str(" in ")?;
-    whole(out, scans.into())?;
-    out.write_str(" scans")
+    write!(out, " in {scans} scans")
 }
 
 fn unavoidable(out: &mut impl Write, excess: &Excess) -> fmt::Result {
     let parts = [
-        ("velocity ", excess.velocity),
-        ("acceleration ", excess.acceleration),
-        ("jerk ", excess.jerk),
+        ("velocity", excess.velocity),
+        ("acceleration", excess.acceleration),
+        ("jerk", excess.jerk),
     ];
-    let mut is_first = true;
+    let mut comma = "";
     for (name, value) in parts.into_iter().filter(|(_, value)| *value != 0.0) {
-        if !core::mem::take(&mut is_first) {
-            out.write_str(", ")?;
-        }
-        out.write_str(name)?;
-        real(out, value)?;
-        out.write_str(" above its limit")?;
+        write!(out, "{comma}{name} {} above its limit", Real(value))?;
+        comma = ", ";
     }
     Ok(())
 }

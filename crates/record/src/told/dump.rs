@@ -4,7 +4,7 @@ use crate::recorder::Recorder;
 use crate::ring::{AXIS_WORDS, moved};
 use crate::text::{shifted, standing};
 use crate::told::{self, Cells, Names, note};
-use standstill_axis::{AxisState, Event, Record};
+use standstill_axis::{Event, Record};
 use standstill_fb::PinType;
 use standstill_trace::{Cell, Header, Note, RowError, Trace};
 use std::fmt;
@@ -104,13 +104,9 @@ fn said(scan: usize, subject: &str, write: impl FnOnce(&mut String) -> fmt::Resu
 fn axis_cells<'c>(words: &[u64]) -> impl Iterator<Item = Cell<'c>> + use<'c> {
     let (state, numbers) = words.split_first().unwrap_or((&0, &[]));
     let (_, numbers) = numbers.split_last().unwrap_or((&0, &[]));
-    let name = AxisState::ALL
-        .iter()
-        .find(|known| **known as u64 == *state)
-        .map_or("", |known| known.name());
     let numbers: Vec<_> = numbers
         .iter()
         .map(|word| Cell::Real(f64::from_bits(*word)))
         .collect();
-    core::iter::once(Cell::Name(name)).chain(numbers)
+    core::iter::once(Cell::Name(crate::text::state(*state))).chain(numbers)
 }

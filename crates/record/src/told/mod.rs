@@ -8,7 +8,8 @@ mod notes;
 pub use cells::{Cells, enum_number};
 pub use notes::{Names, note};
 
-use standstill_axis::{AxisConfig, Order};
+use crate::text::order;
+use standstill_axis::AxisConfig;
 use standstill_fb::{BlockInfo, Direction};
 use standstill_trace as trace;
 use std::borrow::ToOwned;
@@ -19,11 +20,7 @@ pub fn axis(name: &str, unit: &str, config: &AxisConfig) -> trace::Axis {
     trace::Axis {
         name: name.to_owned(),
         unit: unit.to_owned(),
-        order: match config.limits.order() {
-            Order::Two => 2,
-            Order::Three => 3,
-            Order::Four => 4,
-        },
+        order: order(config),
         limits: limits(config),
         modulo: config.modulo,
         scaling: config.scaling.map(|scaling| trace::Scaling {
@@ -32,10 +29,7 @@ pub fn axis(name: &str, unit: &str, config: &AxisConfig) -> trace::Axis {
             invert: scaling.invert(),
             offset: scaling.offset(),
         }),
-        slave: false,
-        combined: false,
-        superimposed: false,
-        on_cam: false,
+        ..trace::Axis::default()
     }
 }
 
