@@ -10,7 +10,7 @@ use core::str;
 use standstill_axis::{self as axis, Axis, AxisConfig, AxisState, Log};
 use standstill_fb::{AnyInstance, BlockInfo, axis_number};
 use standstill_record::text::{Called, Form, line};
-use standstill_record::{AXIS_WORDS, Ring, Setup, State, Trigger, write_axis};
+use standstill_record::{AXIS_WORDS, Ring, Setup, State, Trigger};
 
 /// The largest number of scans and of records of a recorder.
 const MOST: u32 = 1 << 24;
@@ -307,39 +307,28 @@ impl Recorder {
 
     /// Ends a tick.
     pub fn record(&mut self, scan: u64, axes: &[Axis], slots: &[Slot], log: &Log) {
-        let Some(place) = self.ring.begin(scan, log) else {
-            return;
-        };
-        let place = place * self.width;
-        let row = self.words.slice_mut().get_mut(place..place + self.width);
-        let own = self.states.len() * AXIS_WORDS;
-        let Some((of_axes, mut rest)) = row.unwrap_or_default().split_at_mut_checked(own) else {
-            return;
-        };
-        let states = self.states.slice().iter();
-        for ((words, state), axis) in of_axes.chunks_exact_mut(AXIS_WORDS).zip(states).zip(axes) {
-            write_axis(words, scan, *state, axis);
-        }
-        for recording in self.instances.slice() {
-            let count = recording.block.pins().count();
-            let Some((words, others)) = rest.split_at_mut_checked(count) else {
-                return;
-            };
-            match instance(slots, recording.key) {
-                Some(instance) => instance.put_words(words),
-                // It was released.
-                None => words.fill(0),
+        let (instances, records) = (self.instances.slice(), self.records.slice_mut());
+        let pins = |mut rest: &mut [u64]| {
+            for recording in instances {
+                let count = recording.block.pins().count();
+                let Some((words, others)) = rest.split_at_mut_checked(count) else {
+                    return;
+                };
+                match instance(slots, recording.key) {
+                    Some(instance) => instance.put_words(words),
+                    // It was released.
+                    None => words.fill(0),
+                }
+                rest = others;
             }
-            rest = others;
-        }
-        for record in log.since(self.ring.taken()) {
-            if let Some(place) = self.ring.keep()
-                && let Some(slot) = self.records.slice_mut().get_mut(place)
-            {
+        };
+        let keep = |place: usize, record: &axis::Record| {
+            if let Some(slot) = records.get_mut(place) {
                 *slot = Some(*record);
             }
-        }
-        self.ring.end(log);
+        };
+        let (states, words) = (self.states.slice(), self.words.slice_mut());
+        self.ring.record(scan, (axes, states), log, words, pins, keep);
     }
 
     /// Trips for a reason of the host's own.

@@ -1,6 +1,6 @@
 //! The recorder for hosts with a heap.
 
-use crate::ring::{AXIS_WORDS, Ring, Setup, State, write_axis};
+use crate::ring::{AXIS_WORDS, Ring, Setup, State};
 use alloc::string::String;
 use alloc::vec::Vec;
 use standstill_axis::{Axis, AxisConfig, AxisState, Log, Planner, Record};
@@ -116,30 +116,18 @@ impl Recorder {
         log: &Log,
         pins: impl FnOnce(&mut Pins<'_>),
     ) {
-        let Some(place) = self.ring.begin(scan, log) else {
-            return;
-        };
-        let place = place * self.width;
-        let row = self.words.get_mut(place..place + self.width).unwrap_or_default();
-        let Some((own, rest)) = row.split_at_mut_checked(self.states.len() * AXIS_WORDS) else {
-            return;
-        };
-        for ((words, state), axis) in own.chunks_exact_mut(AXIS_WORDS).zip(&self.states).zip(axes) {
-            write_axis(words, scan, *state, axis);
-        }
-        pins(&mut Pins { row: rest });
-        for record in log.since(self.ring.taken()) {
-            match self.ring.keep() {
-                Some(place) if place == self.records.len() => self.records.push(*record),
-                Some(place) => {
-                    if let Some(slot) = self.records.get_mut(place) {
-                        *slot = *record;
-                    }
-                }
-                None => {}
-            }
-        }
-        self.ring.end(log);
+        let (states, records) = (&self.states[..], &mut self.records);
+        self.ring.record(
+            scan,
+            (axes, states),
+            log,
+            &mut self.words,
+            |row| pins(&mut Pins { row }),
+            |place, record| match records.get_mut(place) {
+                Some(slot) => *slot = *record,
+                None => records.push(*record),
+            },
+        );
     }
 
     /// Trips the recorder in the scan that ends next, for a reason of the host's own. No effect on a tripped

@@ -1,6 +1,6 @@
 //! The places of the last scans in memory of any kind, and the trigger that freezes them.
 
-use standstill_axis::{Axis, AxisState, Log, Planner};
+use standstill_axis::{Axis, AxisState, Log, Planner, Record};
 
 /// Words of an axis in a row: its state, the numbers of a trace, and the shift of its coordinates.
 ///
@@ -124,33 +124,39 @@ impl Ring {
         }
     }
 
-    /// Ends `scan`: returns the place of its row, or none if it is not kept.
-    pub fn begin(&mut self, scan: u64, log: &Log) -> Option<usize> {
+    /// Ends `scan`, unless the ring is frozen. `words` are all rows: the axes are written to the next one, with the
+    /// states that [`Ring::observe`] took, and `pins` to the words behind them. `keep` gets every new record with its
+    /// place.
+    pub fn record<P: Planner>(
+        &mut self,
+        scan: u64,
+        (axes, states): (&[Axis<P>], &[AxisState]),
+        log: &Log,
+        words: &mut [u64],
+        pins: impl FnOnce(&mut [u64]),
+        mut keep: impl FnMut(usize, &Record),
+    ) {
+        let new = core::mem::replace(&mut self.taken, log.total());
         if self.state == State::Frozen {
-            self.taken = log.total();
-            return None;
+            return;
         }
         if self.seen == 0 {
             self.first = scan;
         }
-        Some(self.place(self.seen, self.setup.scans))
-    }
-
-    /// The number of the first record of the log that has not been taken.
-    pub const fn taken(&self) -> u64 {
-        self.taken
-    }
-
-    /// The place for one more record; none if records are not kept.
-    pub fn keep(&mut self) -> Option<usize> {
-        let number = self.recorded;
-        self.recorded += 1;
-        (self.setup.records > 0).then(|| self.place(number, self.setup.records))
-    }
-
-    /// Marks the row and the records as written.
-    pub fn end(&mut self, log: &Log) {
-        self.taken = log.total();
+        let width = words.len().checked_div(self.setup.scans).unwrap_or_default();
+        let place = self.place(self.seen, self.setup.scans) * width;
+        let row = words.get_mut(place..place + width).unwrap_or_default();
+        if let Some((own, rest)) = row.split_at_mut_checked(states.len() * AXIS_WORDS) {
+            for ((words, state), axis) in own.chunks_exact_mut(AXIS_WORDS).zip(states).zip(axes) {
+                write_axis(words, scan, *state, axis);
+            }
+            pins(rest);
+        }
+        let room = self.setup.records;
+        for record in log.since(new).filter(|_| room > 0) {
+            keep(self.place(self.recorded, room), record);
+            self.recorded += 1;
+        }
         self.seen += 1;
         self.state = match self.state {
             State::Tripped { left: 0 } => State::Frozen,
