@@ -2,7 +2,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 
-use standstill_axis::{AxisId, ErrorId, ExecutionMode, Planner, Raw};
+use standstill_axis::{AxisId, ExecutionMode, Planner, Raw};
 use standstill_fb::{Block, Context, ExecuteCore, Group, pins};
 
 pins! {
@@ -24,12 +24,7 @@ pins! {
     outputs {
         /// The position has the new value.
         Done => done: bool, "";
-        /// Waiting in the buffer.
-        Busy => busy: bool, "";
-        /// Refused, or removed from the buffer.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..queued;
     }
     vendor_outputs {}
 }
@@ -56,15 +51,7 @@ impl Block for McSetPosition {
         });
         Outputs {
             done: phase.is_done(),
-            busy: phase.is_busy(),
-            // The block has no CommandAborted. A command removed from the buffer was never executed,
-            // which is an error here.
-            error: phase.is_error() || phase.is_aborted(),
-            error_id: if phase.is_aborted() {
-                ErrorId::RemovedFromBuffer
-            } else {
-                phase.error_id()
-            },
+            ..phase.into()
         }
     }
 }

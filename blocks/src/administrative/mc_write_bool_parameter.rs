@@ -2,7 +2,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name and the list of parameters.
 
-use standstill_axis::{AxisId, ErrorId, ExecutionMode, ParameterValue, Planner, Raw};
+use standstill_axis::{AxisId, ExecutionMode, ParameterValue, Planner, Raw};
 use standstill_fb::{Block, Context, ExecuteCore, Group, Int, pins};
 
 pins! {
@@ -24,12 +24,7 @@ pins! {
     outputs {
         /// Written: it holds for commands from now on.
         Done => done: bool, "";
-        /// Waiting in the buffer.
-        Busy => busy: bool, "";
-        /// Refused, or removed from the buffer.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..queued;
     }
     vendor_outputs {}
 }
@@ -61,14 +56,7 @@ impl Block for McWriteBoolParameter {
         });
         Outputs {
             done: phase.is_done(),
-            busy: phase.is_busy(),
-            // It has no CommandAborted: removed from the buffer it was never executed, which is an error.
-            error: phase.is_error() || phase.is_aborted(),
-            error_id: if phase.is_aborted() {
-                ErrorId::RemovedFromBuffer
-            } else {
-                phase.error_id()
-            },
+            ..phase.into()
         }
     }
 }

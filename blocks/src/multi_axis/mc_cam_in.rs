@@ -3,8 +3,8 @@
 //! Source: PLCopen Motion Control Part 1, section of that name; V20 to V20b.
 
 use standstill_axis::{
-    AxisId, BufferMode, CamId, CamIn, Command, CommandId, ErrorId, Planner, Raw, Request, StartMode,
-    ValueSource, couple, update_coupled,
+    AxisId, BufferMode, CamId, CamIn, Command, CommandId, Planner, Raw, Request, StartMode, ValueSource,
+    couple, update_coupled,
 };
 use standstill_fb::{Block, Context, Group, Move, UpdateCore, Values, pins};
 
@@ -52,16 +52,7 @@ pins! {
     outputs {
         /// The set position of the slave is on the cam.
         InSync => in_sync: bool, "";
-        /// Not finished.
-        Busy => busy: bool, "";
-        /// The block controls the slave.
-        Active => active: bool, "";
-        /// Interrupted by another command.
-        CommandAborted => command_aborted: bool, "";
-        /// Refused, or ended by an error.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..coupling;
         /// TRUE for one call each time the end of the cam is reached; running backwards, its first row.
         EndOfProfile => end_of_profile: bool, "";
     }
@@ -189,15 +180,10 @@ impl Block for McCamIn {
         }
         let slave = slave.filter(|_| phase.is_active());
         Outputs {
-            in_sync: false,
-            busy: phase.is_busy(),
-            active: phase.is_active(),
-            command_aborted: phase.is_aborted(),
-            error: phase.is_error(),
-            error_id: phase.error_id(),
             end_of_profile,
             deviation: slave.map(|slave| slave.deviation()).unwrap_or_default(),
             master_lost: slave.is_some_and(|slave| slave.has_lost_master()),
+            ..phase.into()
         }
     }
 }

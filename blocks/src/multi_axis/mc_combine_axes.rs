@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, section of that name.
 
 use standstill_axis::{
-    AxisId, BufferMode, CombineMode, Command, ErrorId, Followed, Planner, Raw, Request, ValueSource, couple,
+    AxisId, BufferMode, CombineMode, Command, Followed, Planner, Raw, Request, ValueSource, couple,
 };
 use standstill_fb::{Block, Context, Group, Move, UpdateCore, pins};
 
@@ -42,16 +42,7 @@ pins! {
     outputs {
         /// The set position of the slave is the one that the masters demand.
         InSync => in_sync: bool, "";
-        /// Not finished.
-        Busy => busy: bool, "";
-        /// The block controls the slave.
-        Active => active: bool, "";
-        /// Interrupted by another command.
-        CommandAborted => command_aborted: bool, "";
-        /// Refused, or ended by an error.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..coupling;
     }
     vendor_outputs {
         /// Distance of the slave from its position in sync, once it was in sync; 0 in sync.
@@ -114,13 +105,9 @@ impl Block for McCombineAxes {
         let slave = slave.filter(|_| phase.is_active());
         Outputs {
             in_sync: phase.is_reached(),
-            busy: phase.is_busy(),
-            active: phase.is_active(),
-            command_aborted: phase.is_aborted(),
-            error: phase.is_error(),
-            error_id: phase.error_id(),
             deviation: slave.map_or(0.0, |slave| slave.deviation()),
             master_lost: slave.is_some_and(|slave| slave.has_lost_master()),
+            ..phase.into()
         }
     }
 }

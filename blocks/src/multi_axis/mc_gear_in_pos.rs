@@ -3,8 +3,8 @@
 //! Source: PLCopen Motion Control Part 1, section of that name.
 
 use standstill_axis::{
-    AxisId, BufferMode, Command, Dynamics, ErrorId, Followed, Planner, Raw, Request, SyncMode, SyncPoint,
-    ValueSource, couple,
+    AxisId, BufferMode, Command, Dynamics, Followed, Planner, Raw, Request, SyncMode, SyncPoint, ValueSource,
+    couple,
 };
 use standstill_fb::{Block, Context, ExecuteCore, Group, pins};
 
@@ -54,16 +54,7 @@ pins! {
         StartSync => start_sync: bool, "";
         /// The set position of the slave is the one that the ratio demands.
         InSync => in_sync: bool, "";
-        /// Not finished.
-        Busy => busy: bool, "";
-        /// The block controls the slave.
-        Active => active: bool, "";
-        /// Interrupted by another command.
-        CommandAborted => command_aborted: bool, "";
-        /// Refused, or ended by an error.
-        Error => error: bool, "";
-        /// Why; 0 without an error.
-        ErrorID => error_id: ErrorId, "";
+        ..coupling;
     }
     vendor_outputs {
         /// Distance of the slave from its position in sync; 0 in sync.
@@ -124,13 +115,9 @@ impl Block for McGearInPos {
         Outputs {
             start_sync: slave.is_some_and(|slave| slave.is_syncing()),
             in_sync: phase.is_reached(),
-            busy: phase.is_busy(),
-            active: phase.is_active(),
-            command_aborted: phase.is_aborted(),
-            error: phase.is_error(),
-            error_id: phase.error_id(),
             deviation: deviation.unwrap_or_default(),
             master_lost: slave.is_some_and(|slave| slave.has_lost_master()),
+            ..phase.into()
         }
     }
 }

@@ -5,6 +5,8 @@
 //! | `rates` | `inputs` | Acceleration, Deceleration, Jerk; the block has Snap too |
 //! | `snap` | `vendor_inputs` | Snap |
 //! | `motion` | `outputs` | Busy, Active, CommandAborted, Error, ErrorID |
+//! | `coupling` | `outputs` | the same of a slave |
+//! | `queued` | `outputs` | Busy, Error, ErrorID of a block that moves nothing and may wait in the buffer |
 //! | `reading` | `outputs` | Valid, Busy, Error, ErrorID |
 
 /// Puts the pins of a group in front of the remaining rows of its section, for [`pins!`](crate::pins).
@@ -44,6 +46,12 @@ macro_rules! pin_group {
         } $($later)*);
     };
     (motion $done:tt $rows:tt { $($left:tt)* } $($later:tt)*) => {
+        $crate::pin_group!(@phase "The block controls the axis." $done $rows { $($left)* } $($later)*);
+    };
+    (coupling $done:tt $rows:tt { $($left:tt)* } $($later:tt)*) => {
+        $crate::pin_group!(@phase "The block controls the slave." $done $rows { $($left)* } $($later)*);
+    };
+    (@phase $active:literal $done:tt $rows:tt { $($left:tt)* } $($later:tt)*) => {
         impl From<$crate::Phase> for Outputs {
             #[inline]
             fn from(phase: $crate::Phase) -> Self {
@@ -61,11 +69,39 @@ macro_rules! pin_group {
         $crate::pins!(@rows $done $rows {
             /// Not finished.
             Busy => busy: bool, "";
-            /// The block controls the axis.
+            #[doc = $active]
             Active => active: bool, "";
             /// Interrupted by another command.
             CommandAborted => command_aborted: bool, "";
             /// Refused, or ended by an error.
+            Error => error: bool, "";
+            /// Why; 0 without an error.
+            ErrorID => error_id: $crate::ErrorId, "";
+            $($left)*
+        } $($later)*);
+    };
+    (queued $done:tt $rows:tt { $($left:tt)* } $($later:tt)*) => {
+        impl From<$crate::Phase> for Outputs {
+            #[inline]
+            fn from(phase: $crate::Phase) -> Self {
+                Self {
+                    busy: phase.is_busy(),
+                    // It has no CommandAborted: removed from the buffer it was never executed, which is an error.
+                    error: phase.is_error() || phase.is_aborted(),
+                    error_id: if phase.is_aborted() {
+                        $crate::ErrorId::RemovedFromBuffer
+                    } else {
+                        phase.error_id()
+                    },
+                    ..Self::default()
+                }
+            }
+        }
+
+        $crate::pins!(@rows $done $rows {
+            /// Waiting in the buffer.
+            Busy => busy: bool, "";
+            /// Refused, or removed from the buffer.
             Error => error: bool, "";
             /// Why; 0 without an error.
             ErrorID => error_id: $crate::ErrorId, "";
