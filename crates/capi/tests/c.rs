@@ -147,6 +147,14 @@ const C: [&str; 2] = ["cc", "-std=c11"];
 const C99: [&str; 2] = ["cc", "-std=c99"];
 const CPP: [&str; 4] = ["c++", "-std=c++11", "-x", "c++"];
 
+/// An example as a program in a folder of its own, with the static library.
+fn example(name: &str, folder: &str) -> PathBuf {
+    let program = scratch(folder).join(name);
+    let source = root().join("examples").join(format!("{name}.c"));
+    compile(&C, &source, &root().join("include"), &library("a"), &program);
+    program
+}
+
 #[test]
 fn the_examples_run_from_c_and_cpp_with_both_libraries() {
     if !has("cc") || !has("c++") {
@@ -180,12 +188,9 @@ fn the_diagnostic_ring_tells_c_what_happened() {
     if !has("cc") {
         return;
     }
-    let program = scratch("c-ring").join("diagnostics");
-    let source = root().join("examples/diagnostics.c");
-    compile(&C, &source, &root().join("include"), &library("a"), &program);
     // Clamped, planned to a position, refused: 102 is a velocity that is not above 0.
     assert_eq!(
-        text(&run(&program, &[])),
+        text(&run(example("diagnostics", "c-ring"), &[])),
         "refused: limits.velocity is 0\n\
          0 scan 0 axis 1 instance 1 event 3 error 0 count 0 Velocity 99 10\n\
          1 scan 0 axis 1 instance 1 event 7 error 0 count 200  1 0\n\
@@ -225,15 +230,19 @@ fn valgrind_has_nothing_to_report() {
 }
 
 /// Compares the output of an example, row by row, with a scan script: doubles as their bits, then flags.
-fn same_bits(example: &str, script: &str, reals: &[&str], flags: &[&str]) {
+fn same_bits(name: &str, script: &str, reals: &[&str], flags: &[&str]) {
     if !has("cc") {
         return;
     }
-    let program = scratch("c-digest").join(example);
-    let source = root().join("examples").join(format!("{example}.c"));
-    compile(&C, &source, &root().join("include"), &library("a"), &program);
-    let printed = text(&run(&program, &[OsStr::new("trace")]));
+    let printed = text(&run(example(name, "c-digest"), &[OsStr::new("trace")]));
     same_rows(&printed, script, reals, flags);
+}
+
+/// The run of a script for hosts.
+fn outcome_of(script: &str) -> standstill_script::Outcome {
+    let path = root().join("../../scan-tests/embedding").join(script);
+    let script = standstill_script::read(&fs::read_to_string(path).unwrap(), script, &[]).unwrap();
+    standstill_script::run(&script).unwrap()
 }
 
 fn same_rows(printed: &str, script: &str, reals: &[&str], flags: &[&str]) {
@@ -242,10 +251,7 @@ fn same_rows(printed: &str, script: &str, reals: &[&str], flags: &[&str]) {
         first.len() == 16 && first.bytes().all(|byte| byte.is_ascii_hexdigit())
     };
     let rows: Vec<_> = printed.lines().filter(is_row).collect();
-
-    let path = root().join("../../scan-tests/embedding").join(script);
-    let script = standstill_script::read(&fs::read_to_string(&path).unwrap(), "there", &[]).unwrap();
-    let outcome = standstill_script::run(&script).unwrap();
+    let outcome = outcome_of(script);
     assert!(outcome.passed());
     let trace = &outcome.trace;
     let real = |scan, name| match trace.cell(scan, trace.column(name).unwrap()) {
@@ -363,17 +369,13 @@ fn gears_of_a_c_host_move_by_the_bits_of_a_scan_script() {
 
 /// The same axis twice, a denominator of 0, a slave and a master that do not exist, and a ring: each has its
 /// ErrorID. The comparison with the script shows that nothing moves because of them.
-/// them is what the comparison with the script holds.
 #[test]
 fn gears_of_a_c_host_are_refused_with_their_numbers() {
     if !has("cc") {
         return;
     }
-    let program = scratch("c-gears").join("gears");
-    let source = root().join("examples/gears.c");
-    compile(&C, &source, &root().join("include"), &library("a"), &program);
     assert_eq!(
-        text(&run(&program, &[])),
+        text(&run(example("gears", "c-gears"), &[])),
         "self 151, zero 150, nobody 100, stranger 100, ring 151\n"
     );
 }
@@ -385,10 +387,8 @@ fn the_dump_of_a_c_host_is_a_trace() {
     if !has("cc") {
         return;
     }
+    let program = example("recorder", "c-recorder");
     let folder = scratch("c-recorder");
-    let program = folder.join("recorder");
-    let source = root().join("examples/recorder.c");
-    compile(&C, &source, &root().join("include"), &library("a"), &program);
     let (table, lines) = (folder.join("recorded.csv"), folder.join("recorded.jsonl"));
     let told = text(&run(&program, &[table.as_os_str()]));
     assert_eq!(told, "scans 501 to 800, axis 1 in scan 700\n");
@@ -407,9 +407,7 @@ fn the_dump_of_a_c_host_is_a_trace() {
     let meta = |path| fs::read_to_string(standstill_trace::csv::meta_path(path)).unwrap();
     assert_eq!(meta(&table), meta(&folder.join("again.csv")));
 
-    let path = root().join("../../scan-tests/embedding/a_drive_fails_on_the_way.scan.json");
-    let script = standstill_script::read(&fs::read_to_string(&path).unwrap(), "fails", &[]).unwrap();
-    let outcome = standstill_script::run(&script).unwrap();
+    let outcome = outcome_of("a_drive_fails_on_the_way.scan.json");
     assert_eq!(trace.scans(), 300);
     let names = |trace: &standstill_trace::Trace| -> Vec<String> {
         trace.columns().iter().map(|column| column.name.clone()).collect()

@@ -1,6 +1,7 @@
 //! The shortest possible host.
 
 use standstill_capi::*;
+use std::ffi::CStr;
 use std::mem::MaybeUninit;
 use std::ptr::null_mut;
 
@@ -27,6 +28,19 @@ pub fn size_of_runtime(config: &RuntimeConfig) -> usize {
     bytes
 }
 
+/// A structure of the library with its size; everything else is 0.
+///
+/// # Safety
+/// `T` begins with a `u32`, and all bits are a value of it.
+pub unsafe fn sized<T>() -> T {
+    let mut made = MaybeUninit::<T>::zeroed();
+    // SAFETY: the caller's contract.
+    unsafe {
+        made.as_mut_ptr().cast::<u32>().write(size_of::<T>() as u32);
+        made.assume_init()
+    }
+}
+
 impl Host {
     pub fn new(axes: u32, instances: u32) -> Self {
         Self::made(&config(axes, instances))
@@ -47,19 +61,13 @@ impl Host {
     }
 
     pub fn setup() -> (AxisSetup, DriveSetup) {
-        let (mut axis, mut drive) = (
-            MaybeUninit::<AxisSetup>::zeroed(),
-            MaybeUninit::<DriveSetup>::zeroed(),
-        );
-        // SAFETY: all of their fields are numbers, so zeros are values; the sizes are set before they are read.
+        // SAFETY: two structures of the library.
         unsafe {
-            axis.assume_init_mut().size = size_of::<AxisSetup>() as u32;
-            drive.assume_init_mut().size = size_of::<DriveSetup>() as u32;
-            assert_eq!(standstill_axis_defaults(axis.as_mut_ptr()), 0);
-            assert_eq!(standstill_drive_defaults(drive.as_mut_ptr()), 0);
-            let mut axis = axis.assume_init();
+            let (mut axis, mut drive) = (sized::<AxisSetup>(), sized::<DriveSetup>());
+            assert_eq!(standstill_axis_defaults(&mut axis), 0);
+            assert_eq!(standstill_drive_defaults(&mut drive), 0);
             (axis.velocity, axis.acceleration) = (10.0, 100.0);
-            (axis, drive.assume_init())
+            (axis, drive)
         }
     }
 
@@ -106,13 +114,33 @@ impl Host {
     }
 
     pub fn status_of(&self, axis: i32) -> AxisStatus {
-        let mut status = MaybeUninit::<AxisStatus>::zeroed();
-        // SAFETY: all fields are numbers, and the size is set.
+        // SAFETY: a handle, and a structure of the library.
         unsafe {
-            status.assume_init_mut().size = size_of::<AxisStatus>() as u32;
-            assert_eq!(standstill_axis_read(self.runtime, axis, status.as_mut_ptr()), 0);
-            status.assume_init()
+            let mut status = sized();
+            assert_eq!(standstill_axis_read(self.runtime, axis, &mut status), 0);
+            status
         }
+    }
+
+    /// The key and the value of the last refused configuration.
+    pub fn fault(&self) -> (String, f64) {
+        // SAFETY: a handle, and a structure of the library; the key ends in 0.
+        unsafe {
+            let mut fault = sized::<ConfigFault>();
+            assert_eq!(standstill_config_error(self.runtime, &mut fault), 0);
+            let key = CStr::from_ptr(fault.key.as_ptr()).to_str().unwrap();
+            (key.to_owned(), fault.value)
+        }
+    }
+
+    pub fn simulate(&self, axis: i32, mishap: i32, code: u16) -> i32 {
+        // SAFETY: a handle.
+        unsafe { standstill_simulate(self.runtime, axis, mishap, code) }
+    }
+
+    pub fn release(&self, key: &mut u64) -> i32 {
+        // SAFETY: a handle and a key.
+        unsafe { standstill_instance_release(self.runtime, key) }
     }
 
     /// Ticks until every axis is off, and closes. Returns the largest step of a position.

@@ -6,7 +6,7 @@ mod host;
 mod recorder;
 mod simulated;
 
-use host::{Host, config, size_of_runtime};
+use host::{Host, config, size_of_runtime, sized};
 
 use standstill_capi::*;
 use std::ffi::CStr;
@@ -86,17 +86,41 @@ fn velocity(
     }
 }
 
+/// Tick number `scan` with one call.
+fn tick(host: &Host, scan: i64, key: &mut u64, inputs: &MoveVelocityIn) -> MoveVelocityOut {
+    let mut out = outputs();
+    assert_eq!(host.begin(scan * 1_000_000), 0);
+    assert_eq!(velocity(host.runtime, key, inputs, &mut out), 0);
+    assert_eq!(host.end(), 0);
+    out
+}
+
 /// A host whose axis has moved for 50 ticks; the next one is number 50.
 fn moving() -> (Host, u64) {
     let host = Host::powered();
-    let (mut key, mut out) = (0, outputs());
+    let mut key = 0;
     for scan in 0..50 {
-        assert_eq!(host.begin(scan * 1_000_000), 0);
-        assert_eq!(velocity(host.runtime, &mut key, &inputs(), &mut out), 0);
-        assert_eq!(host.end(), 0);
+        assert_eq!(tick(&host, scan, &mut key, &inputs()).busy, 1);
     }
-    assert!(out.busy == 1 && host.status().velocity > 1.0);
+    assert!(host.status().velocity > 1.0);
     (host, key)
+}
+
+/// A host with one powered axis over its own drive, and the feedback of that: enabled, at 0.
+fn with_own_drive() -> (Host, Feedback) {
+    let host = Host::new(1, 4);
+    let (mut axis, mut drive) = Host::setup();
+    (axis.start_powered, drive.kind) = (1, 0);
+    assert_eq!(host.add(&axis, &drive), Ok(1));
+    // SAFETY: a structure of the library.
+    let mut feedback = unsafe { sized::<Feedback>() };
+    (feedback.enabled, feedback.voltage) = (1, 1);
+    (host, feedback)
+}
+
+fn tell(host: &Host, feedback: &Feedback) -> i32 {
+    // SAFETY: a handle, and as long as its size field says.
+    unsafe { standstill_feedback_write(host.runtime, 1, feedback) }
 }
 
 #[test]
@@ -289,8 +313,7 @@ fn calls_have_their_place_in_a_tick() {
     let (axis, drive) = Host::setup();
     assert_eq!(host.add(&axis, &drive), Err(in_tick));
     assert_eq!(host.close(), in_tick);
-    // SAFETY: a handle.
-    assert_eq!(unsafe { standstill_simulate(host.runtime, 1, 1, 1) }, in_tick);
+    assert_eq!(host.simulate(1, 1, 1), in_tick);
     assert_eq!(out, outputs(), "nothing was written");
     assert_eq!(velocity(host.runtime, &mut key, &inputs(), &mut out), 0);
     assert_eq!(host.end(), 0);
@@ -299,9 +322,7 @@ fn calls_have_their_place_in_a_tick() {
     // After all of that the axis is at the same position as without: it was advanced once for each tick.
     let (other, mut key) = moving();
     for scan in [50, 50] {
-        assert_eq!(other.begin(scan * 1_000_000), 0);
-        assert_eq!(velocity(other.runtime, &mut key, &inputs(), &mut out), 0);
-        assert_eq!(other.end(), 0);
+        tick(&other, scan, &mut key, &inputs());
     }
     assert_eq!(
         host.status().position.to_bits(),
@@ -369,15 +390,8 @@ fn unknown_keys_and_keys_of_other_blocks_call_nothing() {
     assert_eq!(code, Code::WrongBlock as i32);
     // A key is valid until its place is released.
     let mut old = key;
-    // SAFETY: a handle, and keys.
-    unsafe {
-        assert_eq!(standstill_instance_release(host.runtime, &mut key), 0);
-        assert_eq!(key, 0);
-        assert_eq!(
-            standstill_instance_release(host.runtime, &mut old),
-            Code::UnknownKey as i32
-        );
-    }
+    assert_eq!((host.release(&mut key), key), (0, 0));
+    assert_eq!(host.release(&mut old), Code::UnknownKey as i32);
     assert_eq!(
         velocity(host.runtime, &mut old, &inputs(), &mut out),
         Code::UnknownKey as i32
@@ -413,8 +427,7 @@ fn an_axis_of_no_number_is_the_blocks_own_error() {
         let (mut key, mut out) = (key, outputs());
         assert_eq!(velocity(host.runtime, &mut key, &given, &mut out), 0);
         assert_eq!((out.error, out.error_id > 0), (1, true), "{axis}");
-        // SAFETY: a handle and a key.
-        assert_eq!(unsafe { standstill_instance_release(host.runtime, &mut key) }, 0);
+        assert_eq!(host.release(&mut key), 0);
     }
     assert_eq!(velocity(host.runtime, &mut key, &inputs(), &mut out), 0);
     assert_eq!(host.end(), 0);
@@ -472,15 +485,7 @@ fn a_configuration_that_cannot_be_used_is_named() {
     ];
     for (axis, drive, key, value) in rows {
         assert_eq!(host.add(&axis, &drive), Err(Code::BadConfig as i32));
-        let mut fault = MaybeUninit::<ConfigFault>::zeroed();
-        // SAFETY: all fields are numbers, the size is set, and the key ends in 0.
-        unsafe {
-            fault.assume_init_mut().size = size_of::<ConfigFault>() as u32;
-            assert_eq!(standstill_config_error(host.runtime, fault.as_mut_ptr()), 0);
-            let fault = fault.assume_init();
-            assert_eq!(CStr::from_ptr(fault.key.as_ptr()).to_str(), Ok(key));
-            assert_eq!(fault.value, value);
-        }
+        assert_eq!(host.fault(), (key.to_owned(), value));
     }
     assert_eq!(host.add(&axis, &drive), Ok(1));
     assert_eq!(host.close(), 0);
@@ -501,11 +506,9 @@ fn a_shaped_axis_has_its_velocity_when_all_of_it_has_come_out() {
         ..axis
     };
     assert_eq!(host.add(&axis, &drive), Ok(1));
-    let (mut key, mut out) = (0, outputs());
+    let mut key = 0;
     for scan in 0..300 {
-        assert_eq!(host.begin(scan * 1_000_000), 0);
-        assert_eq!(velocity(host.runtime, &mut key, &inputs(), &mut out), 0);
-        assert_eq!(host.end(), 0);
+        let out = tick(&host, scan, &mut key, &inputs());
         // The motion has 10 u/s after 100 scans.
         assert_eq!(out.in_velocity, u8::from(scan >= 184), "{scan}");
         assert_eq!(host.status().velocity == 10.0, scan >= 183, "{scan}");
@@ -624,105 +627,79 @@ fn stop_ramps_down_and_calls_no_block_until_start() {
         scan += 1;
         assert!(scan < 500);
     }
-    assert_eq!(host.begin(scan * 1_000_000), 0);
-    assert_eq!(velocity(host.runtime, &mut key, &inputs(), &mut out), 0);
-    assert_eq!(host.end(), 0);
+    tick(&host, scan, &mut key, &inputs());
 }
 
 #[test]
 fn a_host_that_goes_silent_loses_its_own_drive_and_the_axis_stops() {
-    let host = Host::new(1, 4);
-    let (mut axis, mut drive) = Host::setup();
-    (axis.start_powered, drive.kind) = (1, 0);
-    assert_eq!(host.add(&axis, &drive), Ok(1));
-    let mut feedback = MaybeUninit::<Feedback>::zeroed();
-    // SAFETY: all fields are numbers.
-    let feedback = unsafe { feedback.assume_init_mut() };
-    feedback.size = size_of::<Feedback>() as u32;
-    (feedback.enabled, feedback.voltage) = (1, 1);
-    // SAFETY: as long as its size field says.
-    let tell = |feedback: &Feedback| unsafe { standstill_feedback_write(host.runtime, 1, feedback) };
-    // SAFETY: a handle.
-    let harm = unsafe { standstill_simulate(host.runtime, 1, 1, 5) };
-    assert_eq!(harm, Code::WrongDrive as i32);
+    let (host, mut feedback) = with_own_drive();
+    assert_eq!(host.simulate(1, 1, 5), Code::WrongDrive as i32);
     let (mut key, mut out) = (0, outputs());
     for scan in 0..100 {
         if scan < 50 {
-            assert_eq!(tell(feedback), 0);
+            assert_eq!(tell(&host, &feedback), 0);
         }
-        assert_eq!(host.begin(scan * 1_000_000), 0);
-        assert_eq!(velocity(host.runtime, &mut key, &inputs(), &mut out), 0);
-        assert_eq!(host.end(), 0);
-        let mut command = MaybeUninit::<Command>::zeroed();
-        // SAFETY: all fields are numbers, and the size is set.
-        unsafe {
-            command.assume_init_mut().size = size_of::<Command>() as u32;
-            assert_eq!(standstill_command_read(host.runtime, 1, command.as_mut_ptr()), 0);
-            feedback.position = command.assume_init().position;
-        }
+        out = tick(&host, scan, &mut key, &inputs());
+        // SAFETY: a handle, and a structure of the library.
+        feedback.position = unsafe {
+            let mut command = sized::<Command>();
+            assert_eq!(standstill_command_read(host.runtime, 1, &mut command), 0);
+            command.position
+        };
     }
     assert_eq!((out.error, host.status().state), (1, 7), "ErrorStop");
     for wrong in [
         Feedback {
             position: f64::NAN,
-            ..*feedback
+            ..feedback
         },
         Feedback {
             position: f64::INFINITY,
-            ..*feedback
+            ..feedback
         },
         Feedback {
             homing: 5,
-            ..*feedback
+            ..feedback
         },
         Feedback {
             torque_known: 1,
             torque: f64::NAN,
-            ..*feedback
+            ..feedback
         },
         Feedback {
             torque_known: 1,
             torque: f64::NEG_INFINITY,
-            ..*feedback
+            ..feedback
         },
         Feedback {
             probe_latched: [0, 1],
             probe_position: [0.0, f64::NAN],
-            ..*feedback
+            ..feedback
         },
         Feedback {
             marker_latched: 1,
             marker_position: f64::INFINITY,
-            ..*feedback
+            ..feedback
         },
         Feedback {
             homing: 3,
             home_position: f64::NAN,
-            ..*feedback
+            ..feedback
         },
     ] {
-        assert_eq!(tell(&wrong), Code::BadValue as i32);
+        assert_eq!(tell(&host, &wrong), Code::BadValue as i32);
     }
 }
 
 /// Covers: R98
 #[test]
 fn a_feedback_that_is_no_number_is_refused_and_the_axis_tells_why_it_stops() {
-    let host = Host::new(1, 4);
-    let (mut axis, mut drive) = Host::setup();
-    (axis.start_powered, drive.kind) = (1, 0);
-    assert_eq!(host.add(&axis, &drive), Ok(1));
-    let mut feedback = MaybeUninit::<Feedback>::zeroed();
-    // SAFETY: all fields are numbers.
-    let feedback = unsafe { feedback.assume_init_mut() };
-    feedback.size = size_of::<Feedback>() as u32;
-    (feedback.enabled, feedback.voltage) = (1, 1);
+    let (host, feedback) = with_own_drive();
     let wrong = Feedback {
         position: f64::NAN,
-        ..*feedback
+        ..feedback
     };
-    // SAFETY: as long as its size field says.
-    let tell = |feedback: &Feedback| unsafe { standstill_feedback_write(host.runtime, 1, feedback) };
+    let tell = |feedback: &Feedback| tell(&host, feedback);
     let bad = Code::BadValue as i32;
     let mut now = 0;
     let mut tick = || {
@@ -734,9 +711,9 @@ fn a_feedback_that_is_no_number_is_refused_and_the_axis_tells_why_it_stops() {
         (status.state, status.error_id)
     };
     // A refused report does not change an accepted one of the same tick, before or after it.
-    assert_eq!((tell(feedback), tell(&wrong)), (0, bad));
+    assert_eq!((tell(&feedback), tell(&wrong)), (0, bad));
     assert_eq!(tick(), (1, 0));
-    assert_eq!((tell(&wrong), tell(feedback)), (bad, 0));
+    assert_eq!((tell(&wrong), tell(&feedback)), (bad, 0));
     assert_eq!(tick(), (1, 0));
     // Alone it leaves the tick without feedback.
     assert_eq!(tell(&wrong), bad);
@@ -748,19 +725,14 @@ fn a_feedback_that_is_no_number_is_refused_and_the_axis_tells_why_it_stops() {
 #[test]
 fn simulated_drives_fail_when_told_to() {
     let (host, mut key) = moving();
-    // SAFETY: a handle.
-    let simulate = |mishap, code| unsafe { standstill_simulate(host.runtime, 1, mishap, code) };
     for none in [-1, 9] {
-        assert_eq!(simulate(none, 0), Code::BadValue as i32);
+        assert_eq!(host.simulate(1, none, 0), Code::BadValue as i32);
     }
-    assert_eq!(simulate(1, 0x7500), 0);
-    let mut out = outputs();
-    assert_eq!(host.begin(50_000_000), 0);
-    assert_eq!(velocity(host.runtime, &mut key, &inputs(), &mut out), 0);
-    assert_eq!(host.end(), 0);
+    assert_eq!(host.simulate(1, 1, 0x7500), 0);
+    tick(&host, 50, &mut key, &inputs());
     let status = host.status();
     assert_eq!((status.state, status.error_code), (7, 0x7500));
-    assert_eq!(simulate(0, 0), 0);
+    assert_eq!(host.simulate(1, 0, 0), 0);
 }
 
 /// A profile of two points, and invalid tables.
@@ -846,17 +818,15 @@ fn arrays_come_as_an_address_and_a_count() {
 #[test]
 fn the_ring_is_read_in_pieces_and_what_was_overwritten_is_skipped() {
     let host = Host::powered();
-    let (mut key, mut out) = (0, outputs());
+    let mut key = 0;
     // Refused at every other tick, with a record each.
     for scan in 0..200_i64 {
-        assert_eq!(host.begin(scan * 1_000_000), 0);
-        let mut given = MoveVelocityIn {
+        let given = MoveVelocityIn {
             velocity: f64::NAN,
+            execute: u8::from(scan % 2 == 0),
             ..inputs()
         };
-        given.execute = u8::from(scan % 2 == 0);
-        assert_eq!(velocity(host.runtime, &mut key, &given, &mut out), 0);
-        assert_eq!(host.end(), 0);
+        tick(&host, scan, &mut key, &given);
     }
     let mut next = 0_u64;
     let mut numbers = Vec::new();

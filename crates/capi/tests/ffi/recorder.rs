@@ -1,7 +1,7 @@
 //! The flight recorder in memory of the host: its contents, its dump, and every wrong use.
 
-use crate::host::Host;
-use crate::{inputs, outputs, velocity};
+use crate::host::{Host, sized};
+use crate::inputs;
 use standstill_capi::*;
 use std::ffi::{CStr, c_char};
 use std::mem::MaybeUninit;
@@ -68,12 +68,11 @@ fn init(host: &Host, config: &RecorderConfig, recorded: &[Recorded]) -> Result<V
 }
 
 fn state(host: &Host) -> Result<RecorderStatus, i32> {
-    let mut status = MaybeUninit::<RecorderStatus>::zeroed();
-    // SAFETY: all fields are numbers, and the size is set.
+    // SAFETY: a handle, and a structure of the library.
     unsafe {
-        status.assume_init_mut().size = size_of::<RecorderStatus>() as u32;
-        match standstill_recorder_state(host.runtime, status.as_mut_ptr()) {
-            0 => Ok(status.assume_init()),
+        let mut status = sized();
+        match standstill_recorder_state(host.runtime, &mut status) {
+            0 => Ok(status),
             code => Err(code),
         }
     }
@@ -118,11 +117,8 @@ fn whole(host: &Host, form: i32, room: usize) -> String {
 
 /// Moves an axis for `scans` ticks from `from` on.
 fn tick(host: &Host, key: &mut u64, from: i64, scans: i64) {
-    let mut out = outputs();
     for scan in from..from + scans {
-        assert_eq!(host.begin(scan * TICK), 0);
-        assert_eq!(velocity(host.runtime, key, &inputs(), &mut out), 0);
-        assert_eq!(host.end(), 0);
+        crate::tick(host, scan, key, &inputs());
     }
 }
 
@@ -139,8 +135,7 @@ fn it_keeps_the_last_scans_and_freezes_after_an_error_stop() {
     tick(&host, &mut key, 0, 20);
     let now = state(&host).unwrap();
     assert_eq!((now.state, now.first, now.scans, now.left), (0, 10, 10, 0));
-    // SAFETY: a handle.
-    assert_eq!(unsafe { standstill_simulate(host.runtime, 1, 1, 0x7500) }, 0);
+    assert_eq!(host.simulate(1, 1, 0x7500), 0);
     tick(&host, &mut key, 20, 1);
     let now = state(&host).unwrap();
     assert_eq!((now.state, now.tripped_at, now.axis, now.left), (1, 20, 1, 2));
@@ -206,16 +201,13 @@ fn what_a_resting_block_was_given_is_recorded() {
     let _memory = init(&host, &keep(4, 0), &[entry(key, 0, "go", "")]).unwrap();
     tick(&host, &mut key, 0, 300);
     // Without an edge the block ignores a new velocity.
-    let (mut out, other) = (outputs(), 3.25);
+    let other = 3.25;
     let changed = crate::MoveVelocityIn {
         velocity: other,
         ..inputs()
     };
-    assert_eq!(host.begin(300 * TICK), 0);
-    assert_eq!(velocity(host.runtime, &mut key, &changed, &mut out), 0);
-    assert_eq!((out.in_velocity, host.end()), (1, 0));
-    // SAFETY: a handle and a key.
-    assert_eq!(unsafe { standstill_instance_release(host.runtime, &mut key) }, 0);
+    assert_eq!(crate::tick(&host, 300, &mut key, &changed).in_velocity, 1);
+    assert_eq!(host.release(&mut key), 0);
     assert_eq!((host.begin(301 * TICK), host.end()), (0, 0));
     let (table, header) = (whole(&host, 1, 1 << 16), whole(&host, 2, 1 << 16));
     let trace = standstill_trace::csv::read(&table, Some(&header)).unwrap().trace;

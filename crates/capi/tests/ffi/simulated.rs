@@ -1,27 +1,13 @@
 //! The parts of simulated drives, and their faults.
 
 use crate::host::Host;
-use crate::{inputs, outputs, velocity};
+use crate::{inputs, tick};
 use standstill_capi::*;
-use std::ffi::CStr;
-use std::mem::MaybeUninit;
 
 const TICK: i64 = 1_000_000;
 
 /// Bytes of the drive's structure in the first header.
 const FIRST: u32 = 96;
-
-fn fault_of(host: &Host) -> (String, f64) {
-    let mut fault = MaybeUninit::<ConfigFault>::zeroed();
-    // SAFETY: all fields are numbers, and the size is set; the key ends in 0.
-    unsafe {
-        fault.assume_init_mut().size = size_of::<ConfigFault>() as u32;
-        assert_eq!(standstill_config_error(host.runtime, fault.as_mut_ptr()), 0);
-        let fault = fault.assume_init();
-        let key = CStr::from_ptr(fault.key.as_ptr()).to_str().unwrap();
-        (key.to_owned(), fault.value)
-    }
-}
 
 /// A host compiled with the first header does not know later fields: they are neither read nor written.
 #[test]
@@ -191,9 +177,7 @@ fn a_simulated_drive_tells_what_it_is_told_to() {
     let errors = || [1, 2].map(|axis| host.status_of(axis).error_id);
     assert_eq!(errors(), [602, 404]);
     assert_eq!(host.status_of(2).actual_position, -1.001);
-    // SAFETY: a handle.
-    let clear = |axis| unsafe { standstill_simulate(host.runtime, axis, 0, 0) };
-    assert_eq!((clear(1), clear(2)), (0, 0));
+    assert_eq!((host.simulate(1, 0, 0), host.simulate(2, 0, 0)), (0, 0));
     assert_eq!((host.begin(1_000_000), host.end()), (0, 0));
     assert_eq!(host.status_of(2).actual_position, 0.0);
 }
@@ -204,7 +188,7 @@ fn what_a_drive_cannot_have_is_named() {
     let (mut axis, ideal) = Host::setup();
     let refused = |axis: &AxisSetup, drive: &DriveSetup| {
         assert_eq!(host.add(axis, drive), Err(Code::BadConfig as i32));
-        fault_of(&host)
+        host.fault()
     };
     let mut drive = ideal;
     (
@@ -328,18 +312,15 @@ fn a_limit_switch_stops_and_an_axis_fails() {
     axis.scaling_increments = 1000;
     drive.kind = 2;
     assert_eq!(host.add(&axis, &drive), Ok(2));
-    // SAFETY: a handle.
-    let simulate = |axis, mishap| unsafe { standstill_simulate(host.runtime, axis, mishap, 77) };
     for only_a_node in 5..=8 {
-        assert_eq!(simulate(1, only_a_node), Code::WrongDrive as i32);
-        assert_eq!(simulate(2, only_a_node), 0);
+        assert_eq!(host.simulate(1, only_a_node, 77), Code::WrongDrive as i32);
+        assert_eq!(host.simulate(2, only_a_node, 77), 0);
     }
-    let (mut key, mut out) = (0, outputs());
-    for scan in 0..250 {
-        assert_eq!(host.begin(scan * TICK), 0);
-        assert_eq!(velocity(host.runtime, &mut key, &inputs(), &mut out), 0);
-        assert_eq!(host.end(), 0);
+    let mut key = 0;
+    for scan in 0..249 {
+        tick(&host, scan, &mut key, &inputs());
     }
+    let out = tick(&host, 249, &mut key, &inputs());
     let status = host.status();
     assert_eq!((out.error, status.state, status.velocity), (1, 7, 0.0));
     assert_eq!(status.error_id, u32::from(out.error_id));
@@ -349,10 +330,8 @@ fn a_limit_switch_stops_and_an_axis_fails() {
     );
     // The axis itself fails, and its cause is cleared.
     let host = Host::powered();
-    // SAFETY: a handle.
-    assert_eq!(unsafe { standstill_simulate(host.runtime, 1, 4, 77) }, 0);
+    assert_eq!(host.simulate(1, 4, 77), 0);
     assert_eq!((host.begin(0), host.end()), (0, 0));
     assert_eq!((host.status().state, host.status().error_code), (7, 77));
-    // SAFETY: a handle.
-    assert_eq!(unsafe { standstill_simulate(host.runtime, 1, 0, 0) }, 0);
+    assert_eq!(host.simulate(1, 0, 0), 0);
 }
