@@ -63,6 +63,20 @@ pub enum FileError {
     },
 }
 
+impl FileError {
+    /// An error of the system with its file.
+    fn io(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Io { path, source }
+    }
+
+    /// A fault of a text with its file.
+    fn text(path: &Path) -> impl FnOnce(ReadError) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Text { path, source }
+    }
+}
+
 /// The forms of trace files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Form {
@@ -82,10 +96,20 @@ fn form(path: &Path) -> Result<Form, FileError> {
     }
 }
 
+/// The form of a file that is written.
+fn saved_form(path: &Path) -> Result<Form, FileError> {
+    match form(path)? {
+        Form::Exact => Err(FileError::Form {
+            path: path.to_owned(),
+        }),
+        form => Ok(form),
+    }
+}
+
 /// Whether [`save`] can write a file of this name. Call it before a long run, not after it.
 #[must_use]
 pub fn can_save(path: &Path) -> bool {
-    matches!(form(path), Ok(Form::Csv | Form::JsonLines))
+    saved_form(path).is_ok()
 }
 
 /// Whether this is the name of a CSV file.
@@ -125,17 +149,10 @@ impl Saving {
     /// # Errors
     /// Those of [`save`].
     pub fn begin(path: &Path) -> Result<Self, FileError> {
-        let form = form(path)?;
-        if form == Form::Exact {
-            return Err(FileError::Form {
-                path: path.to_owned(),
-            });
-        }
+        let is_table = saved_form(path)? == Form::Csv;
         let rows = Draft::begin(path)?;
-        let header = match form {
-            Form::Csv => Some(Draft::beside(&csv::meta_path(path))?),
-            Form::JsonLines | Form::Exact => None,
-        };
+        let header = is_table.then(|| Draft::beside(&csv::meta_path(path)));
+        let header = header.transpose()?;
         Ok(Self { rows, header })
     }
 
@@ -208,11 +225,10 @@ impl Draft {
     }
 
     fn of(path: &Path, target: io::Result<Target>) -> Result<Self, FileError> {
-        let path = path.to_owned();
-        match target {
-            Ok(target) => Ok(Self { path, target }),
-            Err(source) => Err(FileError::Io { path, source }),
-        }
+        Ok(Self {
+            target: target.map_err(FileError::io(path))?,
+            path: path.to_owned(),
+        })
     }
 
     /// Writes the file and puts it into its place.
@@ -224,13 +240,8 @@ impl Draft {
         let written = write(&mut out).and_then(|()| out.flush());
         // After an error, the rest of the buffer is dropped.
         drop(out.into_parts());
-        match written {
-            Ok(()) => self.keep(),
-            Err(source) => Err(FileError::Io {
-                path: self.path,
-                source,
-            }),
-        }
+        written.map_err(FileError::io(&self.path))?;
+        self.keep()
     }
 
     /// Puts the written file into its place.
@@ -243,10 +254,7 @@ impl Draft {
             Target::Open(_) => Ok(()),
             Target::New(draft) => match draft.persist(&path) {
                 Ok(_) => Ok(()),
-                Err(error) => Err(FileError::Io {
-                    path,
-                    source: error.error,
-                }),
+                Err(error) => Err(FileError::io(&path)(error.error)),
             },
         }
     }
@@ -357,32 +365,20 @@ pub fn read_regular(path: &Path) -> io::Result<Vec<u8>> {
 /// # Errors
 /// A name without a known form, an error of the system, or a file that is no trace.
 pub fn load(path: &Path) -> Result<Loaded, FileError> {
-    let io_error = |path: &Path, source| FileError::Io {
-        path: path.to_owned(),
-        source,
-    };
-    let text_error = |path: &Path, source| FileError::Text {
-        path: path.to_owned(),
-        source,
-    };
-    let read_text = |path: &Path| {
-        fs::read(path)
-            .and_then(text)
-            .map_err(|source| io_error(path, source))
-    };
+    let read_text = |path: &Path| fs::read(path).and_then(text).map_err(FileError::io(path));
     match form(path)? {
-        Form::JsonLines => jsonl::read(&read_text(path)?).map_err(|source| text_error(path, source)),
+        Form::JsonLines => jsonl::read(&read_text(path)?).map_err(FileError::text(path)),
         Form::Csv => {
             let meta_path = csv::meta_path(path);
             let meta = match read_regular(&meta_path).and_then(text) {
                 Ok(text) => Some(text),
                 Err(error) if error.kind() == io::ErrorKind::NotFound => None,
-                Err(error) => return Err(io_error(&meta_path, error)),
+                Err(error) => return Err(FileError::io(&meta_path)(error)),
             };
-            csv::read(&read_text(path)?, meta.as_deref()).map_err(|source| text_error(path, source))
+            csv::read(&read_text(path)?, meta.as_deref()).map_err(FileError::text(path))
         }
         Form::Exact => {
-            let file = fs::read(path).map_err(|source| io_error(path, source))?;
+            let file = fs::read(path).map_err(FileError::io(path))?;
             let trace = exact::decode(&file).map_err(|source| FileError::Exact {
                 path: path.to_owned(),
                 source,

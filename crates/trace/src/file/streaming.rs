@@ -1,6 +1,6 @@
 //! A trace that is written during its run.
 
-use super::{Draft, FileError, Form, folder_of, form, is_special, replace_beside};
+use super::{Draft, FileError, Form, folder_of, is_special, replace_beside, saved_form};
 use crate::csv::{self, Dialect};
 use crate::jsonl::{self, END_KEY};
 use crate::trace::Trace;
@@ -17,7 +17,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub struct Streaming {
     path: PathBuf,
-    form: Form,
+    /// CSV; otherwise JSON Lines.
+    is_table: bool,
     dialect: Dialect,
     out: File,
     /// `X.partial`; none if `X` is a pipe or a device.
@@ -33,33 +34,34 @@ impl Streaming {
     /// # Errors
     /// A name that ends in neither `.csv` nor `.jsonl`, or the message of the system.
     pub fn begin(trace: &Trace, path: &Path, dialect: Dialect) -> Result<Self, FileError> {
-        let form = form(path)?;
-        if form == Form::Exact {
-            return Err(FileError::Form {
-                path: path.to_owned(),
-            });
-        }
+        let is_table = saved_form(path)? == Form::Csv;
         let special = is_special(path);
         // Beside the trace, where there is room for it; a device has none beside it.
         let folder = match special {
             true => std::env::temp_dir(),
             false => folder_of(path).to_owned(),
         };
-        let notes = Notes::begin(&folder).map_err(at(&folder))?;
+        let notes = Notes::begin(&folder).map_err(FileError::io(&folder))?;
         let (out, partial) = match special {
-            true => (File::options().write(true).open(path).map_err(at(path))?, None),
+            true => (
+                File::options()
+                    .write(true)
+                    .open(path)
+                    .map_err(FileError::io(path))?,
+                None,
+            ),
             false => {
                 let partial = beside(path, ".partial");
                 (begun(path, &partial)?, Some(partial))
             }
         };
-        if form == Form::Csv {
+        if is_table {
             // An obstacle to writing shows now.
             drop(Draft::beside(&csv::meta_path(path))?);
         }
         let mut streaming = Self {
             path: path.to_owned(),
-            form,
+            is_table,
             dialect,
             out,
             partial,
@@ -67,9 +69,9 @@ impl Streaming {
             rows: 0,
         };
         let mut first = Vec::new();
-        let written = match form {
-            Form::Csv => csv::write_names(trace, dialect, &mut first),
-            Form::JsonLines | Form::Exact => writeln!(first, "{}", trace.header_json()),
+        let written = match is_table {
+            true => csv::write_names(trace, dialect, &mut first),
+            false => writeln!(first, "{}", trace.header_json()),
         };
         let written = written.and_then(|()| streaming.write(&first).map_err(|(error, _)| error));
         written.map_err(|error| streaming.failed(error))?;
@@ -92,9 +94,9 @@ impl Streaming {
 
     fn take(&mut self, trace: &Trace) -> io::Result<()> {
         let mut lines = Vec::new();
-        match self.form {
-            Form::Csv => csv::write_rows(trace, self.rows, self.dialect, &mut lines)?,
-            Form::JsonLines | Form::Exact => jsonl::write_rows(trace, self.rows, &mut lines)?,
+        match self.is_table {
+            true => csv::write_rows(trace, self.rows, self.dialect, &mut lines)?,
+            false => jsonl::write_rows(trace, self.rows, &mut lines)?,
         }
         self.write(&lines).map_err(|(error, whole)| {
             self.rows += whole;
@@ -141,13 +143,13 @@ impl Streaming {
     pub fn finish(mut self, trace: &Trace) -> Result<(), FileError> {
         let mut end = || {
             self.take(trace)?;
-            if self.form == Form::JsonLines {
+            if !self.is_table {
                 self.end(trace)?;
             }
             self.put()
         };
         end().map_err(|error| self.failed(error))?;
-        if self.form == Form::JsonLines {
+        if !self.is_table {
             return Ok(());
         }
         replace_beside(&csv::meta_path(&self.path), |mut out| {
@@ -209,11 +211,6 @@ impl Streaming {
     }
 }
 
-fn at(path: &Path) -> impl FnOnce(io::Error) -> FileError {
-    let path = path.to_owned();
-    move |source| FileError::Io { path, source }
-}
-
 fn beside(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(ending);
@@ -228,16 +225,17 @@ fn begun(path: &Path, partial: &Path) -> Result<File, FileError> {
     match fs::symlink_metadata(partial) {
         Ok(there) if !there.is_file() => {
             let error = io::Error::other("this is no file that could be replaced");
-            return Err(at(partial)(error));
+            return Err(FileError::io(partial)(error));
         }
-        Ok(_) => fs::remove_file(partial).map_err(at(partial))?,
+        Ok(_) => fs::remove_file(partial).map_err(FileError::io(partial))?,
         Err(_) => {}
     }
-    let file = File::create_new(partial).map_err(at(partial))?;
+    let file = File::create_new(partial).map_err(FileError::io(partial))?;
     if let Ok(there) = fs::symlink_metadata(path)
         && there.is_file()
     {
-        file.set_permissions(there.permissions()).map_err(at(partial))?;
+        file.set_permissions(there.permissions())
+            .map_err(FileError::io(partial))?;
     }
     Ok(file)
 }
