@@ -1,9 +1,10 @@
 //! Events must show each change and its time, in the order of cause and effect, and must not show
 //! continuous changes.
 
+use crate::common;
+
 use standstill_trace::{
-    Axis, Cell, Direction, Header, Input, Instance, Limits, Note, Pin, Trace, events_text, extremes,
-    extremes_text,
+    Axis, Cell, Direction, Header, Input, Instance, Limits, Note, Trace, events_text, extremes, extremes_text,
 };
 
 /// One axis, one number variable, and a block with a pin of every sort.
@@ -22,14 +23,7 @@ fn header() -> Header {
         ("Elapsed", "TIME", Output),
         ("Actual", "LREAL", Output),
     ];
-    let pins = pins.map(|(name, iec_type, direction)| Pin {
-        name: name.into(),
-        iec_type: iec_type.into(),
-        direction,
-        default: None,
-        named: false,
-        written: Vec::new(),
-    });
+    let pins = pins.map(|(name, iec_type, direction)| common::pin(name, iec_type, direction));
     Header {
         cycle_ns: 1_000_000,
         axes: vec![Axis {

@@ -13,9 +13,7 @@ use standstill_trace::{Trace, digest, golden};
 
 #[test]
 fn every_form_comes_back() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("file");
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder for the test");
+    let folder = common::folder("file");
     let trace = common::run(50, None);
     for name in ["run.csv", "run.jsonl"] {
         let path = folder.join(name);
@@ -49,9 +47,7 @@ fn every_form_comes_back() {
 
 #[test]
 fn a_file_is_replaced_whole_or_not_at_all() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("replaced");
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder for the test");
+    let folder = common::folder("replaced");
     let path = folder.join("out.html");
     replace(&path, |out| out.write_all(b"first")).expect("writable");
     let failed = replace(&path, |out| {
@@ -79,9 +75,7 @@ fn nothing_is_written_through_a_link_and_permissions_stay() {
     use standstill_trace::file::{read_regular, replace_beside};
     use std::os::unix::fs::{PermissionsExt, symlink};
 
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("links");
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder for the test");
+    let folder = common::folder("links");
     let (outside, link) = (folder.join("outside"), folder.join("link"));
     fs::write(&outside, "as it was").expect("writable");
     type Way = fn(&Path) -> Result<(), FileError>;
@@ -113,9 +107,7 @@ fn nothing_is_written_through_a_link_and_permissions_stay() {
 
 #[test]
 fn a_trace_is_begun_before_there_is_one() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("begun");
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder for the test");
+    let folder = common::folder("begun");
     assert!(Saving::begin(&folder.join("absent/a.csv")).is_err());
     let saving = Saving::begin(&folder.join("a.csv")).expect("writable");
     assert!(!folder.join("a.csv").exists());
@@ -134,8 +126,7 @@ fn a_trace_is_begun_before_there_is_one() {
 
 #[test]
 fn a_trace_that_is_written_on_the_way_is_the_one_written_at_its_end() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("on_the_way");
-    fs::create_dir_all(&folder).expect("a folder for the test");
+    let folder = common::folder("on_the_way");
     let whole = common::run(200, None);
     for (name, dialect) in [
         ("x.csv", Dialect::default()),

@@ -7,7 +7,6 @@ use std::fs;
 use std::path::Path;
 
 use standstill_trace::golden::{GoldenError, Verdict, accept, exact_path, judge, text};
-use standstill_trace::{Cell, Trace};
 
 #[test]
 fn what_is_accepted_is_the_same_until_it_is_not() {
@@ -126,15 +125,7 @@ fn what_is_no_row_shows_in_the_text_alone() {
     accept(&snap, &trace).expect("writable");
     let mut header = common::header();
     header.axes[0].limits.velocity = Some(250.0);
-    let mut other = Trace::new(header);
-    for scan in 0..trace.scans() {
-        other
-            .push_row(&trace.row(scan).collect::<Vec<Cell<'_>>>())
-            .expect("the row fits");
-    }
-    for note in trace.notes() {
-        other.push_note(note.clone());
-    }
+    let other = common::under(header, &trace);
     let verdict = judge(&snap, &other).expect("readable");
     let Verdict::Different(mismatch) = verdict else {
         panic!("{verdict:?}")

@@ -63,15 +63,7 @@ fn versions_hashes_and_verdicts_stay_out() {
     let trace = common::run(10, None);
     header.runtime = "9.9.9".into();
     header.script_hash = "feedface".into();
-    let mut other = Trace::new(header);
-    for scan in 0..trace.scans() {
-        other
-            .push_row(&trace.row(scan).collect::<Vec<_>>())
-            .expect("the row fits");
-    }
-    for note in trace.notes() {
-        other.push_note(note.clone());
-    }
+    let mut other = common::under(header, &trace);
     other.set_claims(vec![Claim {
         path: "p".into(),
         text: "t".into(),

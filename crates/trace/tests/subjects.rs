@@ -70,12 +70,8 @@ fn value(random: &mut Random, kind: Kind) -> Own {
 
 fn pin(name: &str, iec_type: &str, direction: Direction, default: Option<&str>) -> Pin {
     Pin {
-        name: name.into(),
-        iec_type: iec_type.into(),
-        direction,
         default: default.map(str::to_owned),
-        named: false,
-        written: Vec::new(),
+        ..common::pin(name, iec_type, direction)
     }
 }
 

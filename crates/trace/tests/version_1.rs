@@ -12,10 +12,7 @@ use standstill_trace::{Cell, Direction, Pin, Trace, digest, exact};
 
 /// The golden of this run as version 1 wrote it, in a folder of its own.
 fn old(name: &str, trace: &Trace) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder for the test");
-    let snap = folder.join("x.snap");
+    let snap = common::folder(name).join("x.snap");
     let whole = digest::whole(trace);
     let now = text(trace);
     let (above, _) = now.split_once("\ndigests\n").expect("version 2 lists digests");
@@ -37,12 +34,8 @@ fn other_columns(trace: &Trace, value: Option<f64>, without: &str) -> Trace {
     pins.retain(|pin| format!("there.{}", pin.name) != without);
     if value.is_some() {
         let pin = Pin {
-            name: "New".into(),
-            iec_type: "LREAL".into(),
-            direction: Direction::Input,
             default: Some("0.0".into()),
-            named: false,
-            written: Vec::new(),
+            ..common::pin("New", "LREAL", Direction::Input)
         };
         pins.insert(3, pin);
     }

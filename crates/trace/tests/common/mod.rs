@@ -23,7 +23,8 @@ pub fn folder(name: &str) -> PathBuf {
 
 const CYCLE: f64 = 0.001;
 
-fn pin(name: &str, iec_type: &str, direction: Direction) -> Pin {
+/// A pin without a default.
+pub fn pin(name: &str, iec_type: &str, direction: Direction) -> Pin {
     Pin {
         name: name.into(),
         iec_type: iec_type.into(),
@@ -88,12 +89,7 @@ pub fn header() -> Header {
                 snap: Some(500_000.0),
                 ..Limits::default()
             },
-            modulo: None,
-            scaling: None,
-            slave: false,
-            combined: false,
-            superimposed: false,
-            on_cam: false,
+            ..Axis::default()
         }],
         inputs: vec![Input {
             name: "GO".into(),
@@ -263,6 +259,16 @@ pub fn run(scans: usize, nudge: Option<usize>) -> Trace {
             text: text.into(),
         });
     }
+    trace
+}
+
+/// The rows and notes of a run under another header.
+pub fn under(header: Header, run: &Trace) -> Trace {
+    let mut trace = Trace::new(header);
+    for scan in 0..run.scans() {
+        trace.push_cells(run.row(scan)).expect("the row fits");
+    }
+    run.notes().iter().for_each(|note| trace.push_note(note.clone()));
     trace
 }
 
