@@ -109,7 +109,7 @@ fn told(name: &str, outcome: &Outcome, warnings: Value) -> Ran {
 fn told_column(trace: &Trace, index: usize, column: &Column, reals: &mut Vec<f64>) -> Value {
     let mut told = json!({
         "name": column.name,
-        "kind": kind(column.kind),
+        "kind": column.kind.name(),
         "role": role(column.role),
         "is_time": column.is_time,
     });
@@ -138,15 +138,6 @@ fn value(cell: Cell<'_>) -> Value {
         Cell::Real(value) => json!(value),
         Cell::Integer(value) => json!(value.to_string()),
         Cell::Name(text) => json!(text),
-    }
-}
-
-const fn kind(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Bool => "bool",
-        Kind::Real => "real",
-        Kind::Integer => "integer",
-        Kind::Name => "name",
     }
 }
 

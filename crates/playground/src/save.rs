@@ -1,6 +1,6 @@
 //! A run as a file to keep.
 
-use crate::project::Project;
+use crate::project::{Project, refused};
 use crate::runs::run_project;
 use serde_json::{Value, json};
 use standstill_picture as picture;
@@ -23,7 +23,6 @@ pub fn save(request: &str, form: &str) -> String {
 }
 
 fn file(name: &str, trace: &Trace, form: &str) -> Result<String, Value> {
-    let refused = |why: String| json!({"refused": why});
     let mut bytes = Vec::new();
     let written = match form {
         "csv" => csv::write(trace, &mut bytes),
@@ -35,10 +34,10 @@ fn file(name: &str, trace: &Trace, form: &str) -> Result<String, Value> {
                 trace,
                 lacks: &[],
             };
-            return html(&[source]).map_err(|error| refused(error.to_string()));
+            return html(&[source]).map_err(|error| refused(&error.to_string()));
         }
-        other => return Err(refused(format!("no form {other}: csv, vcd, svg or report"))),
+        other => return Err(refused(&format!("no form {other}: csv, vcd, svg or report"))),
     };
-    written.map_err(|error| refused(error.to_string()))?;
-    String::from_utf8(bytes).map_err(|error| refused(error.to_string()))
+    written.map_err(|error| refused(&error.to_string()))?;
+    String::from_utf8(bytes).map_err(|error| refused(&error.to_string()))
 }

@@ -41,23 +41,22 @@ fn packed(content: &Value) -> Result<String, String> {
         "{VERSION}.{}",
         URL_SAFE_NO_PAD.encode(compress_to_vec(text.as_bytes(), LEVEL))
     );
-    if link.len() > LINK_MAX {
-        return Err(format!(
-            "a link of {} characters is more than the {LINK_MAX} that are read",
-            link.len()
-        ));
-    }
+    check_length(&link)?;
     Ok(link)
+}
+
+fn check_length(link: &str) -> Result<(), String> {
+    match link.len() {
+        0..=LINK_MAX => Ok(()),
+        len => Err(format!(
+            "a link of {len} characters is more than the {LINK_MAX} that are read"
+        )),
+    }
 }
 
 fn unpacked(link: &str) -> Result<Value, String> {
     let broken = || "this link is broken: it was cut short or altered on its way".to_owned();
-    if link.len() > LINK_MAX {
-        return Err(format!(
-            "a link of {} characters is more than the {LINK_MAX} that are read",
-            link.len()
-        ));
-    }
+    check_length(link)?;
     let (version, rest) = link.split_once('.').ok_or_else(broken)?;
     let version: u32 = version.parse().map_err(|_| broken())?;
     if version > VERSION {

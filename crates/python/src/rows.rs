@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 use standstill_cli::verdict;
 use standstill_picture::svg;
 use standstill_script::{Outcome, Verdict, Warnings};
-use standstill_trace::{Kind, Trace, digest, events, file};
+use standstill_trace::{Trace, digest, events, file};
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard};
 
@@ -119,15 +119,6 @@ fn claim(verdict: &Verdict) -> Claim {
     )
 }
 
-const fn kind(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Bool => "bool",
-        Kind::Real => "real",
-        Kind::Integer => "integer",
-        Kind::Name => "name",
-    }
-}
-
 #[pymethods]
 impl Rows {
     /// The digest of every bit, as the command line prints it.
@@ -165,7 +156,7 @@ impl Rows {
         let held = self.held(py);
         let columns = held.trace.columns().iter();
         columns
-            .map(|column| (column.name.clone(), kind(column.kind)))
+            .map(|column| (column.name.clone(), column.kind.name()))
             .collect()
     }
 

@@ -140,7 +140,7 @@ fn text(name: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
         return Ok(value.to_string());
     }
     if value.is_instance_of::<PyFloat>() {
-        return Ok(number(value.extract()?));
+        return Ok(shortest(value.extract()?));
     }
     if value.is_instance_of::<PyInt>() {
         return Ok(value.str()?.to_string());
@@ -149,16 +149,6 @@ fn text(name: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
         "{name}: a bool, a number or a text is wanted, not {}",
         value.get_type().name()?
     )))
-}
-
-fn number(value: f64) -> String {
-    if value.is_nan() {
-        "NaN".to_owned()
-    } else if value.is_infinite() {
-        if value > 0.0 { "Infinity" } else { "-Infinity" }.to_owned()
-    } else {
-        shortest(value)
-    }
 }
 
 #[pymethods]

@@ -17,6 +17,17 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// Its name for other programs.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Bool => "bool",
+            Self::Real => "real",
+            Self::Integer => "integer",
+            Self::Name => "name",
+        }
+    }
+
     /// The kind of an IEC type. Types other than elementary numbers and BOOL (enums, `AXIS_REF`,
     /// structures) are shown by name.
     #[must_use]
@@ -73,7 +84,7 @@ pub struct Column {
     pub is_time: bool,
     /// The text of its default value, if known: for an input or output pin. Unless the column is
     /// [named](Self::named), events show it only once it has another value, and a golden leaves it out if
-    /// The script names this input pin with a constant, a wire or a step. Then every row counts.
+    /// it keeps the default in all rows.
     pub default: Option<String>,
     /// Whether the script names this input pin: with a constant, a wire or a step. Then every row counts.
     pub named: bool,
