@@ -338,7 +338,7 @@ impl SimulatedDrive {
         match &mut self.kind {
             Kind::Ideal(drive) => drive.fail(code),
             Kind::Cia402(drive) => drive.node_mut().fail(code),
-            Kind::Plant(drive) => drive.fail(code),
+            Kind::Plant(drive) => drive.stage_mut().fail(code),
         }
     }
 
@@ -347,7 +347,7 @@ impl SimulatedDrive {
         match &mut self.kind {
             Kind::Ideal(drive) => drive.cut_power(),
             Kind::Cia402(drive) => drive.node_mut().cut_power(),
-            Kind::Plant(drive) => drive.cut_power(),
+            Kind::Plant(drive) => drive.stage_mut().cut_power(),
         }
     }
 
@@ -356,7 +356,7 @@ impl SimulatedDrive {
         match &mut self.kind {
             Kind::Ideal(drive) => drive.cut_communication(),
             Kind::Cia402(drive) => drive.node_mut().cut_communication(),
-            Kind::Plant(drive) => drive.cut_communication(),
+            Kind::Plant(drive) => drive.stage_mut().cut_communication(),
         }
     }
 
@@ -366,7 +366,7 @@ impl SimulatedDrive {
         match &mut self.kind {
             Kind::Ideal(drive) => drive.clear_cause(),
             Kind::Cia402(drive) => drive.node_mut().clear_cause(),
-            Kind::Plant(drive) => drive.clear_cause(),
+            Kind::Plant(drive) => drive.stage_mut().clear_cause(),
         }
     }
 

@@ -1,8 +1,8 @@
 //! An axis over a simulated CiA 402 node, through every kind of loss.
 
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, Command, Direction, Drive, DrivePosition, Dynamics, InstanceId,
-    Limits, Log, Permission, Request, Scaling, Scope, Standard, steps,
+    Axis, AxisConfig, AxisId, AxisState, Command, Direction, Drive, DrivePosition, Dynamics, Limits, Log,
+    Permission, Request, Scaling, Scope, Standard, steps,
 };
 use standstill_drives::cia402::{Cia402Drive, Reaction, Settings, State};
 use standstill_testkit::Random;
@@ -56,13 +56,7 @@ impl Rig {
     /// One scan, `during` between feedback and motion.
     fn step(&mut self, during: impl FnOnce(&mut Axis, &mut Scope<'_>)) {
         let feedback = self.drive.read(0);
-        let scope = &mut Scope {
-            scan: self.scan,
-            instance: InstanceId(1),
-            log: &mut self.log,
-            cams: standstill_axis::Cams::default(),
-            history: &mut [],
-        };
+        let scope = &mut Scope::new(self.scan, &mut self.log);
         self.axis.follow_feedback(&feedback, scope);
         during(&mut self.axis, scope);
         steps::advance(slice::from_mut(&mut self.axis), scope);

@@ -2,7 +2,7 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Drive, DrivePosition, Fate, HomeDirection, Homing,
-    IdealDrive, InstanceId, Limits, Log, Procedure, Request, Scope, Standard, StartState, SwitchEdge, steps,
+    IdealDrive, Limits, Log, Procedure, Request, Scope, Standard, StartState, SwitchEdge, steps,
 };
 use standstill_drives::switches::{Marker, Switches, Travel};
 use standstill_testkit::Random;
@@ -49,17 +49,8 @@ fn place_of_zero(homing: Homing, start: f64, delay: usize) -> f64 {
         axis.follow_feedback(&feedback, &mut Scope::new(scan, &mut log));
         let home = Request::aborting(Command::Home { position: 0.0 });
         let id = *id.get_or_insert_with(|| {
-            axis.command(
-                &home,
-                &mut Scope {
-                    scan,
-                    instance: InstanceId(1),
-                    log: &mut log,
-                    cams: standstill_axis::Cams::default(),
-                    history: &mut [],
-                },
-            )
-            .unwrap_or_else(|error| panic!("{homing:?} from {start}: {error:?}"))
+            axis.command(&home, &mut Scope::new(scan, &mut log))
+                .unwrap_or_else(|error| panic!("{homing:?} from {start}: {error:?}"))
         });
         match axis.fate(id) {
             Fate::Done => {

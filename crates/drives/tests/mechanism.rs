@@ -1,8 +1,8 @@
 //! The mechanism against independent formulas, and the drive over it.
 
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, Command, Drive, DrivePosition, Dynamics, Fate, InstanceId, Limits,
-    Log, Permission, Request, Scaling, Scope, Standard, steps,
+    Axis, AxisConfig, AxisId, AxisState, Command, Drive, DrivePosition, Dynamics, Fate, Limits, Log,
+    Permission, Request, Scaling, Scope, Standard, steps,
 };
 use standstill_drives::mechanism::{
     Gains, Load, Mechanism, Plant, PlantDrive, SUBSTEPS, Servo, SetPoint, Stops,
@@ -324,13 +324,7 @@ impl Rig {
 
     fn step(&mut self, during: impl FnOnce(&mut Axis, &mut Scope<'_>)) -> (f64, bool) {
         let feedback = self.drive.read(0);
-        let scope = &mut Scope {
-            scan: self.scan,
-            instance: InstanceId(1),
-            log: &mut self.log,
-            cams: standstill_axis::Cams::default(),
-            history: &mut [],
-        };
+        let scope = &mut Scope::new(self.scan, &mut self.log);
         self.axis.follow_feedback(&feedback, scope);
         self.axis.set_power(true, Permission::BOTH, scope);
         during(&mut self.axis, scope);
@@ -415,7 +409,7 @@ fn without_power_it_coasts_and_enabling_takes_it_where_it_is() {
         rig.step(|_, _| {});
     }
     let at_loss = rig.drive.servo().mechanism().position();
-    rig.drive.cut_power();
+    rig.drive.stage_mut().cut_power();
     for _ in 0..200 {
         rig.step(|_, _| {});
     }
@@ -424,7 +418,7 @@ fn without_power_it_coasts_and_enabling_takes_it_where_it_is() {
     assert!(coasted > 0.2, "{coasted}");
     // Power returns while it still moves. From the first set-point in operation on, no step is larger than the
     // distance of a scan.
-    rig.drive.clear_cause();
+    rig.drive.stage_mut().clear_cause();
     rig.step(|axis, scope| {
         axis.reset(scope).unwrap();
     });

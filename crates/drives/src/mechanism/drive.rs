@@ -41,24 +41,9 @@ impl PlantDrive {
         &self.servo
     }
 
-    /// See [`IdealDrive::fail`].
-    pub fn fail(&mut self, code: u16) {
-        self.stage.fail(code);
-    }
-
-    /// See [`IdealDrive::cut_power`].
-    pub fn cut_power(&mut self) {
-        self.stage.cut_power();
-    }
-
-    /// See [`IdealDrive::cut_communication`].
-    pub fn cut_communication(&mut self) {
-        self.stage.cut_communication();
-    }
-
-    /// See [`IdealDrive::clear_cause`].
-    pub fn clear_cause(&mut self) {
-        self.stage.clear_cause();
+    /// The power stage, which fails as that of an ideal drive.
+    pub fn stage_mut(&mut self) -> &mut IdealDrive {
+        &mut self.stage
     }
 
     /// Someone pushes the mechanism by `distance` (u) while the power stage is off.

@@ -2,8 +2,8 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BlockDetection, Comms, Drive, DriveCommand, DriveFeedback,
-    DriveOrder, DrivePosition, DriveReport, ErrorId, Homing, InstanceId, Limits, Log, Permission, Procedure,
-    Scaling, Scope, Standard, StartState, steps,
+    DriveOrder, DrivePosition, DriveReport, ErrorId, Homing, Limits, Log, Permission, Procedure, Scaling,
+    Scope, Standard, StartState, steps,
 };
 use standstill_drives::cia402::{Cia402Drive, MotorLoad, NodeHoming, Reaction, Settings, TorqueScale};
 use standstill_drives::mechanism::{Gains, Mechanism, Plant, PlantDrive, Servo, Stops};
@@ -110,10 +110,10 @@ impl Device {
                 drive.node_mut().displace(by.into()).unwrap_or_default()
             }
             (Kind::Cia402(drive), Upset::Remote(remote)) => drive.node_mut().set_remote(remote),
-            (Kind::Plant(drive), Upset::Fault) => drive.fail(7),
-            (Kind::Plant(drive), Upset::Power) => drive.cut_power(),
-            (Kind::Plant(drive), Upset::Communication) => drive.cut_communication(),
-            (Kind::Plant(drive), Upset::Clear) => drive.clear_cause(),
+            (Kind::Plant(drive), Upset::Fault) => drive.stage_mut().fail(7),
+            (Kind::Plant(drive), Upset::Power) => drive.stage_mut().cut_power(),
+            (Kind::Plant(drive), Upset::Communication) => drive.stage_mut().cut_communication(),
+            (Kind::Plant(drive), Upset::Clear) => drive.stage_mut().clear_cause(),
             (Kind::Plant(drive), Upset::Displace(by)) => {
                 drive.displace(f64::from(by) / SCALE).unwrap_or_default()
             }
@@ -267,13 +267,7 @@ impl Rig {
         self.axis
             .follow_feedback(&told, &mut Scope::new(self.scan, &mut self.log));
         self.look_at_feedback(&told);
-        let scope = &mut Scope {
-            scan: self.scan,
-            instance: InstanceId(1),
-            log: &mut self.log,
-            cams: standstill_axis::Cams::default(),
-            history: &mut [],
-        };
+        let scope = &mut Scope::new(self.scan, &mut self.log);
         self.axis.set_power(power, permitted, scope);
         during(&mut self.axis, scope);
         steps::advance(slice::from_mut(&mut self.axis), scope);
