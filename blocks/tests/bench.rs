@@ -206,7 +206,6 @@ impl Bench {
             now_ns: self.scan as i64 * 1_000_000,
             scope: Scope {
                 cams: Cams::new(&mut self.slots, &mut self.pieces),
-                history: &mut [],
                 ..Scope::new(self.scan, &mut self.log)
             },
             axes: &mut self.axes,
@@ -218,7 +217,6 @@ impl Bench {
     pub fn advance(&mut self) {
         let scope = &mut Scope {
             cams: Cams::new(&mut self.slots, &mut self.pieces),
-            history: &mut [],
             ..Scope::new(self.scan, &mut self.log)
         };
         steps::advance(&mut self.axes, scope);

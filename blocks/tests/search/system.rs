@@ -308,11 +308,8 @@ impl System {
             block.call(&mut Context {
                 now_ns: 0,
                 scope: Scope {
-                    scan: self.scans,
                     instance: InstanceId(place),
-                    log,
-                    cams: standstill_axis::Cams::default(),
-                    history: &mut [],
+                    ..Scope::new(self.scans, log)
                 },
                 axes: &mut self.axis,
                 tables: &[],

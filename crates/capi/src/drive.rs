@@ -37,17 +37,22 @@ pub(crate) struct HostDrive {
     order: DriveOrder,
 }
 
+/// The feedback before there is any.
+pub(crate) fn no_feedback(position: DrivePosition) -> DriveFeedback {
+    DriveFeedback {
+        enabled: false,
+        voltage: false,
+        fault: None,
+        position,
+        comms: Comms::Lost,
+        signals: DriveSignals::default(),
+    }
+}
+
 impl HostDrive {
     fn new(position: DrivePosition) -> Self {
         Self {
-            feedback: DriveFeedback {
-                enabled: false,
-                voltage: false,
-                fault: None,
-                position,
-                comms: Comms::Lost,
-                signals: DriveSignals::default(),
-            },
+            feedback: no_feedback(position),
             report: DriveReport::default(),
             news: News::None,
             command: DriveCommand {

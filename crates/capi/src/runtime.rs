@@ -1,15 +1,15 @@
 //! A runtime: axes with their drives, block instances under keys, and its position in the tick.
 
 use crate::config::refused;
-use crate::drive::AnyDrive;
+use crate::drive::{AnyDrive, no_feedback};
 use crate::recorder::{Order, Recorder};
 use crate::storage::{CamStore, List};
 use crate::{AxisSetup, AxisStatus, Code, ConfigFault, DriveSetup, Mishap, RecorderConfig, raw};
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicU32, AtomicUsize};
 use standstill_axis::{
-    Axis, AxisId, AxisState, Cams, Drive, DriveFeedback, ErrorId, InstanceId, Log, Scope, Setpoint, Standard,
-    steps,
+    Axis, AxisId, AxisState, Drive, DriveFeedback, DrivePosition, ErrorId, InstanceId, Log, Scope, Setpoint,
+    Standard, steps,
 };
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_drives::simulated::{DriveChange, SimulatedDrive};
@@ -75,11 +75,8 @@ pub(crate) const MAGIC: u32 = 0x5453_5453;
 /// The scope for actions of no block in `scan`.
 fn nobody(scan: u64, log: &mut Log) -> Scope<'_> {
     Scope {
-        scan,
         instance: NOBODY,
-        log,
-        cams: Cams::default(),
-        history: &mut [],
+        ..Scope::new(scan, log)
     }
 }
 
@@ -232,14 +229,7 @@ impl Inner {
         axis.set_history(self.history_taken);
         self.history_taken += needed;
         // An initial value only: the first tick reads the drive before any use.
-        let feedback = DriveFeedback {
-            enabled: false,
-            voltage: false,
-            fault: None,
-            position: standstill_axis::DrivePosition::Units(0.0),
-            comms: standstill_axis::Comms::Lost,
-            signals: standstill_axis::DriveSignals::default(),
-        };
+        let feedback = no_feedback(DrivePosition::Units(0.0));
         // All lists have the same capacity, so each has room for it.
         self.axes.push(axis);
         self.drives.push(drive);

@@ -224,11 +224,8 @@ impl<P: Planner, D: Drive> Machine<P, D> {
 /// The scope of records that the machine itself writes in `scan`.
 fn runtime_scope(scan: u64, log: &mut Log) -> Scope<'_> {
     Scope {
-        scan,
         instance: RUNTIME,
-        log,
-        cams: Cams::default(),
-        history: &mut [],
+        ..Scope::new(scan, log)
     }
 }
 
