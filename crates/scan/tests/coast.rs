@@ -3,16 +3,7 @@
 use crate::common::{MS, Rig, task};
 use crate::stopping::forward;
 use standstill_axis::Setpoint;
-use standstill_scan::{ProgramConfig, ScanTime, TaskId};
-
-/// A task in every tick, and one axis.
-fn rig() -> Rig {
-    Rig::new(
-        &[task("main", 1, 0)],
-        &[ProgramConfig::with("main", "main")],
-        &["X"],
-    )
-}
+use standstill_scan::{ScanTime, TaskId};
 
 fn coast(rig: &mut Rig, scans: u64) -> u64 {
     rig.executor.coast(scans, &mut rig.host, &mut rig.machine)
@@ -20,7 +11,7 @@ fn coast(rig: &mut Rig, scans: u64) -> u64 {
 
 #[test]
 fn they_count_as_scans_with_programs() {
-    let (mut one, mut other) = (rig(), rig());
+    let (mut one, mut other) = (Rig::of_axes(&["X"]), Rig::of_axes(&["X"]));
     one.runs(0..20);
     other.runs(0..5);
     assert_eq!(coast(&mut other, 7), 7);
@@ -39,7 +30,7 @@ fn they_count_as_scans_with_programs() {
 
 #[test]
 fn drives_are_served_in_the_order_of_a_scan() {
-    let mut rig = rig();
+    let mut rig = Rig::of_axes(&["X"]);
     rig.runs(0..2);
     rig.taken_tape();
     coast(&mut rig, 1);
@@ -49,7 +40,7 @@ fn drives_are_served_in_the_order_of_a_scan() {
 
 #[test]
 fn an_axis_goes_along_without_its_drive() {
-    let (mut one, mut other) = (rig(), rig());
+    let (mut one, mut other) = (Rig::of_axes(&["X"]), Rig::of_axes(&["X"]));
     for rig in [&mut one, &mut other] {
         rig.host.act = |scan, context| {
             if scan == 0 {
@@ -80,7 +71,7 @@ fn an_axis_goes_along_without_its_drive() {
 
 #[test]
 fn they_end_when_the_host_says_so() {
-    let mut rig = rig();
+    let mut rig = Rig::of_axes(&["X"]);
     rig.runs(0..2);
     rig.host.idles = false;
     assert_eq!(coast(&mut rig, 9), 1);
@@ -89,17 +80,17 @@ fn they_end_when_the_host_says_so() {
 
 #[test]
 fn there_are_none_where_a_program_is_not_due_in_every_tick() {
-    let mut before = rig();
+    let mut before = Rig::of_axes(&["X"]);
     assert_eq!(coast(&mut before, 9), 0, "nothing has run yet");
     let mut slow = Rig::of_tasks(&[task("fast", 1, 0), task("slow", 2, 0)]);
     slow.runs(0..4);
     assert_eq!(coast(&mut slow, 9), 0);
-    let mut late = rig();
+    let mut late = Rig::of_axes(&["X"]);
     late.runs(0..4);
     late.scan_at(4 * MS as i64 + 1);
     assert_eq!(coast(&mut late, 9), 0, "the last scan was late");
     assert_eq!(late.executor.stand(9), 0);
-    let mut stopped = rig();
+    let mut stopped = Rig::of_axes(&["X"]);
     stopped.runs(0..4);
     stopped.executor.stop(&mut stopped.host, &mut stopped.machine);
     assert_eq!(coast(&mut stopped, 9), 0);

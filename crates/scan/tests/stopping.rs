@@ -2,13 +2,13 @@
 //!
 //! Ids: OV faults, ST starts, TM-6 nominal tick, SC-6 axes in a scan.
 
-use crate::common::{MS, Rig, task};
+use crate::common::{MS, Rig};
 use standstill_axis::{
     Axis, AxisId, AxisState, Command, Direction, DriveRequest, Dynamics, ErrorId, Followed, InstanceId,
     Master, Permission, Planner, Raw, Request, ValueSource, couple,
 };
 use standstill_fb::Context;
-use standstill_scan::{Mode, NotOff, ProgramConfig, ProgramFault, ScanReport, Start};
+use standstill_scan::{Mode, NotOff, ProgramFault, ScanReport, Start};
 
 const DYNAMICS: Dynamics = Dynamics {
     velocity: 20.0,
@@ -54,7 +54,7 @@ struct Moving {
 impl Moving {
     /// An axis that has moved at a constant 20 u/s for some scans.
     fn new() -> Self {
-        let mut rig = Rig::new(&[task("main", 1, 0)], &[ProgramConfig::with("p", "main")], &["X"]);
+        let mut rig = Rig::of_axes(&["X"]);
         rig.host.act = |scan, context| match scan {
             0 => {
                 forward(context);
@@ -112,7 +112,7 @@ impl Moving {
 /// SC-6: a command given in scan k changes the set-point published in scan k.
 #[test]
 fn a_command_moves_the_axis_in_its_own_scan() {
-    let mut rig = Rig::new(&[task("main", 1, 0)], &[ProgramConfig::with("p", "main")], &["X"]);
+    let mut rig = Rig::of_axes(&["X"]);
     rig.host.act = |scan, context| {
         if scan == 3 {
             forward(context);
@@ -130,7 +130,7 @@ fn a_command_moves_the_axis_in_its_own_scan() {
 #[test]
 fn late_scans_do_not_change_the_profile() {
     let written = |late: i64| {
-        let mut rig = Rig::new(&[task("main", 1, 0)], &[ProgramConfig::with("p", "main")], &["X"]);
+        let mut rig = Rig::of_axes(&["X"]);
         rig.host.act = |scan, context| {
             if scan == 0 {
                 back(context);
@@ -215,7 +215,7 @@ fn a_start_waits_for_the_ramp_of_an_axis_fault() {
 /// Before the first scan axes may be powered by configuration; a start leaves them so.
 #[test]
 fn the_first_start_keeps_configured_states() {
-    let mut rig = Rig::new(&[task("main", 1, 0)], &[ProgramConfig::with("p", "main")], &["X"]);
+    let mut rig = Rig::of_axes(&["X"]);
     rig.executor
         .start(Start::Cold, &mut rig.host, &rig.machine)
         .unwrap();
@@ -259,11 +259,7 @@ fn gear<P: Planner>(context: &mut Context<'_, P>) {
 /// Covers: G86
 #[test]
 fn a_start_finds_no_coupling_from_before_the_stop() {
-    let mut rig = Rig::new(
-        &[task("main", 1, 0)],
-        &[ProgramConfig::with("p", "main")],
-        &["X", "Y"],
-    );
+    let mut rig = Rig::of_axes(&["X", "Y"]);
     rig.host.act = |scan, context| {
         match scan {
             0 => {

@@ -170,6 +170,15 @@ impl Rig {
         }
     }
 
+    /// One program in a task of every tick, with these axes.
+    pub fn of_axes(axes: &[&'static str]) -> Self {
+        Self::new(
+            &[task("main", 1, 0)],
+            &[ProgramConfig::with("main", "main")],
+            axes,
+        )
+    }
+
     /// A program of the same name for each task, no axes.
     pub fn of_tasks(tasks: &[TaskConfig]) -> Self {
         let programs: Vec<_> = tasks
