@@ -112,7 +112,7 @@ class Trace:
         if name in ("scan", "time_ns"):
             each = 1 if name == "scan" else self._cycle_ns
             return np.arange(len(self), dtype=np.float64) * each
-        name = self._spelled(name)
+        name = spelled(name, self._kinds)
         words = self._lent()
         place = list(self._kinds).index(name)
         kind = self._kinds[name]
@@ -126,16 +126,6 @@ class Trace:
         used, of_rows = np.unique(words[:, place], return_inverse=True)
         texts = [self._names[word] for word in used]
         return np.array(texts, dtype=np.str_)[of_rows]
-
-    def _spelled(self, name: str) -> str:
-        """The name as the trace spells it."""
-        if name in self._kinds:
-            return name
-        if isinstance(name, str):
-            for known in self._kinds:
-                if known.lower() == name.lower():
-                    return known
-        raise KeyError(f"there is no signal {name!r}{did_you_mean(name, self._kinds)}")
 
     def _lent(self) -> np.ndarray[Any, Any]:
         """The rows, a word a cell."""
@@ -293,6 +283,20 @@ def _rest(
         except (TypeError, ValueError):
             raise TypeError(f"set: {name} is a number, not {value!r}") from None
     return values, [Path(path) for path in include_from], guest_memory
+
+
+def spelled(name: str, signals: Mapping[str, Any]) -> str:
+    """The name of a signal as the trace spells it.
+
+    :raises KeyError: there is no such signal
+    """
+    if name in signals:
+        return name
+    if isinstance(name, str):
+        for known in signals:
+            if known.lower() == name.lower():
+                return known
+    raise KeyError(f"there is no signal {name!r}{did_you_mean(name, signals)}")
 
 
 def did_you_mean(name: object, known: Iterable[str]) -> str:

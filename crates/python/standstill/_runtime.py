@@ -10,7 +10,7 @@ from typing import Any, Callable, NamedTuple
 from standstill import _native
 from standstill._errors import RunError
 from standstill._plain import script_text
-from standstill._run import Run, Trace, did_you_mean, source_of
+from standstill._run import Run, Trace, source_of, spelled
 
 
 class Command(NamedTuple):
@@ -126,14 +126,9 @@ class Runtime:
     def __getitem__(self, name: str) -> bool | int | float | str:
         """What a signal was in the last scan."""
         signals = self.signals
-        if name in signals:
-            return signals[name]
-        for known, value in signals.items():
-            if known.lower() == name.lower():
-                return value
         if not signals:
             raise KeyError(f"{name}: there was no scan yet")
-        raise KeyError(f"there is no signal {name!r}{did_you_mean(name, signals)}")
+        return signals[spelled(name, signals)]
 
     @property
     def signals(self) -> dict[str, bool | int | float | str]:
