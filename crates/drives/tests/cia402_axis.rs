@@ -200,9 +200,7 @@ fn schedules(seeds: core::ops::Range<u64>) {
     let (mut enabled, mut worst, mut faults) = (0, 0, 0);
     for seed in seeds {
         let mut random = Random(seed);
-        let reaction = |random: &mut Random| {
-            [Reaction::Coast, Reaction::Ramp, Reaction::RampAndStay][random.below(3) as usize]
-        };
+        let reactions = [Reaction::Coast, Reaction::Ramp, Reaction::RampAndStay];
         let mut rig = Rig::new(Settings {
             // Near the end of the 32 bits, so that some schedules wrap.
             position: i64::from(i32::MAX) - random.below(20_000) as i64,
@@ -210,9 +208,9 @@ fn schedules(seeds: core::ops::Range<u64>) {
             start_up: random.below(5) as u32,
             power_on: Some(random.below(5) as u32),
             deceleration: 1.0 + random.below(100) as f64,
-            quick_stop: reaction(&mut random),
-            leaving: reaction(&mut random),
-            fault: reaction(&mut random),
+            quick_stop: random.one_of(&reactions),
+            leaving: random.one_of(&reactions),
+            fault: random.one_of(&reactions),
             ..Settings::default()
         });
         let mut power = true;

@@ -196,7 +196,7 @@ impl Rig {
         } else {
             &Procedure::ALL[..]
         };
-        let procedure = procedures[random.below(procedures.len() as u64) as usize];
+        let procedure = random.one_of(procedures);
         let config = AxisConfig {
             start: StartState::Standstill,
             scaling: (!is_plant).then(|| Scaling::new(SCALE as u32, 1, false, 0.0).expect("a scaling")),
@@ -368,9 +368,7 @@ impl Rig {
 }
 
 fn node(random: &mut Random) -> Kind {
-    let reaction = |random: &mut Random| {
-        [Reaction::Coast, Reaction::Ramp, Reaction::RampAndStay][random.below(3) as usize]
-    };
+    let reactions = [Reaction::Coast, Reaction::Ramp, Reaction::RampAndStay];
     let thousandths = 1000.0 / 5.0;
     let rate = 1.0 / CYCLE;
     let drive = Cia402Drive::simulated_node(Settings {
@@ -379,9 +377,9 @@ fn node(random: &mut Random) -> Kind {
         start_up: random.below(5) as u32,
         power_on: Some(random.below(5) as u32),
         deceleration: 1.0 + random.below(100) as f64,
-        quick_stop: reaction(random),
-        leaving: reaction(random),
-        fault: reaction(random),
+        quick_stop: random.one_of(&reactions),
+        leaving: random.one_of(&reactions),
+        fault: random.one_of(&reactions),
         ends: Some(((-20.0 * SCALE) as i64, (20.0 * SCALE) as i64)),
         home: Some(((3.0 * SCALE) as i64, (30.0 * SCALE) as i64)),
         homing: Some(NodeHoming {
