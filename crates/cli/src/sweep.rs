@@ -2,6 +2,7 @@
 
 use crate::apart;
 use crate::args::SweepArguments;
+use crate::cores;
 use crate::exit::{Exit, Failure, complain};
 use crate::limit;
 use crate::progress::Progress;
@@ -12,7 +13,6 @@ use standstill_trace::file::replace;
 use std::fmt;
 use std::io::Write;
 use std::path::PathBuf;
-use std::thread;
 use std::time::{Duration, Instant};
 
 /// Runs the sweep, or merges its shards, and prints how many cases passed.
@@ -48,10 +48,10 @@ pub fn sweep(arguments: &SweepArguments, out: &mut dyn Write) -> Result<Exit, Fa
 fn computed(job: &Job, arguments: &SweepArguments) -> Result<(Rows, Option<Part>), Failure> {
     let all: Vec<u64> = arguments.shard.cases(job.count()).collect();
     let mut rows = Rows::new();
-    let mut part = match arguments.output.as_deref() {
-        Some(path) => Some(Part::open(job, arguments.shard, path)?),
-        None => None,
-    };
+    let output = arguments.output.as_deref();
+    let mut part = output
+        .map(|path| Part::open(job, arguments.shard, path))
+        .transpose()?;
     if let Some(part) = &mut part {
         rows = std::mem::take(&mut part.rows);
     }
@@ -62,13 +62,9 @@ fn computed(job: &Job, arguments: &SweepArguments) -> Result<(Rows, Option<Part>
             all.len()
         ));
     }
-    let open: Vec<u64> = all
-        .iter()
-        .copied()
-        .filter(|case| !rows.contains_key(case))
-        .collect();
-    let processors = || thread::available_parallelism().map_or(1, usize::from);
-    let threads = arguments.threads.map_or_else(processors, usize::from);
+    let mut open = all.clone();
+    open.retain(|case| !rows.contains_key(case));
+    let threads = arguments.threads.map_or_else(cores::processors, usize::from);
     let (begin, mut progress, mut axis_scans) = (Instant::now(), Progress::new(true), 0_u64);
     run(job, &open, threads, |row: Row| {
         axis_scans += row.axis_scans;

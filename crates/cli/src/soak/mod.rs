@@ -12,17 +12,14 @@ mod tally;
 pub use blocks::blocks;
 pub use planner::planner;
 
+use crate::cores;
 use crate::exit::Failure;
 use crate::limit;
 use crate::progress::Progress;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use state::State;
-use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc;
-use std::thread;
 use std::time::{Duration, Instant};
 
 /// Time between two writings of the state.
@@ -81,16 +78,15 @@ fn soak<T: Trial>(seed: u64, count: u64, resume: Option<&Path>) -> Result<T, Fai
 fn run<T: Trial>(state: &mut State<T>, chains: u64, file: Option<&Path>) -> Result<(), Failure> {
     let (seed, first) = (state.seed, state.chains);
     let mut progress = Progress::new(true);
-    let mut early = BTreeMap::new();
     let mut saved = Instant::now();
     let doing = |done: u64| limit::doing(format!("{done} of {} {}", chains * T::LINKS, T::CASES));
     doing(first * T::LINKS);
-    let mut take = |begin: u64, tally: T| {
-        early.insert(begin, tally);
-        while let Some(tally) = early.remove(&state.chains) {
-            state.chains = batch_end::<T>(state.chains, chains);
-            state.tally.add(tally);
-        }
+    let batches = (chains - first).div_ceil(T::BATCH);
+    let batch = |index: usize| batch::<T>(seed, first + index as u64 * T::BATCH, chains);
+    let take = |_, tally: Option<T>| {
+        let Some(tally) = tally else { return Ok(()) };
+        state.chains = batch_end::<T>(state.chains, chains);
+        state.tally.add(tally);
         let (done, failed) = (state.chains * T::LINKS, state.tally.failed());
         doing(done);
         progress.show(|| format!("{done} of {} {}, {failed} failed", chains * T::LINKS, T::CASES));
@@ -102,36 +98,8 @@ fn run<T: Trial>(state: &mut State<T>, chains: u64, file: Option<&Path>) -> Resu
         }
         Ok(())
     };
-    let workers = thread::available_parallelism().map_or(1, |count| count.get());
-    // Some systems have no threads.
-    if workers == 1 {
-        let mut begin = first;
-        while begin < chains {
-            take(begin, batch(seed, begin, chains))?;
-            begin = batch_end::<T>(begin, chains);
-        }
-        return Ok(());
-    }
-    let next = AtomicU64::new(first);
-    let (send, receive) = mpsc::channel();
-    thread::scope(|scope| {
-        for _ in 0..workers {
-            let (send, next) = (send.clone(), &next);
-            scope.spawn(move || {
-                loop {
-                    let begin = next.fetch_add(T::BATCH, Ordering::Relaxed);
-                    // After an error there is no receiver any more.
-                    if begin >= chains || send.send((begin, batch(seed, begin, chains))).is_err() {
-                        return;
-                    }
-                }
-            });
-        }
-        drop(send);
-        receive
-            .into_iter()
-            .try_for_each(|(begin, tally)| take(begin, tally))
-    })
+    let batches = usize::try_from(batches).unwrap_or(usize::MAX);
+    cores::in_order(batches, cores::processors(), batch, take)
 }
 
 /// The end of the batch that begins with this chain.
