@@ -30,79 +30,77 @@ pub fn refused(command: &str, exit: Exit, text: &str) -> String {
 
 /// The difference of two traces with these names.
 pub fn explained(exit: Exit, (expected, found): (&str, &str), story: Option<&Story>) -> String {
-    let mut object = begun("explain", exit);
-    object = object.with("expected", string(expected));
-    object = object.with("found", string(found));
-    if let Some(story) = story {
-        object = object.with("story", told_story(story));
-    }
-    object.text()
+    begun("explain", exit)
+        .with("expected", string(expected))
+        .with("found", string(found))
+        .with_some("story", story.map(told_story))
+        .text()
 }
 
 fn told_story(story: &Story) -> String {
     let difference = &story.difference;
     let (expected, found) = difference.scans;
-    let names = |names: &[String]| list(names.iter().map(|name| string(name)));
     let rows = Object::new()
         .with("expected", expected.to_string())
         .with("found", found.to_string());
-    let mut object = Object::new()
-        .with("rows", rows.text())
-        .with("only_expected", names(&difference.only_expected))
-        .with("only_found", names(&difference.only_actual));
-    if let Some(first) = &difference.first {
-        let part = Object::new()
+    let first = difference.first.as_ref().map(|first| {
+        Object::new()
             .with("scan", first.scan.to_string())
-            .with("signals", list(first.signals.iter().map(signal)));
-        object = object.with("first", part.text());
-    }
-    if let Some(extent) = &story.extent {
-        let part = Object::new()
+            .with("signals", list(first.signals.iter().map(signal)))
+            .text()
+    });
+    let extent = story.extent.as_ref().map(|extent| {
+        Object::new()
             .with("scans", extent.scans.to_string())
             .with("of", extent.of.to_string())
-            .with("last", extent.last.to_string());
-        object = object.with("extent", part.text());
-    }
-    if let Some(line) = &story.line {
-        let part = Object::new()
+            .with("last", extent.last.to_string())
+            .text()
+    });
+    let line = story.line.as_ref().map(|line| {
+        Object::new()
             .with("scan", line.scan.to_string())
             .with("signal", string(&line.signal))
             .with("expected", string(&line.expected))
             .with("found", string(&line.found))
             .with("stayed", line.stayed.to_string())
-            .with("places", names(&line.places));
-        object = object.with("line", part.text());
-    }
+            .with("places", strings(&line.places))
+            .text()
+    });
     let causes = story.causes.iter().map(|cause| string(&cause.to_string()));
-    object
+    Object::new()
+        .with("rows", rows.text())
+        .with("only_expected", strings(&difference.only_expected))
+        .with("only_found", strings(&difference.only_actual))
+        .with_some("first", first)
+        .with_some("extent", extent)
+        .with_some("line", line)
         .with("causes", list(causes))
         .with("text", string(story.to_string().trim_end()))
         .text()
 }
 
+fn strings(texts: &[String]) -> String {
+    list(texts.iter().map(|text| string(text)))
+}
+
 fn signal(signal: &SignalDifference) -> String {
-    let mut object = Object::new()
+    Object::new()
         .with("signal", string(&signal.name))
         .with("expected", string(&signal.expected))
-        .with("found", string(&signal.actual));
-    if let Some(ulps) = signal.ulps {
-        object = object.with("ulps", ulps.to_string());
-    }
-    object.text()
+        .with("found", string(&signal.actual))
+        .with_some("ulps", signal.ulps.map(|ulps| ulps.to_string()))
+        .text()
 }
 
 /// The whole outcome as one object.
 pub fn whole(command: &str, exit: Exit, counts: &[(&str, usize)], scripts: &[Object]) -> String {
-    let mut object = begun(command, exit);
-    if !counts.is_empty() {
-        let mut all = Object::new();
-        for (what, count) in counts {
-            all = all.with(what, count.to_string());
-        }
-        object = object.with("counts", all.text());
-    }
-    object = object.with("scripts", list(scripts.iter().cloned().map(Object::text)));
-    object.text()
+    let all = counts.iter().fold(Object::new(), |all, (what, count)| {
+        all.with(what, count.to_string())
+    });
+    begun(command, exit)
+        .with_some("counts", (!counts.is_empty()).then(|| all.text()))
+        .with("scripts", list(scripts.iter().cloned().map(Object::text)))
+        .text()
 }
 
 /// A script that was run.
@@ -119,13 +117,6 @@ pub fn judged(name: &str, word: &str, report: &Report) -> Object {
         _ => "failed",
     };
     let digest = digest::whole(&report.outcome.trace);
-    let mut object = ran(
-        name,
-        verdict,
-        (&report.outcome, digest),
-        &report.why,
-        &report.warnings,
-    );
     let (golden, text) = match &report.golden {
         Standing::Same => ("same", None),
         Standing::Close(how) => ("close", how.as_ref().map(ToString::to_string)),
@@ -134,20 +125,16 @@ pub fn judged(name: &str, word: &str, report: &Report) -> Object {
         Standing::Accepted => ("accepted", None),
         Standing::Failed(what) => ("failed", Some(what.clone())),
     };
-    let mut standing = Object::new();
-    standing = standing.with("verdict", string(golden));
-    if let Some(text) = text {
-        standing = standing.with("text", string(text.trim_end()));
-    }
-    object = object.with("golden", standing.text());
-    object
+    let golden = Object::new()
+        .with("verdict", string(golden))
+        .with_some("text", text.map(|text| string(text.trim_end())));
+    let outcome = (&report.outcome, digest);
+    ran(name, verdict, outcome, &report.why, &report.warnings).with("golden", golden.text())
 }
 
 /// A script that could not be judged, and the reason.
 pub fn broken(name: &str, text: &str) -> Object {
-    let mut object = named(name, "broken");
-    object = object.with("error", string(text.trim_end()));
-    object
+    named(name, "broken").with("error", string(text.trim_end()))
 }
 
 /// A golden whose script no longer exists.
@@ -157,10 +144,9 @@ pub fn orphaned(name: &str) -> Object {
 
 /// The common begin of every script.
 pub fn named(name: &str, verdict: &str) -> Object {
-    let mut object = Object::new();
-    object = object.with("script", string(name));
-    object = object.with("verdict", string(verdict));
-    object
+    Object::new()
+        .with("script", string(name))
+        .with("verdict", string(verdict))
 }
 
 fn ran(
@@ -170,63 +156,56 @@ fn ran(
     why: &[Reason],
     warnings: &Warnings,
 ) -> Object {
-    let mut object = named(name, verdict);
-    object = object.with("title", string(&outcome.trace.header().title));
-    object = object.with("scans", outcome.trace.scans().to_string());
-    object = object.with("digest", string(&format!("{digest:016x}")));
-    object = object.with("claims", list(outcome.verdicts.iter().map(claim)));
-    object = object.with("why", list(why.iter().map(reason)));
-    object = object.with("warnings", list(told(warnings)));
-    object
+    named(name, verdict)
+        .with("title", string(&outcome.trace.header().title))
+        .with("scans", outcome.trace.scans().to_string())
+        .with("digest", string(&format!("{digest:016x}")))
+        .with("claims", list(outcome.verdicts.iter().map(claim)))
+        .with("why", list(why.iter().map(reason)))
+        .with("warnings", list(told(warnings)))
 }
 
 fn claim(verdict: &Verdict) -> String {
-    let mut object = Object::new();
-    object = object.with("path", string(&verdict.path));
-    object = object.with("text", string(&verdict.says));
-    object = object.with("passed", verdict.passed().to_string());
-    if let Some(scans) = verdict.scans {
-        object = object.with("scans", list(scans.map(|scan| scan.to_string())));
-    }
-    if let Some(held) = verdict.held {
-        object = object.with("held", held.to_string());
-    }
-    if !verdict.passed() {
-        object = object.with("failures", list(verdict.failures.iter().map(failure)));
-    }
-    object.text()
+    let scans = verdict
+        .scans
+        .map(|scans| list(scans.map(|scan| scan.to_string())));
+    let failures = (!verdict.passed()).then(|| list(verdict.failures.iter().map(failure)));
+    Object::new()
+        .with("path", string(&verdict.path))
+        .with("text", string(&verdict.says))
+        .with("passed", verdict.passed().to_string())
+        .with_some("scans", scans)
+        .with_some("held", verdict.held.map(|held| held.to_string()))
+        .with_some("failures", failures)
+        .text()
 }
 
 fn failure(failure: &Failure) -> String {
-    let mut object = Object::new();
-    object = object.with("path", string(&failure.path));
-    if let Some(scan) = failure.scan {
-        object = object.with("scan", scan.to_string());
-    }
-    object = object.with("text", string(&failure.text));
-    object.text()
+    Object::new()
+        .with("path", string(&failure.path))
+        .with_some("scan", failure.scan.map(|scan| scan.to_string()))
+        .with("text", string(&failure.text))
+        .text()
 }
 
 fn reason(reason: &Reason) -> String {
-    let mut object = Object::new();
-    if let Some(scan) = reason.scan {
-        object = object.with("scan", scan.to_string());
-    }
-    object = object.with("text", string(&reason.text));
-    object = object.with("claims", list(reason.claims.iter().map(|path| string(path))));
-    object.text()
+    Object::new()
+        .with_some("scan", reason.scan.map(|scan| scan.to_string()))
+        .with("text", string(&reason.text))
+        .with("claims", strings(&reason.claims))
+        .text()
 }
 
 fn told(warnings: &Warnings) -> impl Iterator<Item = String> + '_ {
     warnings.all.iter().map(|warning| {
         let (file, line, column) = warnings.place(warning);
-        let mut object = Object::new();
-        object = object.with("kind", string(warning.kind.name()));
-        object = object.with("path", string(&warning.path));
-        object = object.with("file", string(file));
-        object = object.with("line", line.to_string());
-        object = object.with("column", column.to_string());
-        object = object.with("text", string(&warning.message));
-        object.text()
+        Object::new()
+            .with("kind", string(warning.kind.name()))
+            .with("path", string(&warning.path))
+            .with("file", string(file))
+            .with("line", line.to_string())
+            .with("column", column.to_string())
+            .with("text", string(&warning.message))
+            .text()
     })
 }
