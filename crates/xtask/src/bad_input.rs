@@ -1,6 +1,6 @@
 //! `docs/bad-input.md`, from the tables that `blocks/tests/bad_input` tests the blocks with.
 
-use crate::{Generated, NOTICE, root};
+use crate::{Generated, NOTICE, read};
 use standstill_axis::ErrorId;
 use std::fmt::Write;
 
@@ -43,9 +43,8 @@ pub fn page() -> Generated {
 
 /// The rows of a table, split into words.
 fn table(name: &str) -> Vec<Vec<String>> {
-    let path = root().join(format!("blocks/tests/bad_input/{name}.txt"));
-    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    text.lines()
+    read(&format!("blocks/tests/bad_input/{name}.txt"))
+        .lines()
         .filter(|line| !line.starts_with('#'))
         .map(|line| line.split_whitespace().map(Into::into).collect())
         .collect()

@@ -1,7 +1,7 @@
 //! The book as a folder of pages: mdBook's output of `docs`, with the files outside of it that its pages
 //! link to, and without dead links.
 
-use crate::root;
+use crate::{files_below, root};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
@@ -11,7 +11,7 @@ use std::path::{Component, Path, PathBuf};
 /// # Errors
 /// A file that cannot be read or written.
 pub fn complete(built: &Path) -> std::io::Result<Vec<String>> {
-    for page in files(&built.join("docs"))? {
+    for page in files_below(&built.join("docs"))? {
         // GitHub shows the README of a folder, mdBook names it index; links are written for the former.
         if page.ends_with("index.html") {
             let readme = page.with_file_name("README.md");
@@ -21,7 +21,7 @@ pub fn complete(built: &Path) -> std::io::Result<Vec<String>> {
             }
         }
     }
-    let pages: Vec<_> = files(&built.join("docs"))?
+    let pages: Vec<_> = files_below(&built.join("docs"))?
         .into_iter()
         .filter(|path| path.extension().is_some_and(|found| found == "html"))
         // Its links are absolute, because it is shown for any address.
@@ -89,18 +89,4 @@ fn plain(path: &Path) -> PathBuf {
         }
     }
     plain
-}
-
-/// Every file below a folder, sorted.
-pub(crate) fn files(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    for entry in fs::read_dir(folder)? {
-        let path = entry?.path();
-        match path.is_dir() {
-            true => files.extend(self::files(&path)?),
-            false => files.push(path),
-        }
-    }
-    files.sort();
-    Ok(files)
 }

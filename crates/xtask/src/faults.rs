@@ -5,12 +5,11 @@
 
 mod golden;
 
-use crate::{Generated, NOTICE, root};
+use crate::{Generated, NOTICE, read};
 use golden::{Event, Golden, goldens};
 use standstill_axis::ErrorId;
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::fs;
 
 /// The errors of one hundred, with its title and introduction.
 #[derive(Debug)]
@@ -72,9 +71,7 @@ impl Faults {
     }
 
     fn read_classes() -> Vec<Class> {
-        let path = root().join("crates/xtask/faults.txt");
-        let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        classes(&text)
+        classes(&read("crates/xtask/faults.txt"))
     }
 
     fn section(&self, number: u16) -> Option<&Section> {

@@ -1,10 +1,9 @@
 //! The picture of the README: the tutorial's test, failing.
 
-use crate::{Generated, root};
+use crate::Generated;
 use standstill_picture::{Theme, failing, themed};
 use standstill_script::{read, run};
 use standstill_trace::Trace;
-use std::fs;
 
 /// The test.
 const SCRIPT: &str = "scan-tests/tutorial/abort.scan.json";
@@ -21,8 +20,7 @@ const CHANGE: [&str; 2] = [
 /// The picture for light and for dark pages. A page chooses one, because a picture itself knows only the
 /// reader's system.
 pub fn pictures() -> [Generated; 2] {
-    let path = root().join(SCRIPT);
-    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{SCRIPT}: {error}"));
+    let text = crate::read(SCRIPT);
     let [before, after] = CHANGE;
     let changed = text.replacen(before, after, 1);
     assert_ne!(text, changed, "{SCRIPT} has no `{before}`");

@@ -1,11 +1,10 @@
 //! The tables of keys of axes and drives in the page on scan scripts, from the tables that the reader and
 //! the schema use.
 
-use crate::{Generated, root};
+use crate::{Generated, read};
 use standstill_axis::keys::{AXIS, Holds, Object};
 use standstill_drives::keys::{CIA402, IDEAL, PLANT};
 use std::fmt::Write;
-use std::fs;
 
 /// The page; everything else in it is written by hand.
 const PAGE: &str = "docs/scan-scripts.md";
@@ -21,8 +20,7 @@ const OTHERS: [(&str, &str, &str); 2] = [
 /// # Panics
 /// If the page does not exist, or has no place for a table.
 pub fn page() -> Generated {
-    let path = root().join(PAGE);
-    let mut text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{PAGE}: {error}"));
+    let mut text = read(PAGE);
     let others = OTHERS.map(|(name, doc, absent)| row(name, doc, Some(absent)));
     let travel: Vec<_> = IDEAL.keys.iter().map(|key| key.path).collect();
     for (name, rows) in [

@@ -23,8 +23,8 @@ pub use compliance::Compliance;
 pub use faults::Faults;
 pub use packages::Package;
 pub use requirements::Requirements;
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 /// A generated file: its path below the repository root and its text.
 #[derive(Debug)]
@@ -59,13 +59,23 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
+/// A file of the repository.
+fn read(path: &str) -> String {
+    fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
 /// Every file of the repository that people read or write, without build products, sorted.
 pub fn files() -> Vec<PathBuf> {
+    files_below(&root()).expect("folders of the repository")
+}
+
+/// Those below a folder.
+fn files_below(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
-    let mut folders = vec![root()];
+    let mut folders = vec![folder.to_owned()];
     while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(folder).expect("a folder of the repository") {
-            let path = entry.expect("an entry of it").path();
+        for entry in fs::read_dir(folder)? {
+            let path = entry?.path();
             let name = path.file_name().unwrap_or_default();
             if !path.is_dir() {
                 files.push(path);
@@ -75,7 +85,14 @@ pub fn files() -> Vec<PathBuf> {
         }
     }
     files.sort();
-    files
+    Ok(files)
+}
+
+/// The path of a file below the root, with `/`.
+fn slashed(path: &Path) -> String {
+    let path = path.strip_prefix(root()).unwrap_or(path);
+    let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
+    parts.join("/")
 }
 
 /// The first line of every generated page.

@@ -1,6 +1,6 @@
 //! The descriptions of the published packages: a README each, and the fields that a registry requires.
 
-use crate::{Generated, NOTICE, root};
+use crate::{Generated, NOTICE, read, root};
 use std::fs;
 
 /// A member of the workspace.
@@ -94,10 +94,6 @@ impl Package {
 /// The README of every published package.
 pub fn readmes() -> Vec<Generated> {
     Package::published().iter().map(Package::readme).collect()
-}
-
-fn read(path: &str) -> String {
-    fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
 fn between<'a>(text: &'a str, before: &str, after: &str) -> Option<&'a str> {

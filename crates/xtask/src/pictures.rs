@@ -1,6 +1,6 @@
 //! Timing pictures of scan scripts, as `crates/xtask/pictures.txt` lists them.
 
-use crate::{Generated, root};
+use crate::{Generated, read, root};
 use standstill_blocks::REGISTRY;
 use standstill_picture::{report, svg};
 use standstill_script::{read_with_programs, run};
@@ -61,9 +61,8 @@ impl Picture {
 
 /// Every picture by its name; each script is run. Panics, naming the line, if a script does not run.
 pub fn pictures() -> BTreeMap<String, Picture> {
-    let list = root().join("crates/xtask/pictures.txt");
-    let list = fs::read_to_string(&list).unwrap_or_else(|error| panic!("{}: {error}", list.display()));
-    list.lines()
+    read("crates/xtask/pictures.txt")
+        .lines()
         .filter(|line| !line.starts_with('#'))
         .filter_map(|line| line.split_once(' '))
         .map(|(name, rest)| {
@@ -75,7 +74,7 @@ pub fn pictures() -> BTreeMap<String, Picture> {
 
 fn picture(name: &str, script: &str, signals: &str) -> Picture {
     let path = format!("scan-tests/{script}.scan.json");
-    let text = fs::read_to_string(root().join(&path)).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let text = read(&path);
     let folder = root().join(&path);
     let mut machine = |_: &str| Err("a picture is of a script without machine files".to_owned());
     let mut program = |inner: &str| {

@@ -3,11 +3,9 @@
 //! The rules are in `crates/xtask/requirements/*.txt`, one on each line behind its id, and so are the gaps, each
 //! with its reason. A scan script claims ids with `covers`, a Rust test with a comment `Covers: R21, S3` above it.
 
-use crate::{Generated, NOTICE, root};
+use crate::{Generated, NOTICE, files_below, read, root, slashed};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
-use std::fs;
-use std::path::{Path, PathBuf};
 
 /// File names below `crates/xtask/requirements` and `docs/requirements`, without extension.
 const AREAS: [&str; 9] = [
@@ -242,8 +240,7 @@ fn links(tests: &BTreeSet<Test>) -> String {
 }
 
 fn data(name: &str) -> String {
-    let path = root().join(format!("crates/xtask/requirements/{name}.txt"));
-    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    read(&format!("crates/xtask/requirements/{name}.txt"))
 }
 
 /// A file of rules: `# title`, then `id rule` a line.
@@ -274,19 +271,14 @@ type Claims = BTreeMap<String, BTreeSet<Test>>;
 
 fn claims_of_scripts(claims: &mut Claims) {
     for path in below("scan-tests", "json") {
-        let text = fs::read_to_string(root().join(&path)).unwrap_or_default();
-        let Ok(script) = serde_json::from_str::<serde_json::Value>(&text) else {
+        let Ok(script) = serde_json::from_str::<serde_json::Value>(&read(&path)) else {
             continue;
         };
         let name = path
             .trim_start_matches("scan-tests/")
             .trim_end_matches(".scan.json");
-        for id in script["covers"]
-            .as_array()
-            .into_iter()
-            .flatten()
-            .filter_map(|id| id.as_str())
-        {
+        let ids = script["covers"].as_array().into_iter().flatten();
+        for id in ids.filter_map(|id| id.as_str()) {
             claims.entry(id.into()).or_default().insert(Test {
                 path: path.clone(),
                 name: name.into(),
@@ -300,7 +292,7 @@ fn claims_of_rust(claims: &mut Claims) {
         .into_iter()
         .flat_map(|folder| below(folder, "rs"))
     {
-        let text = fs::read_to_string(root().join(&path)).unwrap_or_default();
+        let text = read(&path);
         let lines: Vec<&str> = text.lines().collect();
         for (place, line) in lines.iter().enumerate() {
             let comment = line.trim_start().trim_start_matches('/');
@@ -326,28 +318,11 @@ fn claims_of_rust(claims: &mut Claims) {
 
 /// Files of one extension below a folder of the repository, relative to its root, sorted.
 fn below(folder: &str, extension: &str) -> Vec<String> {
-    let mut folders = vec![PathBuf::from(folder)];
-    let mut files = Vec::new();
-    while let Some(folder) = folders.pop() {
-        let entries = fs::read_dir(root().join(&folder)).into_iter().flatten().flatten();
-        for entry in entries {
-            let path = folder.join(entry.file_name());
-            if entry.path().is_dir() {
-                if path.file_name() != Some("target".as_ref()) {
-                    folders.push(path);
-                }
-            } else if path.extension() == Some(extension.as_ref()) {
-                files.push(slashed(&path));
-            }
-        }
-    }
-    files.sort();
-    files
-}
-
-fn slashed(path: &Path) -> String {
-    let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
-    parts.join("/")
+    let files = files_below(&root().join(folder)).expect("a folder of the repository");
+    let wanted = files
+        .iter()
+        .filter(|path| path.extension() == Some(extension.as_ref()));
+    wanted.map(|path| slashed(path)).collect()
 }
 
 #[cfg(test)]

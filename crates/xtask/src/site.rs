@@ -1,5 +1,6 @@
 //! The book and the playground side by side: pages of the book open their script in the playground.
 
+use crate::files_below;
 use std::fs;
 use std::path::Path;
 
@@ -16,7 +17,7 @@ const FOLDERS: [&str; 2] = ["gallery", "tutorial"];
 pub fn link(site: &Path) -> std::io::Result<usize> {
     let docs = site.join("docs");
     let mut links = 0;
-    for page in crate::book::files(&docs)? {
+    for page in files_below(&docs)? {
         if page.extension().is_none_or(|found| found != "html") {
             continue;
         }
@@ -109,7 +110,7 @@ pub fn problems(site: &Path) -> std::io::Result<Vec<String>> {
             scripts.into_iter().flatten().any(|script| script["name"] == name)
         })
     };
-    for page in crate::book::files(&site.join("docs"))? {
+    for page in files_below(&site.join("docs"))? {
         if page.extension().is_none_or(|found| found != "html") {
             continue;
         }

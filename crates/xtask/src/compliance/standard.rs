@@ -1,8 +1,7 @@
 //! The standard's catalogue, from the text files in `crates/xtask/standard`.
 
-use crate::root;
+use crate::read;
 use standstill_fb::Direction;
-use std::fs;
 
 /// A pin of the standard.
 #[derive(Clone, Debug)]
@@ -101,9 +100,8 @@ impl Standard {
 
 /// The lines of a file, without comments and empty ones.
 fn lines(name: &str) -> Vec<String> {
-    let path = root().join(format!("crates/xtask/standard/{name}.txt"));
-    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    text.lines()
+    read(&format!("crates/xtask/standard/{name}.txt"))
+        .lines()
         .filter(|line| !line.is_empty() && !line.starts_with('#'))
         .map(Into::into)
         .collect()

@@ -1,9 +1,7 @@
 //! Goldens, as far as the fault guide needs them.
 
-use crate::root;
+use crate::{files_below, read, root, slashed};
 use std::collections::BTreeMap;
-use std::fs;
-use std::path::Path;
 
 /// A line of a golden's events.
 #[derive(Debug)]
@@ -38,26 +36,14 @@ pub struct Golden {
 /// Every golden by its script, relative to `scan-tests/` and without extension.
 pub fn goldens() -> BTreeMap<String, Golden> {
     let mut found = BTreeMap::new();
-    let tests = root().join("scan-tests");
-    let mut folders = vec![tests.clone()];
-    while let Some(folder) = folders.pop() {
-        for entry in entries(&folder) {
-            if entry.is_dir() {
-                folders.push(entry);
-            } else if entry.extension().is_some_and(|extension| extension == "snap") {
-                let text = fs::read_to_string(&entry).unwrap_or_default();
-                let name = entry.strip_prefix(&tests).unwrap_or(&entry).with_extension("");
-                let name = name.to_string_lossy().replace('\\', "/");
-                found.insert(name, golden(&text));
-            }
+    for path in files_below(&root().join("scan-tests")).expect("a folder of the repository") {
+        let path = slashed(&path);
+        let name = path.strip_prefix("scan-tests/");
+        if let Some(name) = name.and_then(|name| name.strip_suffix(".snap")) {
+            found.insert(name.to_owned(), golden(&read(&path)));
         }
     }
     found
-}
-
-fn entries(folder: &Path) -> Vec<std::path::PathBuf> {
-    let entries = fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
-    entries.flatten().map(|entry| entry.path()).collect()
 }
 
 /// Events are below a line `events`, up to an empty line: scan, subject, text.
