@@ -245,198 +245,57 @@ fn the_top_level_holds_what_a_newcomer_expects() {
     }
 }
 
+/// Packages and their permitted dependencies, from bottom to top (docs/architecture.md).
+const LAYERS: &str = "
+planner:
+axis: planner
+fb: axis
+blocks: axis fb
+drives: axis
+scan: axis fb
+standstill: axis blocks fb planner record scan
+record: axis fb trace
+capi: axis blocks drives fb record
+export: blocks fb
+guest: axis blocks fb
+st: blocks fb
+trace:
+picture: trace
+report: picture trace
+script: axis blocks drives fb guest planner record scan st trace
+testkit:
+soak: axis blocks drives fb planner scan testkit
+sweep: script trace
+watch: axis fb script trace
+live: script
+lsp: blocks fb script st
+cli: blocks export fb live lsp picture planner report script soak st sweep trace watch
+playground: cli picture planner report script trace
+python: axis cli picture script trace
+xtask: axis blocks drives fb picture planner script trace
+";
+
 #[test]
 fn layers_depend_only_downwards() {
-    // Packages and their permitted dependencies, from bottom to top (docs/architecture.md).
-    let layers: &[(&str, &str, &[&str])] = &[
-        ("crates/planner", "standstill-planner", &[]),
-        ("crates/axis", "standstill-axis", &["standstill-planner"]),
-        ("crates/fb", "standstill-fb", &["standstill-axis"]),
-        (
-            "blocks",
-            "standstill-blocks",
-            &["standstill-axis", "standstill-fb"],
-        ),
-        ("crates/drives", "standstill-drives", &["standstill-axis"]),
-        (
-            "crates/scan",
-            "standstill-scan",
-            &["standstill-axis", "standstill-fb"],
-        ),
-        (
-            "crates/standstill",
-            "standstill",
-            &[
-                "standstill-axis",
-                "standstill-blocks",
-                "standstill-fb",
-                "standstill-planner",
-                "standstill-record",
-                "standstill-scan",
-            ],
-        ),
-        (
-            "crates/record",
-            "standstill-record",
-            &["standstill-axis", "standstill-fb", "standstill-trace"],
-        ),
-        (
-            "crates/capi",
-            "standstill-capi",
-            &[
-                "standstill-axis",
-                "standstill-blocks",
-                "standstill-drives",
-                "standstill-fb",
-                "standstill-record",
-            ],
-        ),
-        (
-            "crates/export",
-            "standstill-export",
-            &["standstill-blocks", "standstill-fb"],
-        ),
-        (
-            "crates/guest",
-            "standstill-guest",
-            &["standstill-axis", "standstill-blocks", "standstill-fb"],
-        ),
-        (
-            "crates/st",
-            "standstill-st",
-            &["standstill-blocks", "standstill-fb"],
-        ),
-        ("crates/trace", "standstill-trace", &[]),
-        ("crates/picture", "standstill-picture", &["standstill-trace"]),
-        (
-            "crates/report",
-            "standstill-report",
-            &["standstill-picture", "standstill-trace"],
-        ),
-        (
-            "crates/script",
-            "standstill-script",
-            &[
-                "standstill-axis",
-                "standstill-blocks",
-                "standstill-drives",
-                "standstill-fb",
-                "standstill-guest",
-                "standstill-planner",
-                "standstill-record",
-                "standstill-scan",
-                "standstill-st",
-                "standstill-trace",
-            ],
-        ),
-        ("crates/testkit", "standstill-testkit", &[]),
-        (
-            "crates/soak",
-            "standstill-soak",
-            &[
-                "standstill-axis",
-                "standstill-blocks",
-                "standstill-drives",
-                "standstill-fb",
-                "standstill-planner",
-                "standstill-scan",
-                "standstill-testkit",
-            ],
-        ),
-        (
-            "crates/sweep",
-            "standstill-sweep",
-            &["standstill-script", "standstill-trace"],
-        ),
-        (
-            "crates/watch",
-            "standstill-watch",
-            &[
-                "standstill-axis",
-                "standstill-fb",
-                "standstill-script",
-                "standstill-trace",
-            ],
-        ),
-        ("crates/live", "standstill-live", &["standstill-script"]),
-        (
-            "crates/lsp",
-            "standstill-lsp",
-            &[
-                "standstill-blocks",
-                "standstill-fb",
-                "standstill-script",
-                "standstill-st",
-            ],
-        ),
-        (
-            "crates/cli",
-            "standstill-cli",
-            &[
-                "standstill-blocks",
-                "standstill-export",
-                "standstill-fb",
-                "standstill-live",
-                "standstill-lsp",
-                "standstill-picture",
-                "standstill-planner",
-                "standstill-report",
-                "standstill-script",
-                "standstill-soak",
-                "standstill-st",
-                "standstill-sweep",
-                "standstill-trace",
-                "standstill-watch",
-            ],
-        ),
-        (
-            "crates/playground",
-            "standstill-playground",
-            &[
-                "standstill-cli",
-                "standstill-picture",
-                "standstill-planner",
-                "standstill-report",
-                "standstill-script",
-                "standstill-trace",
-            ],
-        ),
-        (
-            "crates/python",
-            "standstill-python",
-            &[
-                "standstill-axis",
-                "standstill-cli",
-                "standstill-picture",
-                "standstill-script",
-                "standstill-trace",
-            ],
-        ),
-        (
-            "crates/xtask",
-            "standstill-xtask",
-            &[
-                "standstill-axis",
-                "standstill-blocks",
-                "standstill-drives",
-                "standstill-fb",
-                "standstill-picture",
-                "standstill-planner",
-                "standstill-script",
-                "standstill-trace",
-            ],
-        ),
-    ];
-    for &(folder, name, allowed) in layers {
-        let manifest = fs::read_to_string(root().join(folder).join("Cargo.toml")).unwrap();
-        assert!(manifest.contains(&format!("name = \"{name}\"")), "{folder}");
+    for (name, allowed) in LAYERS.lines().filter_map(|line| line.split_once(':')) {
+        let folder = match name {
+            "blocks" => root().join(name),
+            _ => root().join("crates").join(name),
+        };
+        let package = match name {
+            "standstill" => name.to_owned(),
+            _ => format!("standstill-{name}"),
+        };
+        let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+        assert!(manifest.contains(&format!("name = \"{package}\"")), "{name}");
         // Dev-dependencies may look upwards; only shipped code is layered.
         let shipped = manifest.split("[dev-dependencies]").next().unwrap();
         let dependencies = shipped.split("[dependencies]").nth(1).unwrap_or("");
         for line in dependencies.lines().filter(|line| line.starts_with("standstill")) {
             let dependency = line.split(['.', ' ', '=']).next().unwrap();
+            let dependency = dependency.strip_prefix("standstill-").unwrap_or(dependency);
             assert!(
-                allowed.contains(&dependency),
+                allowed.split(' ').any(|layer| layer == dependency),
                 "{name} must not depend on {dependency}"
             );
         }
