@@ -1,6 +1,6 @@
 //! Curves below each other over an axis other than scans: times, or positions of a master.
 
-use super::picture::{CURVE, GAP, GUTTER, MARGIN, Picture, WIDTH};
+use super::picture::{CURVE, GAP, GUTTER, Picture, RIGHT};
 use super::range::{Range, path, ticks};
 use crate::panels::compact;
 
@@ -49,7 +49,7 @@ impl Panels {
 
     pub fn x(&self, place: f64) -> f64 {
         let (way, whole) = (place - self.begin, self.end - self.begin);
-        GUTTER + (WIDTH - MARGIN - GUTTER) * if whole > 0.0 { way / whole } else { 0.0 }
+        GUTTER + (RIGHT - GUTTER) * if whole > 0.0 { way / whole } else { 0.0 }
     }
 
     /// Draws a panel. Draws nothing if 0 must be in its range and no line leaves 0.
@@ -79,22 +79,8 @@ impl Panels {
         let (top, bottom) = (self.picture.y, self.picture.y + CURVE);
         let range = Range::of(least, greatest);
         let height = |value: f64| bottom - CURVE * range.part(value);
-        let right = WIDTH - MARGIN;
-        let grid: String = (self.ticks.iter())
-            .map(|tick| format!("M{:.1} {top:.1}V{bottom:.1}", self.x(*tick)))
-            .collect();
-        self.picture.line("grid", &grid);
-        self.picture
-            .line("frame", &format!("M{GUTTER} {top:.1}V{bottom:.1}H{right:.1}"));
-        if least < 0.0 && greatest > 0.0 {
-            self.picture
-                .line("frame", &format!("M{GUTTER} {:.1}H{right:.1}", height(0.0)));
-        }
-        for limit in limits.iter().filter(|limit| range.has(**limit)) {
-            let y = height(*limit);
-            self.picture
-                .line("limit", &format!("M{GUTTER} {y:.1}H{right:.1}"));
-        }
+        let places: Vec<f64> = self.ticks.iter().map(|tick| self.x(*tick)).collect();
+        self.picture.panel(&places, &range, limits);
         for line in *lines {
             let points = line.points.iter().filter(|[_, value]| value.is_finite());
             let points: Vec<[f64; 2]> = points

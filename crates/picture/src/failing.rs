@@ -5,10 +5,8 @@ use super::picture::{CURVE, GAP, GUTTER, Picture, ROW};
 use super::range::{Range, limits, ticks};
 use super::report::{self, draw_claim};
 use crate::panels::{Curve, Wave, curves};
-use standstill_trace::ClaimVerdict;
-use standstill_trace::Trace;
 use standstill_trace::story::story;
-use standstill_trace::{Cell, Kind};
+use standstill_trace::{ClaimVerdict, Kind, Trace};
 
 /// The curves of an axis that are drawn.
 const SIGNALS: [&str; 2] = ["Position", "Velocity"];
@@ -98,12 +96,8 @@ fn differing(expected: &Trace, found: &Trace) -> Vec<(Wave, Wave)> {
     let columns = found.columns().iter().enumerate();
     let columns = columns.filter(|(_, column)| column.kind == Kind::Bool);
     let both = columns.filter_map(|(at, column)| {
-        let wave = |trace: &Trace, at| Wave {
-            name: column.name.clone(),
-            role: column.role,
-            levels: trace.cells(at).map(|cell| cell == Cell::Bool(true)).collect(),
-        };
-        Some((wave(expected, expected.column(&column.name)?), wave(found, at)))
+        let was = expected.cells(expected.column(&column.name)?);
+        Some((Wave::new(column, was), Wave::new(column, found.cells(at))))
     });
     both.filter(|(was, is)| was.levels != is.levels).collect()
 }
@@ -139,7 +133,7 @@ fn parting(before: &[Curve<'_>], after: &[Curve<'_>], waves: &[(Wave, Wave)]) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use standstill_trace::{Axis, Claim, ClaimFailure, Header, Input};
+    use standstill_trace::{Axis, Cell, Claim, ClaimFailure, Header, Input};
 
     fn trace(turns: usize) -> Trace {
         let mut trace = Trace::new(Header {

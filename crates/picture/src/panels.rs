@@ -1,10 +1,6 @@
 //! The contents of pictures of a trace: curves of axes, waves of Booleans.
 
-use standstill_trace::Axis;
-use standstill_trace::Trace;
-use standstill_trace::axis_title;
-use standstill_trace::fixed;
-use standstill_trace::{Cell, Kind, Role};
+use standstill_trace::{Axis, Cell, Column, Kind, Role, Trace, axis_title, fixed};
 
 /// One signal of one axis over all scans.
 pub struct Curve<'a> {
@@ -70,6 +66,17 @@ pub struct Wave {
     pub levels: Vec<bool>,
 }
 
+impl Wave {
+    /// The Boolean of a column with these cells.
+    pub fn new<'t>(column: &Column, cells: impl Iterator<Item = Cell<'t>>) -> Self {
+        Self {
+            name: column.name.clone(),
+            role: column.role,
+            levels: cells.map(|cell| cell == Cell::Bool(true)).collect(),
+        }
+    }
+}
+
 /// The Booleans that change.
 pub fn waves(trace: &Trace) -> Vec<Wave> {
     let columns = trace
@@ -78,11 +85,7 @@ pub fn waves(trace: &Trace) -> Vec<Wave> {
         .enumerate()
         .filter(|(_, column)| column.kind == Kind::Bool);
     columns
-        .map(|(at, column)| Wave {
-            name: column.name.clone(),
-            role: column.role,
-            levels: trace.cells(at).map(|cell| cell == Cell::Bool(true)).collect(),
-        })
+        .map(|(at, column)| Wave::new(column, trace.cells(at)))
         .filter(|wave| wave.levels.windows(2).any(|pair| pair[0] != pair[1]))
         .collect()
 }

@@ -5,11 +5,7 @@ use std::fmt::Write;
 use super::range::{Range, limits, path};
 use crate::markup::escaped;
 use crate::panels::{Curve, Wave, compact};
-use standstill_trace::Axis;
-use standstill_trace::Trace;
-use standstill_trace::same;
-use standstill_trace::{Cell, Role};
-use standstill_trace::{cell_text, time_literal};
+use standstill_trace::{Axis, Cell, Role, Trace, cell_text, same, time_literal};
 
 /// Width of the picture.
 pub const WIDTH: f64 = 880.0;
@@ -18,7 +14,10 @@ pub const WIDTH: f64 = 880.0;
 pub const GUTTER: f64 = 190.0;
 
 /// Room right of the curves, for half a tick label.
-pub const MARGIN: f64 = 30.0;
+const MARGIN: f64 = 30.0;
+
+/// The right end of the curves.
+pub const RIGHT: f64 = WIDTH - MARGIN;
 
 /// Height of a curve.
 pub const CURVE: f64 = 84.0;
@@ -96,6 +95,14 @@ pub fn themed(picture: &str, theme: Theme) -> String {
     text
 }
 
+/// The class of a line for a variable or a pin.
+pub const fn class_of(role: Role) -> &'static str {
+    match role {
+        Role::Variable | Role::Input => "in",
+        Role::AxisState | Role::AxisValue | Role::InOut | Role::Output => "out",
+    }
+}
+
 /// A cell for a box: numbers as labels have them.
 fn box_text(cell: Cell<'_>) -> String {
     match cell {
@@ -124,7 +131,7 @@ impl Picture {
 
     /// The place of a scan; the number of scans is the right end.
     pub fn x(&self, scan: usize) -> f64 {
-        GUTTER + (WIDTH - MARGIN - GUTTER) * (scan as f64 / self.scans.max(1) as f64)
+        GUTTER + (RIGHT - GUTTER) * (scan as f64 / self.scans.max(1) as f64)
     }
 
     pub fn line(&mut self, class: &str, path: &str) {
@@ -184,15 +191,7 @@ impl Picture {
     pub fn line_of(&mut self, title: &str, values: &[f64], range: &Range, limits: &[f64], ticks: &[usize]) {
         let (top, bottom) = (self.y, self.y + CURVE);
         let height = |value: f64| bottom - CURVE * range.part(value);
-        self.grid(ticks, top, bottom);
-        if range.least < 0.0 && range.greatest > 0.0 {
-            let zero = format!("M{GUTTER} {:.1}H{:.1}", height(0.0), WIDTH - MARGIN);
-            self.line("frame", &zero);
-        }
-        for limit in limits.iter().filter(|limit| range.has(**limit)) {
-            let y = height(*limit);
-            self.line("limit", &format!("M{GUTTER} {y:.1}H{:.1}", WIDTH - MARGIN));
-        }
+        self.panel(&self.places(ticks), range, limits);
         self.trail("curve", values, height);
         self.label("", top + 0.5 * CURVE, title);
         for value in [range.greatest, range.least] {
@@ -206,10 +205,9 @@ impl Picture {
 
     /// A line through values, broken where they are not finite.
     pub fn trail(&mut self, class: &str, values: &[f64], height: impl Fn(f64) -> f64) {
-        let points: Vec<[f64; 2]> = (0..)
-            .map(|scan| self.x(scan))
-            .zip(values.iter().map(|value| height(*value)))
-            .map(|(x, y)| [x, y])
+        let points = values.iter().enumerate();
+        let points: Vec<[f64; 2]> = points
+            .map(|(scan, value)| [self.x(scan), height(*value)])
             .collect();
         for part in points
             .split(|[_, y]| !y.is_finite())
@@ -219,15 +217,31 @@ impl Picture {
         }
     }
 
-    /// Vertical lines at the ticks, and a frame.
-    pub fn grid(&mut self, ticks: &[usize], top: f64, bottom: f64) {
-        let path: String = ticks
-            .iter()
-            .map(|tick| format!("M{:.1} {top:.1}V{bottom:.1}", self.x(*tick)))
-            .collect();
-        self.line("grid", &path);
-        let right = WIDTH - MARGIN;
-        self.line("frame", &format!("M{GUTTER} {top:.1}V{bottom:.1}H{right:.1}"));
+    /// The background of a curve: a grid, a line at 0, and limits near the curve.
+    pub fn panel(&mut self, places: &[f64], range: &Range, limits: &[f64]) {
+        let bottom = self.y + CURVE;
+        let across = |value: f64| {
+            let y = bottom - CURVE * range.part(value);
+            format!("M{GUTTER} {y:.1}H{RIGHT:.1}")
+        };
+        self.grid(places, self.y, bottom);
+        if range.least < 0.0 && range.greatest > 0.0 {
+            self.line("frame", &across(0.0));
+        }
+        for limit in limits.iter().filter(|limit| range.has(**limit)) {
+            self.line("limit", &across(*limit));
+        }
+    }
+
+    fn places(&self, ticks: &[usize]) -> Vec<f64> {
+        ticks.iter().map(|tick| self.x(*tick)).collect()
+    }
+
+    /// Vertical lines at these places, and a frame.
+    fn grid(&mut self, places: &[f64], top: f64, bottom: f64) {
+        let lines = places.iter().map(|x| format!("M{x:.1} {top:.1}V{bottom:.1}"));
+        self.line("grid", &lines.collect::<String>());
+        self.line("frame", &format!("M{GUTTER} {top:.1}V{bottom:.1}H{RIGHT:.1}"));
     }
 
     /// The drawing of `rows`, with a grid below it, which it hides.
@@ -236,17 +250,13 @@ impl Picture {
         rows(self);
         let rows = self.body.split_off(place);
         if !rows.is_empty() {
-            self.grid(ticks, top, self.y + 4.0);
+            self.grid(&self.places(ticks), top, self.y + 4.0);
         }
         self.body.push_str(&rows);
     }
 
     pub fn wave(&mut self, wave: &Wave) {
-        let class = match wave.role {
-            Role::Variable | Role::Input => "in",
-            Role::AxisState | Role::AxisValue | Role::InOut | Role::Output => "out",
-        };
-        self.wave_of(class, wave);
+        self.wave_of(class_of(wave.role), wave);
         self.label("", self.y - 0.2 * ROW - 1.0, &wave.name);
     }
 

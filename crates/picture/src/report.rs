@@ -3,14 +3,10 @@
 
 use std::fmt::Write;
 
-use super::picture::{CURVE, GAP, GUTTER, Picture, ROW, wrapped};
+use super::picture::{CURVE, GAP, GUTTER, Picture, ROW, class_of, wrapped};
 use super::range::{Range, limits, ticks};
 use crate::panels::{Curve, Wave, curves};
-use standstill_trace::Trace;
-use standstill_trace::same;
-use standstill_trace::time_literal;
-use standstill_trace::{Cell, Column, Kind, Role};
-use standstill_trace::{Claim, ClaimVerdict};
+use standstill_trace::{Cell, Claim, ClaimVerdict, Column, Kind, Role, Trace, same, time_literal};
 
 /// The curves of an axis, top to bottom.
 const SIGNALS: [&str; 5] = ["Position", "Velocity", "Acceleration", "Jerk", "Snap"];
@@ -170,11 +166,7 @@ fn pins(picture: &mut Picture, trace: &Trace) {
 
 fn row(picture: &mut Picture, column: &Column, cells: &[Cell<'_>], changes: usize) {
     if column.kind == Kind::Bool {
-        picture.wave(&Wave {
-            name: column.name.clone(),
-            role: column.role,
-            levels: cells.iter().map(|cell| *cell == Cell::Bool(true)).collect(),
-        });
+        picture.wave(&Wave::new(column, cells.iter().copied()));
         return;
     }
     picture.label("", picture.y + 0.8 * ROW - 1.0, &column.name);
@@ -189,15 +181,9 @@ fn row(picture: &mut Picture, column: &Column, cells: &[Cell<'_>], changes: usiz
         picture.boxes(cells.iter().copied(), ROW - 4.0);
         picture.y -= 2.0;
     }
-    let class = match column.role {
-        Role::Variable | Role::Input => "in",
-        Role::AxisState | Role::AxisValue | Role::InOut | Role::Output => "out",
-    };
-    let left = GUTTER - 3.0;
-    picture.line(
-        class,
-        &format!("M{left:.1} {:.1}V{:.1}", picture.y + 3.0, picture.y + ROW - 3.0),
-    );
+    let (left, top, bottom) = (GUTTER - 3.0, picture.y + 3.0, picture.y + ROW - 3.0);
+    let bar = format!("M{left:.1} {top:.1}V{bottom:.1}");
+    picture.line(class_of(column.role), &bar);
     picture.y += ROW;
 }
 

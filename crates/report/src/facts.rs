@@ -36,14 +36,13 @@ pub fn facts(sources: &[Source<'_>]) -> String {
     };
     let header = first.trace.header();
     let mut facts = vec![format!("cycle {}", time_literal(header.cycle_ns))];
-    facts.extend(match sources {
-        [source] => vec![format!(
+    if let [source] = sources {
+        facts.push(format!(
             "{} scans, {}",
             source.trace.scans(),
             length(source.trace)
-        )],
-        _ => Vec::new(),
-    });
+        ));
+    }
     let mut text: String = facts
         .iter()
         .map(|fact| format!("<span>{}</span>", escaped(fact)))
