@@ -1,14 +1,13 @@
 //! Some rows and columns of a trace, read line by line, because a trace may be larger than the memory.
 
 use super::bounded::LONGEST;
-use serde::Deserialize;
 use serde_json::{Map, Value, json};
 use std::fs::File;
 use std::io::{BufRead as _, BufReader};
 use std::path::Path;
 
 /// The requested rows and columns.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug)]
 pub struct Wanted {
     /// The columns, such as `X.Position`.
     pub signals: Vec<String>,
@@ -56,9 +55,8 @@ pub fn rows(trace: &Path, wanted: &Wanted) -> Result<Value, String> {
         }
         rows.push(cells);
     }
-    let columns: Vec<&str> = std::iter::once("scan")
-        .chain(wanted.signals.iter().map(String::as_str))
-        .collect();
+    let mut columns = vec!["scan"];
+    columns.extend(wanted.signals.iter().map(String::as_str));
     Ok(json!({"columns": columns, "rows": rows}))
 }
 

@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 use standstill_script::ErrorId;
 use std::fs;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The answer of a tool.
 #[derive(Debug)]
@@ -171,16 +171,8 @@ async fn check(asked: Check, place: &Place) -> Result<Answer, String> {
         && asked.script.is_none()
         && Path::new(path).extension().is_some_and(|ending| ending == "st")
     {
-        let files = [place.readable(path)?];
-        return told(
-            bounded::run(
-                place,
-                place.root(),
-                &line(&["st", "check", "--json"], &files),
-                &[],
-            )
-            .await?,
-        );
+        let command = line(&["st", "check", "--json"], &[place.readable(path)?]);
+        return told(bounded::run(place, place.root(), &command, &[]).await?).map(Answer::Json);
     }
     if asked.strict {
         command.push("--strict".to_owned());
@@ -188,18 +180,14 @@ async fn check(asked: Check, place: &Place) -> Result<Answer, String> {
     if let Some(word) = asked.word {
         command.extend(["-k".to_owned(), word]);
     }
-    let at = Script::of(
-        asked
-            .path
-            .or_else(|| asked.script.is_none().then(|| ".".to_owned())),
-        asked.script,
-        place,
-    )?;
+    let whole_folder = || asked.script.is_none().then(|| ".".to_owned());
+    let path = asked.path.or_else(whole_folder);
+    let at = Script::of(path, asked.script, place)?;
     if at.is_text() {
         // It has no golden, and may state that it needs none.
         command.extend(arguments(&["--golden", "none"]));
     }
-    told(at.run(place, command).await?)
+    told(at.run(place, command).await?).map(Answer::Json)
 }
 
 #[derive(Deserialize)]
@@ -249,9 +237,7 @@ async fn run(asked: Run, place: &Place) -> Result<Answer, String> {
         command.push(format!("--trace={}", text(&rows)?));
     }
     let at = Script::of(asked.path, asked.script, place)?;
-    let Answer::Json(mut answer) = told(at.run(place, command).await?)? else {
-        return Err("the program did not answer in JSON".to_owned());
-    };
+    let mut answer = told(at.run(place, command).await?)?;
     if !wanted.signals.is_empty() && rows.exists() {
         join(&mut answer, json!({"rows": rows::rows(&rows, &wanted)?}));
     }
@@ -273,24 +259,11 @@ struct Explain {
 async fn explain(asked: Explain, place: &Place) -> Result<Answer, String> {
     let scratch = scratch()?;
     let none = Map::new();
-    let expected = trace(
-        &asked.expected,
-        &none,
-        &scratch.path().join("expected.jsonl"),
-        place,
-    )
-    .await?;
-    let found = trace(
-        &asked.found,
-        &asked.set,
-        &scratch.path().join("found.jsonl"),
-        place,
-    )
-    .await?;
+    let target = |name| scratch.path().join(name);
+    let expected = trace(&asked.expected, &none, &target("expected.jsonl"), place).await?;
+    let found = trace(&asked.found, &asked.set, &target("found.jsonl"), place).await?;
     let command = line(&["explain", "--json"], &[expected, found]);
-    let Answer::Json(mut answer) = told(bounded::run(place, place.root(), &command, &[]).await?)? else {
-        return Err("the program did not answer in JSON".to_owned());
-    };
+    let mut answer = told(bounded::run(place, place.root(), &command, &[]).await?)?;
     // The requested names, because the run used temporary files.
     join(
         &mut answer,
@@ -321,14 +294,13 @@ async fn trace(
         .run(place, command)
         .await?;
     let ran = told(ran)?;
-    match (target.exists(), ran) {
-        (true, _) => text(target),
-        (false, Answer::Json(ran)) => Err(match ran["scripts"][0]["error"].as_str() {
-            Some(error) => error.to_owned(),
-            None => format!("{path}: it has no trace"),
-        }),
-        (false, Answer::Text(said)) => Err(said),
+    if target.exists() {
+        return text(target);
     }
+    Err(match ran["scripts"][0]["error"].as_str() {
+        Some(error) => error.to_owned(),
+        None => format!("{path}: it has no trace"),
+    })
 }
 
 #[derive(Deserialize)]
@@ -368,12 +340,8 @@ fn look_up_blocks(asked: &Blocks) -> Result<Answer, String> {
     let list = printed(|out| blocks::json(&asked.names, out))?;
     let mut list: Value = serde_json::from_str(&list).map_err(|error| error.to_string())?;
     if asked.names.is_empty() {
-        for block in list
-            .as_array_mut()
-            .into_iter()
-            .flatten()
-            .filter_map(Value::as_object_mut)
-        {
+        let all = list.as_array_mut().into_iter().flatten();
+        for block in all.filter_map(Value::as_object_mut) {
             block.retain(|key, _| matches!(key.as_str(), "name" | "group" | "doc"));
         }
     }
@@ -455,7 +423,7 @@ fn scratch() -> Result<tempfile::TempDir, String> {
 
 fn text(path: &Path) -> Result<String, String> {
     let text = path.to_str().map(str::to_owned);
-    text.ok_or_else(|| format!("{}: its name is not UTF-8", PathBuf::from(path).display()))
+    text.ok_or_else(|| format!("{}: its name is not UTF-8", path.display()))
 }
 
 fn arguments(words: &[&str]) -> Vec<String> {
@@ -495,11 +463,11 @@ fn judged(said: &Said) -> Result<(), String> {
 
 /// The output of a command with `--json`. It is an error if the command could not run at all; failures of single
 /// scripts are in the answer.
-fn told(said: Said) -> Result<Answer, String> {
+fn told(said: Said) -> Result<Value, String> {
     match serde_json::from_str::<Value>(&said.out) {
         Ok(value) => match value["error"].as_str() {
             Some(error) => Err(error.to_owned()),
-            None => Ok(Answer::Json(value)),
+            None => Ok(value),
         },
         Err(error) => {
             judged(&said)?;
