@@ -3,7 +3,7 @@
 use crate::exit::Failure;
 use standstill_script::suite::shown;
 use standstill_trace::csv::meta_path;
-use standstill_trace::file::{folder_of, is_csv, is_special};
+use standstill_trace::file::{can_save, folder_of, is_csv, is_special};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -24,12 +24,18 @@ pub fn written(option: &str, path: Option<&Path>) -> Vec<Written> {
     .collect()
 }
 
-/// The files of a trace: a table has its header beside it.
-pub fn trace(path: Option<&Path>) -> Vec<Written> {
+/// The files of a trace: a table has its header beside it. Refuses a file in which no trace can be written.
+pub fn trace(path: Option<&Path>) -> Result<Vec<Written>, Failure> {
+    if let Some(path) = path.filter(|path| !can_save(path)) {
+        let name = shown(path);
+        return Err(Failure::usage(&format!(
+            "--trace {name}: a trace is a .csv or a .jsonl file"
+        )));
+    }
     let header = path.filter(|path| is_csv(path)).map(meta_path);
     let mut all = written("--trace", path);
     all.extend(written("the header of --trace", header.as_deref()));
-    all
+    Ok(all)
 }
 
 /// Refuses two files in one place, by any paths, and a file in the place of one that is read. Call it before

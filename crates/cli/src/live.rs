@@ -29,7 +29,7 @@ mod linux {
     use standstill_script::{RunError, Session};
     use standstill_trace::csv::Dialect;
     use standstill_trace::digest;
-    use standstill_trace::file::{self, Draft, Saving};
+    use standstill_trace::file::{Draft, Saving};
 
     /// Runs the script in real time. Events and times go to files; the last line is that of `run`.
     pub fn live(arguments: &LiveArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
@@ -40,16 +40,8 @@ mod linux {
             outside,
             ..
         } = arguments;
-        if let Some(trace) = &arguments.trace
-            && !file::can_save(trace)
-        {
-            let name = shown(trace);
-            return Err(Failure::usage(&format!(
-                "--trace {name}: a trace is a .csv or a .jsonl file"
-            )));
-        }
         let timing = apart::written("--timing", arguments.timing.as_deref());
-        let writes = [apart::trace(arguments.trace.as_deref()), timing];
+        let writes = [apart::trace(arguments.trace.as_deref())?, timing];
         apart::checked(&writes.concat(), [path.as_path()])?;
         let name = shown(path);
         limit::doing(format!("reading {name}"));

@@ -104,16 +104,8 @@ fn checked(arguments: &RunArguments) -> Result<Dialect, Failure> {
             "{option} takes one script: one file cannot hold several runs"
         )));
     }
-    if let Some(path) = trace
-        && !file::can_save(path)
-    {
-        let name = suite::shown(path);
-        return Err(Failure::usage(&format!(
-            "--trace {name}: a trace is a .csv or a .jsonl file"
-        )));
-    }
     let writes = [
-        apart::trace(trace.as_deref()),
+        apart::trace(trace.as_deref())?,
         apart::written("--report", report.as_deref()),
         apart::written("--svg", svg.as_deref()),
         apart::written("--vcd", vcd.as_deref()),
