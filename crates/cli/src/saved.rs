@@ -2,7 +2,7 @@
 
 use standstill_trace::file::folder_of;
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, Metadata};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -10,11 +10,19 @@ use std::time::SystemTime;
 const WRITTEN: [&str; 2] = [".new", ".partial"];
 
 /// Folders without edited files: they may have very many files.
-const LEFT_OUT: [&str; 2] = ["target", "node_modules"];
+pub const LEFT_OUT: [&str; 2] = ["target", "node_modules"];
 
-/// The time of saving and the length of each file below some paths.
+/// The time of saving and the length of a file.
+pub type Stamp = (Option<SystemTime>, u64);
+
+/// Those of each file below some paths.
 #[derive(Debug, Default, PartialEq, Eq)]
-pub struct Saved(BTreeMap<PathBuf, (Option<SystemTime>, u64)>);
+pub struct Saved(BTreeMap<PathBuf, Stamp>);
+
+/// The stamp of a file.
+pub fn stamp(about: &Metadata) -> Stamp {
+    (about.modified().ok(), about.len())
+}
 
 impl Saved {
     /// All files below the paths; for a file those of its folder. `except` and all below it are left out.
@@ -44,7 +52,7 @@ impl Saved {
                         folders.push(path);
                     }
                 } else if !WRITTEN.iter().any(|ending| name.ends_with(ending)) {
-                    files.insert(path, (about.modified().ok(), about.len()));
+                    files.insert(path, stamp(&about));
                 }
             }
         }

@@ -41,11 +41,7 @@ impl Answer {
 
     /// The requested page is at another path.
     pub fn elsewhere(path: &str) -> Self {
-        Self {
-            status: 302,
-            ..plain(302, path)
-        }
-        .with("location", path.to_owned())
+        plain(302, path).with("location", path.to_owned())
     }
 
     /// The requested page has not changed.

@@ -4,6 +4,7 @@ use super::answer::{Answer, plain};
 use super::desk::name_of;
 use super::site::{open, within};
 use crate::exit::{Exit, Failure};
+use crate::saved::{self, LEFT_OUT, Stamp};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
@@ -15,7 +16,6 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::time::SystemTime;
 
 /// Largest number of bytes of a script, and of a file that it names; the page reads no more.
 const BYTES_MAX: usize = 1 << 20;
@@ -27,17 +27,11 @@ const NAMES_MAX: usize = 100_000;
 /// Largest number of scripts whose last answer is kept.
 const KNOWN_MAX: usize = 32;
 
-/// Folders without edited files: they may have very many files.
-const LEFT_OUT: [&str; 2] = ["target", "node_modules"];
-
-/// The time of saving and the length of a file; none for a missing one.
-type Stamp = Option<(Option<SystemTime>, u64)>;
-
 /// The last answer for a script.
 #[derive(Debug)]
 struct Known {
     /// The files from which it was made.
-    stamps: Vec<(PathBuf, Stamp)>,
+    stamps: Vec<(PathBuf, Option<Stamp>)>,
     tag: String,
     body: Value,
 }
@@ -157,8 +151,8 @@ impl Folder {
             texts: Map::new(),
             lacks: Map::new(),
         };
-        let (file, length) = open(&self.root, inner)?;
-        let bytes = bounded(file, length).map_err(|why| plain(413, &format!("{path}: {why}")))?;
+        let (file, _) = open(&self.root, inner)?;
+        let bytes = bounded(file).map_err(|why| plain(413, &format!("{path}: {why}")))?;
         let text = String::from_utf8(bytes)
             .map_err(|_| plain(415, &format!("{path}: it is not UTF-8; save it as UTF-8")))?;
         // It is read for the names of its files; the page reports its faults.
@@ -194,7 +188,7 @@ impl Known {
 struct Files<'a> {
     script: &'a Path,
     allowed: &'a [PathBuf],
-    stamps: Vec<(PathBuf, Stamp)>,
+    stamps: Vec<(PathBuf, Option<Stamp>)>,
     texts: Map<String, Value>,
     lacks: Map<String, Value>,
 }
@@ -210,7 +204,7 @@ impl Files<'_> {
                 return Err("it is no regular file".to_owned());
             }
             let file = fs::File::open(&path).map_err(|error| error.to_string())?;
-            bounded(file, 0)
+            bounded(file)
         });
         match &bytes {
             Ok(bytes) => {
@@ -228,26 +222,21 @@ impl Files<'_> {
     }
 }
 
-/// The whole of a file that is not too large; `length` is its known minimum length.
-fn bounded(file: fs::File, length: usize) -> Result<Vec<u8>, String> {
-    let too_large = || {
-        format!(
-            "it has more than the {BYTES_MAX} bytes that the playground reads; `standstill run` takes it as it is"
-        )
-    };
-    if length > BYTES_MAX {
-        return Err(too_large());
-    }
+/// The whole of a file that is not too large.
+fn bounded(file: fs::File) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let read = file.take(BYTES_MAX as u64 + 1).read_to_end(&mut bytes);
     read.map_err(|error| error.to_string())?;
     if bytes.len() > BYTES_MAX {
-        return Err(too_large());
+        return Err(format!(
+            "it has more than the {BYTES_MAX} bytes that the playground reads; `standstill run` takes it as it is"
+        ));
     }
     Ok(bytes)
 }
 
-fn stamp(path: &Path) -> Stamp {
+/// The stamp of a file; none for a missing one.
+fn stamp(path: &Path) -> Option<Stamp> {
     let about = fs::metadata(path).ok()?;
-    Some((about.modified().ok(), about.len()))
+    Some(saved::stamp(&about))
 }
