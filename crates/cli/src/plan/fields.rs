@@ -57,37 +57,33 @@ pub struct Problem {
 impl Problem {
     /// The first field that is not at rest, and its value.
     pub fn first_motion(&self) -> Option<(Field, f64)> {
-        let moving = [
-            (Field::Velocity, self.start.velocity),
-            (Field::Acceleration, self.start.acceleration),
-            (Field::Jerk, self.start.jerk),
-            (Field::EndVelocity, self.end_velocity),
-            (Field::EndAcceleration, self.end_acceleration),
-        ];
-        moving.into_iter().find(|(_, value)| *value != 0.0)
+        first_motion(&self.start, self.end_velocity, self.end_acceleration)
     }
+}
+
+/// The first part of a start or an end that is not at rest, and its value.
+pub fn first_motion(start: &Setpoint, end_velocity: f64, end_acceleration: f64) -> Option<(Field, f64)> {
+    let parts = [
+        (Field::Velocity, start.velocity),
+        (Field::Acceleration, start.acceleration),
+        (Field::Jerk, start.jerk),
+        (Field::EndVelocity, end_velocity),
+        (Field::EndAcceleration, end_acceleration),
+    ];
+    parts.into_iter().find(|(_, value)| *value != 0.0)
 }
 
 impl<'a> Fields<'a> {
     /// Reads a line: it must be a JSON object without duplicate keys.
     pub fn of_line(line: &'a [u8]) -> Result<Self, Refusal> {
         let text = std::str::from_utf8(line).map_err(|_| Refusal::of_line("the line is no UTF-8"))?;
-        let members = match serde_json::from_str(text) {
-            Ok(members) => members,
-            Err(error) => {
-                let other: Result<&RawValue, _> = serde_json::from_str(text);
-                return Err(match other {
-                    Ok(value) => Refusal::of_line("the line is no JSON object").value(value.get()),
-                    Err(_) => Refusal::of_line(format!("the line is no JSON: {}", cause(&error))),
-                });
-            }
-        };
-        Ok(Self {
-            members,
-            limits: Members::default(),
-            limits_before: Members::default(),
-            velocity_limits: Members::default(),
-        })
+        match serde_json::from_str(text) {
+            Ok(Members(members)) => Ok(Self::of_members(members)),
+            Err(error) => Err(match serde_json::from_str::<&RawValue>(text) {
+                Ok(value) => Refusal::of_line("the line is no JSON object").value(value.get()),
+                Err(_) => Refusal::of_line(format!("the line is no JSON: {}", cause(&error))),
+            }),
+        }
     }
 
     /// The fields from a host that has them separately. Keys are checked as those of a line are.
@@ -118,11 +114,8 @@ impl<'a> Fields<'a> {
 
     /// Opens `limits` and checks that all keys exist and are unique.
     pub fn checked(&self) -> Result<Self, Refusal> {
-        self.check_keys(
-            &self.members,
-            "",
-            COMMON.into_iter().chain(methods::extra_fields()),
-        )?;
+        let known = COMMON.into_iter().chain(methods::extra_fields());
+        self.check_keys(&self.members, "", known)?;
         let opened = Self {
             members: self.members.clone(),
             limits: self.opened("limits")?,
@@ -131,11 +124,8 @@ impl<'a> Fields<'a> {
         };
         opened.check_keys(&opened.limits, "limits.", LIMITS.into_iter())?;
         opened.check_keys(&opened.limits_before, "limits_before.", LIMITS.into_iter())?;
-        opened.check_keys(
-            &opened.velocity_limits,
-            "velocity_limits.",
-            DIRECTIONS.into_iter(),
-        )?;
+        let directions = DIRECTIONS.into_iter();
+        opened.check_keys(&opened.velocity_limits, "velocity_limits.", directions)?;
         Ok(opened)
     }
 

@@ -182,18 +182,15 @@ pub fn plan_with(fields: &Fields<'_>, problem: &Problem, method: &MethodInfo) ->
 
 /// Refuses a field that only other methods take.
 fn check_extra_field(fields: &Fields<'_>, name: &str, method: &MethodInfo) -> Result<(), Refusal> {
-    let takers: Vec<_> = METHODS
-        .into_iter()
-        .filter(|other| other.fields.contains(&name))
-        .collect();
-    if takers.is_empty() || method.fields.contains(&name) {
+    let takers = METHODS.into_iter().filter(|other| other.fields.contains(&name));
+    let takers: Vec<_> = takers.map(|taker| taker.name).collect();
+    if takers.is_empty() || takers.contains(&method.name) {
         return Ok(());
     }
-    let takers = takers
-        .iter()
-        .map(|taker| taker.name)
-        .collect::<Vec<_>>()
-        .join(", ");
-    let message = format!("`{name}` is a field of {takers}, not of {}", method.name);
+    let message = format!(
+        "`{name}` is a field of {}, not of {}",
+        takers.join(", "),
+        method.name
+    );
     Err(fields.invalid(name, message))
 }

@@ -18,7 +18,7 @@ pub fn ramp(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal> 
         ..
     } = problem;
     let cycle = cycle(fields)?;
-    if fields.names().any(|name| name == "target") {
+    if fields.has("target") {
         let message = "this method ends at `end_velocity`, wherever that is: leave `target` out".to_owned();
         return Err(fields.invalid("target", message));
     }

@@ -2,7 +2,7 @@
 //! vibrate at its end.
 
 use crate::json::number;
-use crate::plan::fields::Fields;
+use crate::plan::fields::{Fields, first_motion};
 use crate::plan::methods::Planned;
 use crate::plan::refusal::{Code, Refusal};
 use crate::plan::samples::Setpoints;
@@ -30,7 +30,9 @@ pub fn shaped(fields: &Fields<'_>, planned: Planned) -> Result<Planned, Refusal>
         return Ok(planned);
     }
     let shapers = Shapers::new(&modes, cycle).map_err(|(_, error)| Refusal::of_plan_error(fields, error))?;
-    if let Some((field, value)) = first_motion(&planned) {
+    let (start, end) = (planned.setpoints.at(0), planned.end);
+    if let Some((field, value)) = first_motion(&start, end.velocity, end.acceleration) {
+        let field = field.name();
         let message = format!("`{NAME}` is for moves from rest to rest: `{field}` must be 0");
         return Err(fields.invalid(field, message).value(&number(value)));
     }
@@ -56,20 +58,6 @@ pub fn shaped(fields: &Fields<'_>, planned: Planned) -> Result<Planned, Refusal>
         setpoints: Setpoints::Shaped(Box::new(planned.setpoints), shapers),
         ..planned
     })
-}
-
-/// The first part of a plan that is not at rest, at its start or its end.
-fn first_motion(planned: &Planned) -> Option<(&'static str, f64)> {
-    let (start, end) = (planned.setpoints.at(0), planned.end);
-    let parts = [
-        (Field::Velocity, start.velocity),
-        (Field::Acceleration, start.acceleration),
-        (Field::Jerk, start.jerk),
-        (Field::EndVelocity, end.velocity),
-        (Field::EndAcceleration, end.acceleration),
-    ];
-    let moving = parts.into_iter().find(|(_, value)| *value != 0.0)?;
-    Some((moving.0.name(), moving.1))
 }
 
 /// The modes of a line.
