@@ -178,10 +178,9 @@ fn as_text(table: &CamTable, asked: Asked<'_>, fit: &Fit) -> String {
             finding.remedy
         ));
     }
-    text.push_str(if fit.findings.is_empty() {
-        "passed\n"
-    } else {
-        "failed\n"
+    text.push_str(match fit.findings[..] {
+        [] => "passed\n",
+        _ => "failed\n",
     });
     text
 }
@@ -236,33 +235,28 @@ fn columns(lines: &[[String; 10]]) -> String {
 
 /// A number with some digits.
 fn figure(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return if value == 0.0 {
-            "0".to_owned()
-        } else {
-            format!("{value:?}")
-        };
+    if value == 0.0 {
+        return "0".to_owned();
     }
     let rough = format!("{value:.*e}", DIGITS - 1);
-    let exponent = rough
-        .rsplit_once('e')
-        .and_then(|(_, power)| power.parse::<i32>().ok());
-    match exponent {
-        Some(power @ -4..=5) => {
+    // An infinite one has no power.
+    let Some((digits, power)) = rough.split_once('e') else {
+        return rough;
+    };
+    match power.parse() {
+        Ok(power @ -4..=5) => {
             let decimals = usize::try_from(DIGITS as i32 - 1 - power).unwrap_or_default();
-            let text = format!("{value:.decimals$}");
-            if text.contains('.') {
-                text.trim_end_matches('0').trim_end_matches('.').to_owned()
-            } else {
-                text
-            }
+            without_zeros(&format!("{value:.decimals$}")).to_owned()
         }
-        _ => match rough.split_once('e') {
-            Some((digits, power)) if digits.contains('.') => {
-                format!("{}e{power}", digits.trim_end_matches('0').trim_end_matches('.'))
-            }
-            _ => rough,
-        },
+        _ => format!("{}e{power}", without_zeros(digits)),
+    }
+}
+
+/// A number without the zeros behind its point.
+fn without_zeros(digits: &str) -> &str {
+    match digits.contains('.') {
+        true => digits.trim_end_matches('0').trim_end_matches('.'),
+        false => digits,
     }
 }
 

@@ -204,9 +204,9 @@ impl Stop {
     fn new() -> std::io::Result<Self> {
         use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
         let signal = std::sync::Arc::default();
-        for (what, number) in [(SIGHUP, SIGHUP), (SIGINT, SIGINT), (SIGTERM, SIGTERM)] {
-            let number = usize::try_from(number).unwrap_or_default();
-            signal_hook::flag::register_usize(what, std::sync::Arc::clone(&signal), number)?;
+        for number in [SIGHUP, SIGINT, SIGTERM] {
+            let stored = usize::try_from(number).unwrap_or_default();
+            signal_hook::flag::register_usize(number, std::sync::Arc::clone(&signal), stored)?;
         }
         Ok(Self { signal })
     }
