@@ -3,7 +3,8 @@
 use crate::args::IdentifyArguments;
 use crate::exit::{Exit, Failure};
 use crate::json::{Object, list, number, string};
-use crate::{explain, limit, outcome};
+use crate::report::load;
+use crate::{limit, outcome};
 use standstill_script::suite::shown;
 use standstill_trace::foreign::{self, Channel, Layout, Place, Reading, Times, Wanted};
 use standstill_trace::ring_down::{self, NoRingDown, RingDown};
@@ -31,9 +32,9 @@ pub fn identify(arguments: &IdentifyArguments, out: &mut dyn Write) -> Result<Ex
     let stretches = match &arguments.time {
         Some(time) => vec![of_recording(arguments, time)?],
         None => {
-            let trace = explain::load(&arguments.trace)?;
+            let (_, loaded) = load(&arguments.trace)?;
             limit::doing(format!("looking for a swing in {name}"));
-            of_trace(arguments, &trace)?
+            of_trace(arguments, &loaded.trace)?
         }
     };
     let exit = Exit::of(stretches.iter().any(|stretch| stretch.found.is_ok()));

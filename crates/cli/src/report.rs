@@ -51,7 +51,8 @@ pub fn report(traces: &[PathBuf], targets: Targets<'_>) -> Result<Exit, Failure>
     Ok(Exit::Passed)
 }
 
-fn load(path: &Path) -> Result<(String, Loaded), Failure> {
+/// A trace with its name; the parts it lacks are also reported on standard error.
+pub fn load(path: &Path) -> Result<(String, Loaded), Failure> {
     let name = shown(path);
     limit::doing(format!("reading {name}"));
     let loaded = file::load(path)?;

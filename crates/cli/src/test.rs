@@ -5,13 +5,13 @@ use crate::args::{Golden, SCRIPTS};
 use crate::cores;
 use crate::coverage::Coverage;
 use crate::exit::{Exit, Failure, complain, go_on};
-use crate::explain::load;
 use crate::failing::Pages;
 use crate::json::Object;
 use crate::junit::{self, Case, Ending};
 use crate::limit;
 use crate::outcome;
 use crate::progress::Progress;
+use crate::report::load;
 use crate::saved::Saved;
 use standstill_script::golden::{Mode, Standing};
 use standstill_script::suite::{self, Allowed, Report, SuiteError};
@@ -311,7 +311,7 @@ fn on_recording(wish: Wish<'_>, recording: &Path, out: &mut dyn Write) -> Result
     limit::doing(suite::shown(script));
     let begin = Instant::now();
     let (judge, _) = suite::read_file(script, &[], wish.allowed)?;
-    let outcome = judge_recording(&judge, load(recording)?).map_err(|error| {
+    let outcome = judge_recording(&judge, load(recording)?.1.trace).map_err(|error| {
         Failure::Told(
             Exit::BadInput,
             format!("error: {}: {error}", suite::shown(recording)),
