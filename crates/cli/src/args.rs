@@ -37,68 +37,7 @@ pub enum Command {
     /// Open scripts of a folder in a browser, on this machine only; a saved script runs again
     Serve(ServeArguments),
     /// Check scripts against their claims and goldens
-    Test {
-        /// Scripts, and folders of them [default: scan-tests, or this folder where there is none]
-        #[arg(value_name = "PATH")]
-        paths: Vec<PathBuf>,
-        /// Only scripts whose path contains this, without regard to case
-        #[arg(short = 'k', value_name = "WORD")]
-        word: Option<String>,
-        /// Run nothing; print the paths of the scripts
-        #[arg(long, conflicts_with_all = ["accept", "strict", "json", "mutate", "golden", "abs", "rel", "junit", "report", "recording", "watch"])]
-        list: bool,
-        /// Judge again when a file below the paths is saved, failed scripts first; runs until interrupted
-        #[arg(long, conflicts_with_all = ["accept", "json", "mutate", "junit", "recording"])]
-        watch: bool,
-        /// Accept the runs as goldens if all claims hold
-        #[arg(long)]
-        accept: bool,
-        /// Show the differences from a golden if all claims hold, and ask whether to accept the run; answers come
-        /// from standard input
-        #[arg(long, conflicts_with_all = ["accept", "list", "json", "mutate", "watch", "strict", "junit", "coverage", "report", "recording", "threads"])]
-        review: bool,
-        /// Also fail for items that test nothing and for values that were clamped
-        #[arg(long)]
-        strict: bool,
-        /// Print the result as one JSON object
-        #[arg(long)]
-        json: bool,
-        /// Make small changes to the programs of the scripts, and report the changes that no claim detects
-        #[arg(long, conflicts_with_all = ["accept", "golden", "abs", "rel", "report", "junit", "recording", "strict"])]
-        mutate: bool,
-        /// With --mutate: the seed that selects the changes of a script with very many
-        #[arg(long, value_name = "S", default_value_t = 1, requires = "mutate")]
-        seed: u64,
-        /// How a run must agree with its golden: to the bit, its events to the scan and its set-points within --abs
-        /// and --rel, or not at all
-        #[arg(long, value_enum, value_name = "HOW", default_value_t = Golden::Exact)]
-        golden: Golden,
-        /// With --golden events: largest difference of a set-point, in its own unit [default: 1e-6]
-        #[arg(long, value_name = "X", value_parser = tolerance)]
-        abs: Option<f64>,
-        /// With --golden events: additional difference, as a share of the expected value [default: 1e-9]
-        #[arg(long, value_name = "Y", value_parser = tolerance)]
-        rel: Option<f64>,
-        /// Write the result to this file, as JUnit XML
-        #[arg(long, value_name = "FILE.xml")]
-        junit: Option<PathBuf>,
-        /// Write the statements and branches of Structured Text that the scripts execute to this file
-        #[arg(long, value_name = "FILE.lcov", conflicts_with_all = ["list", "mutate", "recording"])]
-        coverage: Option<PathBuf>,
-        /// Write a page for every script that fails into this folder: golden and run in one drawing
-        #[arg(long, value_name = "FOLDER")]
-        report: Option<PathBuf>,
-        /// Judge the script's claims on this trace (.csv, .jsonl, .exact) instead of a run, for example on the
-        /// contents of a flight recorder
-        #[arg(long, value_name = "TRACE", conflicts_with_all = ["accept", "golden", "abs", "rel", "report"])]
-        recording: Option<PathBuf>,
-        /// Judge on this number of threads instead of on all processors; the output is the same
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), conflicts_with_all = ["mutate", "recording"])]
-        threads: Option<u16>,
-        /// Files outside the script's folder
-        #[command(flatten)]
-        outside: Outside,
-    },
+    Test(TestArguments),
     /// Draw traces: an interactive page, a picture, a waveform
     Report {
         /// The traces (.csv, .jsonl, .exact); several are drawn over each other
@@ -563,6 +502,71 @@ pub struct RunArguments {
     /// Print the result as one JSON object
     #[arg(long, conflicts_with = "quiet")]
     pub json: bool,
+}
+
+/// The arguments of `test`.
+#[derive(Args, Debug)]
+pub struct TestArguments {
+    /// Scripts, and folders of them [default: scan-tests, or this folder where there is none]
+    #[arg(value_name = "PATH")]
+    pub paths: Vec<PathBuf>,
+    /// Only scripts whose path contains this, without regard to case
+    #[arg(short = 'k', value_name = "WORD")]
+    pub word: Option<String>,
+    /// Run nothing; print the paths of the scripts
+    #[arg(long, conflicts_with_all = ["accept", "strict", "json", "mutate", "golden", "abs", "rel", "junit", "report", "recording", "watch"])]
+    pub list: bool,
+    /// Judge again when a file below the paths is saved, failed scripts first; runs until interrupted
+    #[arg(long, conflicts_with_all = ["accept", "json", "mutate", "junit", "recording"])]
+    pub watch: bool,
+    /// Accept the runs as goldens if all claims hold
+    #[arg(long)]
+    pub accept: bool,
+    /// Show the differences from a golden if all claims hold, and ask whether to accept the run; answers come
+    /// from standard input
+    #[arg(long, conflicts_with_all = ["accept", "list", "json", "mutate", "watch", "strict", "junit", "coverage", "report", "recording", "threads"])]
+    pub review: bool,
+    /// Also fail for items that test nothing and for values that were clamped
+    #[arg(long)]
+    pub strict: bool,
+    /// Print the result as one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// Make small changes to the programs of the scripts, and report the changes that no claim detects
+    #[arg(long, conflicts_with_all = ["accept", "golden", "abs", "rel", "report", "junit", "recording", "strict"])]
+    pub mutate: bool,
+    /// With --mutate: the seed that selects the changes of a script with very many
+    #[arg(long, value_name = "S", default_value_t = 1, requires = "mutate")]
+    pub seed: u64,
+    /// How a run must agree with its golden: to the bit, its events to the scan and its set-points within --abs
+    /// and --rel, or not at all
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = Golden::Exact)]
+    pub golden: Golden,
+    /// With --golden events: largest difference of a set-point, in its own unit [default: 1e-6]
+    #[arg(long, value_name = "X", value_parser = tolerance)]
+    pub abs: Option<f64>,
+    /// With --golden events: additional difference, as a share of the expected value [default: 1e-9]
+    #[arg(long, value_name = "Y", value_parser = tolerance)]
+    pub rel: Option<f64>,
+    /// Write the result to this file, as JUnit XML
+    #[arg(long, value_name = "FILE.xml")]
+    pub junit: Option<PathBuf>,
+    /// Write the statements and branches of Structured Text that the scripts execute to this file
+    #[arg(long, value_name = "FILE.lcov", conflicts_with_all = ["list", "mutate", "recording"])]
+    pub coverage: Option<PathBuf>,
+    /// Write a page for every script that fails into this folder: golden and run in one drawing
+    #[arg(long, value_name = "FOLDER")]
+    pub report: Option<PathBuf>,
+    /// Judge the script's claims on this trace (.csv, .jsonl, .exact) instead of a run, for example on the
+    /// contents of a flight recorder
+    #[arg(long, value_name = "TRACE", conflicts_with_all = ["accept", "golden", "abs", "rel", "report"])]
+    pub recording: Option<PathBuf>,
+    /// Judge on this number of threads instead of on all processors; the output is the same
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), conflicts_with_all = ["mutate", "recording"])]
+    pub threads: Option<u16>,
+    /// Files outside the script's folder
+    #[command(flatten)]
+    pub outside: Outside,
 }
 
 /// The arguments of `sweep`.

@@ -167,7 +167,7 @@ fn is_data(command: &Command) -> bool {
         Command::Fmt { paths, .. } => paths.iter().any(|path| is_standard(path)),
         Command::Cam { what } => matches!(what, Cam::Law(_)),
         Command::Run(_)
-        | Command::Test { .. }
+        | Command::Test(_)
         | Command::Explain { .. }
         | Command::Identify(_)
         | Command::St { .. }
@@ -226,57 +226,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Live(_) => Err(Failure::left_out("live")),
         #[cfg(not(feature = "watch"))]
         Command::Watch(_) => Err(Failure::left_out("watch")),
-        Command::Test {
-            paths,
-            word,
-            list,
-            watch,
-            accept,
-            review,
-            strict,
-            json,
-            mutate,
-            seed,
-            golden,
-            abs,
-            rel,
-            junit,
-            coverage,
-            report,
-            recording,
-            threads,
-            outside,
-        } => {
-            let paths = &test::where_scripts_are(paths);
-            if *list {
-                return test::list(paths, word.as_deref(), out);
-            }
-            if *mutate {
-                let scripts = test::found(paths, word.as_deref())?;
-                return mutate::mutate(&scripts, *seed, &outside.allowed(), *json, out);
-            }
-            let wish = test::Wish {
-                paths,
-                word: word.as_deref(),
-                accept: *accept,
-                strict: *strict,
-                json: *json,
-                threads: *threads,
-                yardstick: test::yardstick(*golden, *abs, *rel)?,
-                junit: junit.as_deref(),
-                coverage: coverage.as_deref(),
-                report: report.as_deref(),
-                recording: recording.as_deref(),
-                allowed: &outside.allowed(),
-            };
-            if *watch {
-                return test::watch(wish, out);
-            }
-            if *review {
-                return test::review(wish, &mut io::stdin().lock(), out);
-            }
-            test::test(wish, out)
-        }
+        Command::Test(arguments) => test::test(arguments, out),
         Command::Report {
             traces,
             output,

@@ -1,7 +1,7 @@
 //! `standstill test`: scripts as tests of their claims and goldens.
 
 use crate::apart;
-use crate::args::{Golden, SCRIPTS};
+use crate::args::{Golden, SCRIPTS, TestArguments};
 use crate::cores;
 use crate::coverage::Coverage;
 use crate::exit::{Exit, Failure, complain, go_on};
@@ -9,6 +9,7 @@ use crate::failing::Pages;
 use crate::json::Object;
 use crate::junit::{self, Case, Ending};
 use crate::limit;
+use crate::mutate::mutate;
 use crate::outcome;
 use crate::progress::Progress;
 use crate::report::load;
@@ -26,37 +27,52 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// The options of `test`.
+/// The arguments, and what follows from them.
 #[derive(Clone, Copy, Debug)]
-pub struct Wish<'a> {
+struct Wish<'a> {
+    given: &'a TestArguments,
     /// Scripts, and folders of them.
-    pub paths: &'a [PathBuf],
-    /// Only scripts whose path contains this.
-    pub word: Option<&'a str>,
-    /// Replaces goldens by the runs.
-    pub accept: bool,
-    /// Warnings fail.
-    pub strict: bool,
-    /// The outcome is printed as JSON.
-    pub json: bool,
-    /// Number of threads that judge; all processors if absent.
-    pub threads: Option<u16>,
+    paths: &'a [PathBuf],
     /// How exactly a run must agree with its golden; not at all if absent.
-    pub yardstick: Option<Yardstick>,
-    /// The file for the outcome as JUnit XML.
-    pub junit: Option<&'a Path>,
-    /// The file for the executed statements of Structured Text.
-    pub coverage: Option<&'a Path>,
-    /// The folder for pages of scripts that fail.
-    pub report: Option<&'a Path>,
-    /// The trace to judge the claims on, instead of runs.
-    pub recording: Option<&'a Path>,
+    yardstick: Option<Yardstick>,
     /// Permissions of scripts beyond those of any script.
-    pub allowed: &'a Allowed,
+    allowed: &'a Allowed,
+}
+
+impl Wish<'_> {
+    fn scripts(&self) -> Result<Vec<PathBuf>, Failure> {
+        found(self.paths, self.given.word.as_deref())
+    }
+}
+
+/// Does with the scripts what the arguments ask for.
+pub fn test(given: &TestArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
+    let paths = &where_scripts_are(&given.paths);
+    let allowed = &given.outside.allowed();
+    if given.list {
+        return list(paths, given.word.as_deref(), out);
+    }
+    if given.mutate {
+        let scripts = found(paths, given.word.as_deref())?;
+        return mutate(&scripts, given.seed, allowed, given.json, out);
+    }
+    let wish = Wish {
+        given,
+        paths,
+        yardstick: yardstick(given.golden, given.abs, given.rel)?,
+        allowed,
+    };
+    if given.watch {
+        return watch(wish, out);
+    }
+    if given.review {
+        return review(wish, &mut io::stdin().lock(), out);
+    }
+    judge(wish, out)
 }
 
 /// How exactly a run must agree with its golden, from the arguments.
-pub fn yardstick(golden: Golden, abs: Option<f64>, rel: Option<f64>) -> Result<Option<Yardstick>, Failure> {
+fn yardstick(golden: Golden, abs: Option<f64>, rel: Option<f64>) -> Result<Option<Yardstick>, Failure> {
     let tolerance = Tolerance::default();
     match (golden, abs.or(rel)) {
         (Golden::Events, _) => Ok(Some(Yardstick::Events(Tolerance {
@@ -72,8 +88,8 @@ pub fn yardstick(golden: Golden, abs: Option<f64>, rel: Option<f64>) -> Result<O
 }
 
 /// Judges all scripts at the paths, in sorted order, and reports goldens without a script.
-pub fn test(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
-    if !wish.json {
+fn judge(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
+    if !wish.given.json {
         return told(wish, &BTreeSet::new(), out).map(|tally| tally.exit());
     }
     let tally = told(wish, &BTreeSet::new(), &mut io::sink())?;
@@ -83,7 +99,7 @@ pub fn test(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
 }
 
 /// Prints the paths of the scripts.
-pub fn list(paths: &[PathBuf], word: Option<&str>, out: &mut dyn Write) -> Result<Exit, Failure> {
+fn list(paths: &[PathBuf], word: Option<&str>, out: &mut dyn Write) -> Result<Exit, Failure> {
     for script in found(paths, word)? {
         writeln!(out, "{}", suite::shown(&script))?;
     }
@@ -95,7 +111,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(200);
 
 /// For every golden that is missing or differs, if all claims hold: asks whether to replace it by the run. If there
 /// is no answer, this one and all later ones are not changed.
-pub fn review(wish: Wish<'_>, answers: &mut dyn BufRead, out: &mut dyn Write) -> Result<Exit, Failure> {
+fn review(wish: Wish<'_>, answers: &mut dyn BufRead, out: &mut dyn Write) -> Result<Exit, Failure> {
     let Some(yardstick) = wish.yardstick else {
         return Err(Failure::usage(
             "--review is of goldens, and --golden none asks for none",
@@ -103,7 +119,7 @@ pub fn review(wish: Wish<'_>, answers: &mut dyn BufRead, out: &mut dyn Write) ->
     };
     let accept = Mode::from_environment(true).map_err(|error| Failure::usage(&error.to_string()))?;
     let mut tally = Tally::default();
-    let scripts = found(wish.paths, wish.word)?;
+    let scripts = wish.scripts()?;
     let mut unasked = false;
     for script in &scripts {
         let name = suite::shown(script);
@@ -130,12 +146,7 @@ pub fn review(wish: Wish<'_>, answers: &mut dyn BufRead, out: &mut dyn Write) ->
             Ok(report) => tally.judged(&name, &report, out)?,
             Err(error) => tally.broken(&name, error.into(), out)?,
         };
-        tally.cases.push(Case {
-            file: name,
-            ending,
-            text,
-            took: Duration::ZERO,
-        });
+        tally.add(name, ending, text, Duration::ZERO);
     }
     write!(out, "{tally}")?;
     Ok(tally.exit())
@@ -160,10 +171,10 @@ fn answer(answers: &mut dyn BufRead) -> Option<bool> {
 
 /// Judges the scripts, and again whenever a file was saved: failed ones first. It ends when its output has no
 /// reader.
-pub fn watch(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
+fn watch(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
     let mut failed = BTreeSet::new();
     loop {
-        let before = Saved::below(wish.paths, wish.report);
+        let before = Saved::below(wish.paths, wish.given.report.as_deref());
         match told(wish, &failed, out) {
             Ok(tally) => failed = tally.bad().map(|case| case.file.clone()).collect(),
             // For example a folder that is empty for now.
@@ -172,7 +183,7 @@ pub fn watch(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
         }
         out.flush()?;
         complain("watching; tests run again when a file is saved");
-        while Saved::below(wish.paths, wish.report) == before {
+        while Saved::below(wish.paths, wish.given.report.as_deref()) == before {
             thread::sleep(LOOK_EVERY);
         }
         writeln!(out)?;
@@ -181,30 +192,34 @@ pub fn watch(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
 
 /// Judges the requested scripts, those named `first` before the others, and prints the results as text.
 fn told(wish: Wish<'_>, first: &BTreeSet<String>, out: &mut dyn Write) -> Result<Tally, Failure> {
-    if wish.accept && wish.yardstick.is_none() {
+    if wish.given.accept && wish.yardstick.is_none() {
         return Err(Failure::usage(
             "--accept writes goldens, and --golden none asks for none",
         ));
     }
     let writes = [
-        apart::written("--junit", wish.junit),
-        apart::written("--coverage", wish.coverage),
+        apart::written("--junit", wish.given.junit.as_deref()),
+        apart::written("--coverage", wish.given.coverage.as_deref()),
     ];
-    let reads = wish.paths.iter().map(PathBuf::as_path).chain(wish.recording);
+    let reads = wish
+        .paths
+        .iter()
+        .map(PathBuf::as_path)
+        .chain(wish.given.recording.as_deref());
     apart::checked(&writes.concat(), reads)?;
-    let tally = match wish.recording {
+    let tally = match wish.given.recording.as_deref() {
         Some(recording) => on_recording(wish, recording, out)?,
         None => judged(wish, first, out)?,
     };
     write!(out, "{tally}")?;
-    if let Some(path) = wish.junit {
+    if let Some(path) = wish.given.junit.as_deref() {
         junit::save(&tally.cases, path)?;
     }
-    if let Some(path) = wish.coverage {
+    if let Some(path) = wish.given.coverage.as_deref() {
         limit::doing("counting what the scripts execute");
-        let coverage = Coverage::of(&found(wish.paths, wish.word)?, wish.allowed);
+        let coverage = Coverage::of(&wish.scripts()?, wish.allowed);
         writeln!(out, "{}", coverage.save(path)?)?;
-        if let Some(folder) = wish.report {
+        if let Some(folder) = wish.given.report.as_deref() {
             fs::create_dir_all(folder).map_err(|error| Failure::io(&suite::shown(folder), &error))?;
             writeln!(out, "    report: {}", coverage.page(folder)?)?;
         }
@@ -213,14 +228,15 @@ fn told(wish: Wish<'_>, first: &BTreeSet<String>, out: &mut dyn Write) -> Result
 }
 
 fn judged(wish: Wish<'_>, first: &BTreeSet<String>, out: &mut dyn Write) -> Result<Tally, Failure> {
-    let mode = Mode::from_environment(wish.accept).map_err(|error| Failure::usage(&error.to_string()))?;
-    let mut scripts = found(wish.paths, wish.word)?;
+    let mode =
+        Mode::from_environment(wish.given.accept).map_err(|error| Failure::usage(&error.to_string()))?;
+    let mut scripts = wish.scripts()?;
     // The sort is stable.
     scripts.sort_by_key(|script| !first.contains(&suite::shown(script)));
-    let mut pages = wish.report.map(Pages::new).transpose()?;
+    let mut pages = wish.given.report.as_deref().map(Pages::new).transpose()?;
     let mut tally = Tally {
-        strict: wish.strict,
-        json: wish.json,
+        strict: wish.given.strict,
+        json: wish.given.json,
         ..Tally::default()
     };
     let mut progress = Progress::new(true);
@@ -259,18 +275,13 @@ fn judged(wish: Wish<'_>, first: &BTreeSet<String>, out: &mut dyn Write) -> Resu
             }
             Err(error) => tally.broken(&name, error.into(), out)?,
         };
-        tally.cases.push(Case {
-            file: name,
-            ending,
-            text,
-            took,
-        });
+        tally.add(name, ending, text, took);
         Ok(())
     };
     cores::in_order(scripts.len(), threads(&wish, &scripts), judge, take)?;
     let folders = wish.paths.iter().filter(|path| path.is_dir());
     // For single scripts, other files are not reported.
-    for folder in folders.filter(|_| wish.word.is_none()) {
+    for folder in folders.filter(|_| wish.given.word.is_none()) {
         tally.orphans(&suite::orphans(folder)?, out)?;
         mention(folder)?;
     }
@@ -284,7 +295,7 @@ fn threads(wish: &Wish<'_>, scripts: &[PathBuf]) -> usize {
     if files.len() < scripts.len() {
         return 1;
     }
-    wish.threads.map_or_else(cores::processors, usize::from)
+    wish.given.threads.map_or_else(cores::processors, usize::from)
 }
 
 /// Reports files that look like scripts but have another name.
@@ -326,17 +337,12 @@ fn on_recording(wish: Wish<'_>, recording: &Path, out: &mut dyn Write) -> Result
     };
     let name = suite::shown(script);
     let mut tally = Tally {
-        json: wish.json,
+        json: wish.given.json,
         ..Tally::default()
     };
     let shown = format!("{name} on {}", suite::shown(recording));
     let (ending, text) = tally.judged(&shown, &report, out)?;
-    tally.cases.push(Case {
-        file: name,
-        ending,
-        text,
-        took: begin.elapsed(),
-    });
+    tally.add(name, ending, text, begin.elapsed());
     Ok(tally)
 }
 
@@ -351,7 +357,7 @@ pub fn where_scripts_are(paths: &[PathBuf]) -> Vec<PathBuf> {
 }
 
 /// All scripts at the paths whose own paths contain `word`, without regard to case.
-pub fn found(paths: &[PathBuf], word: Option<&str>) -> Result<Vec<PathBuf>, Failure> {
+fn found(paths: &[PathBuf], word: Option<&str>) -> Result<Vec<PathBuf>, Failure> {
     let mut all = Vec::new();
     for path in paths {
         limit::doing(format!("looking for scripts in {}", suite::shown(path)));
@@ -401,6 +407,16 @@ struct Tally {
 }
 
 impl Tally {
+    fn add(&mut self, file: String, ending: Ending, text: String, took: Duration) {
+        let case = Case {
+            file,
+            ending,
+            text,
+            took,
+        };
+        self.cases.push(case);
+    }
+
     fn judged(
         &mut self,
         name: &str,
@@ -464,12 +480,7 @@ impl Tally {
             let (name, text) = (suite::shown(orphan), "its script is not there any more");
             writeln!(out, "ORPHAN    {name}\n    {text}")?;
             self.told.push(outcome::orphaned(&name));
-            self.cases.push(Case {
-                file: name,
-                ending: Ending::Failed,
-                text: text.to_owned(),
-                took: Duration::ZERO,
-            });
+            self.add(name, Ending::Failed, text.to_owned(), Duration::ZERO);
         }
         Ok(())
     }
