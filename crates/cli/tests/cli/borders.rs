@@ -1,7 +1,9 @@
 //! Files from strangers: their texts cannot forge the output, nothing is written outside the permitted places, and
 //! work and memory are bounded in proportion.
 
-use crate::support::{LONG, SCRIPT, command, ended, read, scratch, standstill, with_script, write};
+use crate::support::{LONG, SCRIPT, late, read, scratch, standstill, typed, with_script, write};
+#[cfg(unix)]
+use crate::support::{command, fifo, limited};
 use std::fs;
 use std::time::{Duration, Instant};
 
@@ -44,12 +46,7 @@ fn what_a_script_says_is_one_line_and_can_be_seen_wherever_it_is_printed() {
     let run = standstill(&folder, &["run", "hostile.scan.json", "--trace", "a.jsonl"]);
     assert_eq!(run.status, 1);
     is_plain("run", &run.out);
-    assert!(
-        run.out
-            .starts_with("\\u{1b}[2Jmove\\u{a}hostile.scan.json: passed"),
-        "{}",
-        run.out
-    );
+    run.prints_first("\\u{1b}[2Jmove\\u{a}hostile.scan.json: passed");
     for arguments in [
         &["test", ".", "--junit", "junit.xml"][..],
         &["explain", "a.jsonl", "b.jsonl"],
@@ -83,7 +80,7 @@ fn what_a_script_says_is_one_line_and_can_be_seen_wherever_it_is_printed() {
     write(&folder, "good.snap", &golden);
     let ended = standstill(&folder, &["test", "good.scan.json"]);
     assert_eq!(ended.status, 1);
-    assert!(ended.out.contains("+Exe\\u{1b}[2Jcute"), "{}", ended.out);
+    ended.prints("+Exe\\u{1b}[2Jcute");
     is_plain("difference", &ended.out);
 }
 
@@ -103,7 +100,7 @@ fn names_that_look_alike_are_told_apart() {
         let refused = standstill(&folder, &["run", "key.scan.json"]);
         assert_eq!(refused.status, 3);
         let told = format!("unknown key `sc{}ans`", hidden.escape_unicode());
-        assert!(refused.err.contains(&told), "{}", refused.err);
+        refused.complains(&told);
         is_plain("messages", &refused.err);
     }
 }
@@ -117,7 +114,7 @@ fn a_line_without_end_is_told_by_its_place() {
     let refused = standstill(&folder, &["run", "line.scan.json"]);
     assert_eq!(refused.status, 3);
     let told = "error[unknown_key]: unknown key `a` in a script\n--> line.scan.json:1:2";
-    assert!(refused.err.contains(told), "{}", refused.err);
+    refused.complains(told);
     assert!(refused.err.len() < 10_000, "{} bytes", refused.err.len());
     assert!(begin.elapsed() < Duration::from_secs(10));
 }
@@ -168,11 +165,7 @@ mod names {
             let ended = standstill(&folder, &["run", "includes.scan.json"]);
             assert_eq!(ended.status, 3);
             let printed = printed.replace(r"a\b", "ab");
-            assert!(
-                ended.err.contains(&format!("--> {printed}.machine.json:1:")),
-                "{}",
-                ended.err
-            );
+            ended.complains(&format!("--> {printed}.machine.json:1:"));
             is_plain("messages", &ended.err);
         }
     }
@@ -240,16 +233,10 @@ mod links {
         for name in ["a.csv", "a.csv.meta.json", "junit.xml", "a.html", "s.csv"] {
             symlink("outside", folder.join(name)).expect("a link");
         }
-        let run = [
-            "run",
-            "-q",
-            "move.scan.json",
-            "--trace",
-            "a.csv",
-            "--report",
-            "a.html",
-        ];
-        assert_eq!(standstill(&folder, &run).status, 0);
+        assert_eq!(
+            typed(&folder, "run -q move.scan.json --trace a.csv --report a.html").status,
+            0
+        );
         assert_eq!(
             standstill(&folder, &["test", "--junit", "junit.xml", "move.scan.json"]).status,
             1
@@ -295,15 +282,11 @@ mod links {
         for name in ["suite", "elsewhere", "pages"] {
             fs::create_dir(folder.join(name)).expect("a folder");
         }
-        write(
-            &folder.join("suite"),
-            "move.scan.json",
-            &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
-        );
+        write(&folder.join("suite"), "move.scan.json", &late());
         symlink("../elsewhere", folder.join("pages/suite")).expect("a link");
         let ended = standstill(&folder, &["test", "suite", "--report", "pages"]);
         assert_eq!(ended.status, 4, "{}", ended.out);
-        assert!(ended.err.contains("leads out of the folder"), "{}", ended.err);
+        ended.complains("leads out of the folder");
         assert_eq!(
             fs::read_dir(folder.join("elsewhere")).expect("a folder").count(),
             0
@@ -319,18 +302,11 @@ mod links {
     fn a_pipe_in_a_suite_is_not_waited_for() {
         let folder = with_script("borders_fifo");
         for name in ["move.snap", "other.scan.json"] {
-            let made = std::process::Command::new("mkfifo")
-                .arg(folder.join(name))
-                .status();
-            assert!(made.expect("every Unix has it").success());
+            fifo(&folder.join(name));
         }
         let ended = standstill(&folder, &["test", "."]);
         assert_eq!(ended.status, 4);
-        assert!(
-            ended.err.contains("move.snap: this is no regular file"),
-            "{}",
-            ended.err
-        );
+        ended.complains("move.snap: this is no regular file");
         assert!(!ended.out.contains("other.scan.json"), "{}", ended.out);
     }
 
@@ -344,21 +320,13 @@ mod links {
         fs::create_dir(folder.join("move.snap.new")).expect("a folder");
         let ended = standstill(&folder, &["test", "."]);
         assert_eq!(ended.status, 1, "{}", ended.err);
-        assert!(ended.out.contains("+Other"), "{}", ended.out);
-        assert!(
-            ended.out.contains("there is no proposal: ./move.snap.new: "),
-            "{}",
-            ended.out
-        );
+        ended.prints("+Other");
+        ended.prints("there is no proposal: ./move.snap.new: ");
     }
 
     /// Runs the program with a file size limit of half a kilobyte, as on a full disk.
     fn on_a_full_disk(folder: &Path, arguments: &[&str]) -> crate::support::Ended {
-        let mut shell = std::process::Command::new("sh");
-        shell.args(["-c", "ulimit -f 1; exec \"$@\"", "sh"]);
-        shell.arg(env!("CARGO_BIN_EXE_standstill")).args(arguments);
-        shell.env_remove("CI").env_remove("INSTA_UPDATE");
-        ended(shell.current_dir(folder))
+        limited("-f 1", folder, arguments)
     }
 
     #[test]
@@ -395,13 +363,7 @@ fn claims_times_scans_have_a_bound() {
     let begin = Instant::now();
     let ended = standstill(&folder, &["test", "."]);
     assert_eq!(ended.status, 3);
-    assert!(
-        ended
-            .err
-            .contains("error[too_large]: claims and steps take 12000000000 looks"),
-        "{}",
-        ended.err
-    );
+    ended.complains("error[too_large]: claims and steps take 12000000000 looks");
     assert!(begin.elapsed() < Duration::from_secs(10));
 }
 
@@ -434,17 +396,9 @@ fn a_time_limit_ends_any_command_with_what_it_was_at() {
     }
     // The earlier output is there, and a command that ends in time has no message about it.
     write(&folder, "move.scan.json", SCRIPT);
-    let both = [
-        "run",
-        "-q",
-        "--time-limit",
-        "2s",
-        "move.scan.json",
-        "long.scan.json",
-    ];
-    let ended = standstill(&folder, &both);
+    let ended = typed(&folder, "run -q --time-limit 2s move.scan.json long.scan.json");
     assert_eq!(ended.status, 1);
-    assert!(ended.out.starts_with("move.scan.json: passed"), "{}", ended.out);
+    ended.prints_first("move.scan.json: passed");
     assert_eq!(
         standstill(&folder, &["run", "-q", "--time-limit", "1h", "move.scan.json"]).status,
         0
@@ -460,10 +414,7 @@ fn a_time_limit_ends_any_command_with_what_it_was_at() {
 fn what_waits_says_what_it_waits_for_when_the_time_is_up() {
     use std::process::Stdio;
     let folder = scratch("borders_waiting");
-    let made = std::process::Command::new("mkfifo")
-        .arg(folder.join("pipe"))
-        .status();
-    assert!(made.expect("every Unix has it").success());
+    fifo(&folder.join("pipe"));
     for (arguments, at) in [
         (&["lsp"][..], "serving an editor"),
         (&["plan"], "waiting for line 1 of standard input"),
@@ -524,7 +475,7 @@ fn guests_have_no_more_memory_than_the_command_line_gives_them() {
     for name in ["one.scan.json", "two.scan.json"] {
         let refused = standstill(&folder, &["run", "-q", name]);
         assert_eq!(refused.status, 3, "{name}");
-        assert!(refused.err.contains("`--guest-memory "), "{}", refused.err);
+        refused.complains("`--guest-memory ");
         let wanted = standstill(&folder, &["run", "-q", name, "--guest-memory", "4GiB"]);
         assert_eq!(wanted.status, 0, "{}", wanted.err);
     }
@@ -561,18 +512,6 @@ fn inflated(rows: u64, zeros: usize) -> Vec<u8> {
     file
 }
 
-/// Runs the program in a shell that permits this number of kilobytes of memory.
-#[cfg(target_os = "linux")]
-fn within(kilobytes: u32, folder: &std::path::Path, arguments: &[&str]) -> crate::support::Ended {
-    let mut shell = std::process::Command::new("sh");
-    shell.args(["-c", &format!("ulimit -v {kilobytes}; exec \"$@\"")]);
-    shell
-        .args(["sh", env!("CARGO_BIN_EXE_standstill")])
-        .args(arguments);
-    shell.env_remove("CI").env_remove("INSTA_UPDATE");
-    ended(shell.current_dir(folder))
-}
-
 #[test]
 #[cfg(target_os = "linux")]
 fn exact_traces_take_memory_in_proportion() {
@@ -600,7 +539,7 @@ fn exact_traces_take_memory_in_proportion() {
         assert!(file.len() < 50_000, "{}", file.len());
         fs::write(folder.join("move.exact"), &file).expect("writable");
         for arguments in [&["test", "."][..], &["explain", "move.exact", "move.exact"]] {
-            let ended = within(200_000, &folder, arguments);
+            let ended = limited("-v 200000", &folder, arguments);
             let (status, text) = match arguments[0] {
                 "test" => (1, ended.out),
                 _ => (3, ended.err),
@@ -628,35 +567,10 @@ fn live_finds_out_before_it_runs_that_it_cannot_write() {
             &["live", "long.scan.json", "--period", "10ms", option, &path],
         );
         assert_eq!((ended.status, ended.out.as_str()), (4, ""), "{}", ended.err);
-        assert!(ended.err.contains("absent/a"), "{}", ended.err);
+        ended.complains("absent/a");
         assert!(
             begin.elapsed() < Duration::from_secs(20),
             "it would have run for a minute"
         );
-    }
-}
-
-#[test]
-fn a_failing_claim_is_the_status_also_when_nobody_reads_of_it() {
-    let folder = with_script("borders_unread");
-    write(
-        &folder,
-        "late.scan.json",
-        &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
-    );
-    write(&folder, "lines.jsonl", "{\"Ts\":0.01}\n");
-    for (arguments, status) in [
-        (&["run", "late.scan.json"][..], 1),
-        (&["run", "-q", "late.scan.json", "move.scan.json"], 1),
-        (&["test", "."], 1),
-        (&["plan", "lines.jsonl"], 1),
-        (&["run", "move.scan.json", "absent.scan.json"], 4),
-        (&["rum"], 2),
-    ] {
-        let (reader, writer) = std::io::pipe().expect("a pipe");
-        drop(reader);
-        let output = command(arguments).current_dir(&folder).stdout(writer).output();
-        let code = output.expect("it starts").status.code();
-        assert_eq!(code, Some(status), "{arguments:?}");
     }
 }

@@ -8,7 +8,7 @@
     reason = "a judge that takes sines and constants from elsewhere than what it judges; its tolerances are far above rounding"
 )]
 
-use crate::support::{Ended, fed, is_an_outcome, read, scratch, standstill, write};
+use crate::support::{Ended, fed, read, scratch, standstill, typed, write};
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::path::Path;
@@ -302,10 +302,7 @@ fn just_below_the_highest_velocity_a_law_is_kept_and_above_it_the_slave_lags() {
                 limits = limits.replace('}', ", \"snap\": 1e12}");
             }
             write(&place, "law.scan.json", &script(&limits));
-            let ended = standstill(
-                &place,
-                &["cam", "check", "law.csv", "--axis", "law.scan.json#S", "--json"],
-            );
+            let ended = typed(&place, "cam check law.csv --axis law.scan.json#S --json");
             assert_eq!((ended.status, ended.err.as_str()), (0, ""), "{} {by}", this.name);
             let found: Value = serde_json::from_str(&ended.out).unwrap();
             let highest = found["max_master_velocity"].as_f64().unwrap();
@@ -380,8 +377,7 @@ fn a_good_cam_is_told_as_text_and_as_an_outcome() {
     assert_eq!((ended.status, ended.err.as_str()), (0, ""), "{}", ended.out);
     insta::assert_snapshot!("cam_check", ended.out);
     let ended = checked(&place, &[&axes[..], &["--json"]].concat());
-    let found: Value = serde_json::from_str(&ended.out).unwrap();
-    is_an_outcome(&found);
+    let found = ended.answer();
     // Multi-axis example: 100 over 180 with these limits.
     let highest = found["max_master_velocity"].as_f64().unwrap();
     assert!((0.99 * 329.143..=329.143).contains(&highest), "{highest}");
@@ -455,13 +451,12 @@ fn what_a_slave_cannot_follow_is_status_1_with_place_value_limit_and_remedy() {
         write(&place, "knife.csv", rows);
         let ended = checked(&place, more);
         assert_eq!((ended.status, ended.err.as_str()), (1, ""), "{}", ended.out);
-        assert!(ended.out.ends_with("failed\n"), "{}", ended.out);
+        ended.prints_last("failed\n");
         for part in parts {
-            assert!(ended.out.contains(part), "{part}: {}", ended.out);
+            ended.prints(part);
         }
         let ended = checked(&place, &[more, &["--json"]].concat());
-        let found: Value = serde_json::from_str(&ended.out).unwrap();
-        is_an_outcome(&found);
+        let found = ended.answer();
         assert_eq!(ended.status, 1);
         assert_eq!(found["error_id"].as_u64(), error);
         assert_eq!(found["findings"][0]["error_id"].as_u64(), error);
@@ -477,54 +472,67 @@ fn what_a_slave_cannot_follow_is_status_1_with_place_value_limit_and_remedy() {
     );
 }
 
+/// Tables that are no cam, with the message and its remedy.
+const BAD: [(&[u8], &str, &str); 5] = [
+    (
+        b"Master\n0\n1\n",
+        "knife.csv:1:1: the column `Slave` is missing",
+        "name it",
+    ),
+    (
+        b"Master;Slave\n0;0\n90;1,5\n",
+        "knife.csv:3:4: `1,5` is no number for `Slave` (LREAL)",
+        "write a decimal point, 1.5 for 1,5",
+    ),
+    (
+        b"Master,Slave\n0,0\n90,\xFC\n",
+        "knife.csv:3:4: the byte 16#FC is no UTF-8",
+        "save the file as UTF-8",
+    ),
+    (
+        b"Master,Slave\n0,0\n90,1\n80,2\n",
+        "knife.csv:4:1: `Master` (column 1) is 80.0 after 90.0 in the row before",
+        "places of the master rise",
+    ),
+    (
+        b"Master,Slave\n0,0\n",
+        "knife.csv:2:1: 1 row is no cam",
+        "give 2 rows at least",
+    ),
+];
+
 #[test]
 fn what_cannot_be_read_is_status_3_with_line_column_and_remedy() {
     let place = scratch("cam_bad");
     write(&place, "cell.machine.json", MACHINE);
     let long: String = (0..600).map(|row| format!("{row},0\n")).collect();
-    let cases: [(&[u8], &str); 9] = [
-        (
-            b"Master\n0\n1\n",
-            "knife.csv:1:1: the column `Slave` is missing\nhelp: name it",
-        ),
-        (
-            b"Master;Slave\n0;0\n90;1,5\n",
-            "knife.csv:3:4: `1,5` is no number for `Slave` (LREAL)\nhelp: write a decimal point, 1.5 for 1,5",
-        ),
+    let more: [(&[u8], &str, &str); 4] = [
         (
             b"Master,Slave\n0,0\n90,1,5\n",
-            "knife.csv:3:1: 3 columns where there are 2\nhelp: if these are decimal commas",
-        ),
-        (
-            b"Master,Slave\n0,0\n90,\xFC\n",
-            "knife.csv:3:4: the byte 16#FC is no UTF-8\nhelp: save the file as UTF-8",
-        ),
-        (
-            b"Master,Slave\n0,0\n90,1\n80,2\n",
-            "knife.csv:4:1: `Master` (column 1) is 80.0 after 90.0 in the row before\nhelp: places of the master rise",
+            "knife.csv:3:1: 3 columns where there are 2",
+            "if these are decimal commas",
         ),
         (
             b"Master,Slave\n0,0\n90,NaN\n",
-            "knife.csv:3:4: `NaN` is no number for `Slave` (LREAL)\nhelp: write a finite number",
-        ),
-        (
-            b"Master,Slave\n0,0\n",
-            "knife.csv:2:1: 1 row is no cam\nhelp: give 2 rows at least",
+            "knife.csv:3:4: `NaN` is no number for `Slave` (LREAL)",
+            "write a finite number",
         ),
         (
             long.as_bytes(),
-            "knife.csv:513:1: more than 512 rows, which are the most\nhelp: leave rows out",
+            "knife.csv:513:1: more than 512 rows, which are the most",
+            "leave rows out",
         ),
         (
             b"Master,Slave,Law\n0,0,7\n1,1,0\n",
-            "knife.csv:2: row 1: `Law` is 7, and laws have numbers from 0 to 5\nhelp: it is one of mcCamThrough",
+            "knife.csv:2: row 1: `Law` is 7, and laws have numbers from 0 to 5",
+            "it is one of mcCamThrough",
         ),
     ];
-    for (bytes, expected) in cases {
+    for (bytes, expected, remedy) in BAD.into_iter().chain(more) {
         std::fs::write(place.join("knife.csv"), bytes).unwrap();
         let ended = checked(&place, &["--axis", "cell.machine.json#S"]);
         assert_eq!((ended.status, ended.out.as_str()), (3, ""), "{}", ended.err);
-        assert!(ended.err.contains(expected), "{expected}: {}", ended.err);
+        ended.complains(&format!("{expected}\nhelp: {remedy}"));
         let ended = standstill(&place, &["cam", "plot", "knife.csv", "--svg", "knife.svg"]);
         assert_eq!(ended.status, 3);
         assert!(!place.join("knife.svg").exists());
@@ -542,7 +550,7 @@ fn what_cannot_be_read_is_status_3_with_line_column_and_remedy() {
     ] {
         let ended = checked(&place, more);
         assert_eq!(ended.status, status, "{}", ended.err);
-        assert!(ended.err.contains(expected), "{}", ended.err);
+        ended.complains(expected);
     }
     for (lift, width, expected) in [
         ("0", "1", "--lift is 0.0"),
@@ -552,7 +560,7 @@ fn what_cannot_be_read_is_status_3_with_line_column_and_remedy() {
     ] {
         let ended = law("sinoid", &["--lift", lift, "--width", width]);
         assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{lift} {width}");
-        assert!(ended.err.contains(expected), "{}", ended.err);
+        ended.complains(expected);
     }
 }
 
@@ -574,12 +582,8 @@ fn a_table_of_a_script_is_named_where_there_are_several() {
     let check = |file: &str| standstill(&place, &["cam", "check", file, "--axis", "two.scan.json#S"]);
     let ended = check("two.scan.json#down");
     assert_eq!(ended.status, 0, "{}", ended.err);
-    assert!(
-        ended.out.starts_with("two.scan.json#down on S\n"),
-        "{}",
-        ended.out
-    );
-    assert!(ended.out.contains("-5 to 0"), "{}", ended.out);
+    ended.prints_first("two.scan.json#down on S\n");
+    ended.prints("-5 to 0");
     for (file, expected) in [
         (
             "two.scan.json",
@@ -592,19 +596,13 @@ fn a_table_of_a_script_is_named_where_there_are_several() {
     ] {
         let ended = check(file);
         assert_eq!(ended.status, 3);
-        assert!(ended.err.contains(expected), "{}", ended.err);
+        ended.complains(expected);
     }
     let falling = table(5.0).replace("90", "-90");
     write(&place, "two.scan.json", &script(&format!("\"up\": {falling}")));
     let ended = check("two.scan.json");
     assert_eq!(ended.status, 3);
-    assert!(
-        ended
-            .err
-            .contains("two.scan.json#up: row 2: `Master` is -90.0 after 0.0 in the row before\nhelp:"),
-        "{}",
-        ended.err
-    );
+    ended.complains("two.scan.json#up: row 2: `Master` is -90.0 after 0.0 in the row before\nhelp:");
 }
 
 /// Covers: G80
@@ -614,45 +612,18 @@ fn a_bad_file_of_a_script_is_told_with_its_own_line_and_column_and_nothing_runs(
     let script = "{\"standstill\": 1, \"cycle\": \"T#1ms\", \"scans\": 1, \"axes\": {\"S\": {\"limits\": {\"velocity\": 1, \"acceleration\": 1}}},\n\
         \"tables\": {\"knife\": {\"type\": \"MC_CAM_POINT\", \"csv\": \"knife.csv\"}}, \"blocks\": []}\n";
     write(&place, "knife.scan.json", script);
-    let cases: [(&[u8], &str, &str); 6] = [
-        (
-            b"Master\n0\n1\n",
-            "knife.csv:1:1: the column `Slave` is missing",
-            "name it",
-        ),
-        (
-            b"Master;Slave\n0;0\n90;1,5\n",
-            "knife.csv:3:4: `1,5` is no number for `Slave` (LREAL)",
-            "write a decimal point, 1.5 for 1,5",
-        ),
-        (
-            b"Master,Slave\n0,0\n90,\xFC\n",
-            "knife.csv:3:4: the byte 16#FC is no UTF-8",
-            "save the file as UTF-8",
-        ),
-        (
-            b"Master,Slave\n0,0\n90,1\n80,2\n",
-            "knife.csv:4:1: `Master` (column 1) is 80.0 after 90.0 in the row before",
-            "places of the master rise",
-        ),
-        (
-            b"Master,Slave\n0,0\n90,\x1b[31m\n",
-            "knife.csv:3:4: `\\u{1b}[31m` is no number for `Slave` (LREAL)",
-            "write a finite number",
-        ),
-        (
-            b"Master,Slave\n0,0\n",
-            "knife.csv:2:1: 1 row is no cam",
-            "give 2 rows at least",
-        ),
-    ];
-    for (bytes, expected, remedy) in cases {
+    let hostile: (&[u8], &str, &str) = (
+        b"Master,Slave\n0,0\n90,\x1b[31m\n",
+        "knife.csv:3:4: `\\u{1b}[31m` is no number for `Slave` (LREAL)",
+        "write a finite number",
+    );
+    for (bytes, expected, remedy) in BAD.into_iter().chain([hostile]) {
         std::fs::write(place.join("knife.csv"), bytes).unwrap();
         let ended = standstill(&place, &["run", "knife.scan.json", "--trace", "out.csv"]);
         assert_eq!((ended.status, ended.out.as_str()), (3, ""), "{}", ended.err);
-        assert!(ended.err.contains(expected), "{expected}: {}", ended.err);
-        assert!(ended.err.contains("knife.scan.json:2:"), "{}", ended.err);
-        assert!(ended.err.contains(remedy), "{remedy}: {}", ended.err);
+        ended.complains(expected);
+        ended.complains("knife.scan.json:2:");
+        ended.complains(remedy);
         assert!(!ended.err.contains('\x1b'), "{}", ended.err);
         assert!(!place.join("out.csv").exists());
     }
@@ -682,19 +653,10 @@ fn a_slave_that_takes_corners_is_told_where_it_rests() {
     // At row 2 the straight lines continue as one.
     let ended = check(takes, &["cell.machine.json#S", "--periodic"]);
     assert_eq!(ended.status, 0, "{}", ended.err);
-    assert!(
-        ended.out.contains("  continuity         0, S needs 0\n"),
-        "{}",
-        ended.out
-    );
-    assert!(
-        ended.out.contains("  rests at           rows 1, 3, 4\n"),
-        "{}",
-        ended.out
-    );
+    ended.prints("  continuity         0, S needs 0\n");
+    ended.prints("  rests at           rows 1, 3, 4\n");
     let ended = check(takes, &["cell.machine.json#S", "--periodic", "--json"]);
-    let found: Value = serde_json::from_str(&ended.out).unwrap();
-    is_an_outcome(&found);
+    let found = ended.answer();
     assert_eq!(found["stops_at"], serde_json::json!([1, 3, 4]));
     assert_eq!(found["continuity"]["needed"], 0);
     for (continuity, more, part) in [
@@ -723,28 +685,15 @@ fn a_slave_that_takes_corners_is_told_where_it_rests() {
     write(&place, "knife.csv", "Master,Slave,Law\n0,0,3\n90,50,3\n");
     let ended = check("", &["cell.machine.json#T"]);
     assert_eq!(ended.status, 0, "{}", ended.out);
-    assert!(
-        ended
-            .out
-            .contains("  continuity         3, T needs 1\n  MaxMasterVelocity"),
-        "{}",
-        ended.out
-    );
-    assert!(
-        ended.out.contains("  rests at           rows 1, 2\n"),
-        "{}",
-        ended.out
-    );
+    ended.prints("  continuity         3, T needs 1\n  MaxMasterVelocity");
+    ended.prints("  rests at           rows 1, 2\n");
 }
 
 #[test]
 fn a_picture_has_a_panel_for_each_derivative() {
     let place = scratch("cam_plot");
     write(&place, "knife.csv", UP_AND_BACK);
-    let ended = standstill(
-        &place,
-        &["cam", "plot", "knife.csv", "--svg", "knife.svg", "--periodic"],
-    );
+    let ended = typed(&place, "cam plot knife.csv --svg knife.svg --periodic");
     assert_eq!(
         (ended.status, ended.out.as_str(), ended.err.as_str()),
         (0, "", "")

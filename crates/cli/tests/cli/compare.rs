@@ -129,9 +129,5 @@ fn samples_that_cannot_be_written_are_an_error_of_io() {
     let mut planning = command(&["plan", "-", "--samples", "no/such/folder.csv"]);
     let planned = ended(planning.current_dir(&folder));
     assert_eq!(planned.status, 4);
-    assert!(
-        planned.err.starts_with("error: no/such/folder.csv: "),
-        "{}",
-        planned.err
-    );
+    planned.complains_first("error: no/such/folder.csv: ");
 }

@@ -1,24 +1,8 @@
 //! The end of the program after an error of its environment.
 
-use crate::support::{command, ended, standstill, with_script, write};
-use std::io::{Write, pipe};
+use crate::support::{command, ended, standstill, unread, with_script, write};
+use std::io::Write;
 use std::process::Stdio;
-
-/// The status and the messages of a command whose output has no reader.
-fn unread(folder: &std::path::Path, arguments: &[&str]) -> (Option<i32>, String) {
-    let (reader, writer) = pipe().expect("a pipe");
-    drop(reader);
-    let output = command(arguments)
-        .current_dir(folder)
-        .stdout(writer)
-        .stderr(Stdio::piped())
-        .output()
-        .expect("the program starts");
-    (
-        output.status.code(),
-        String::from_utf8_lossy(&output.stderr).into_owned(),
-    )
-}
 
 #[test]
 fn a_closed_pipe_ends_quietly() {
@@ -38,6 +22,14 @@ fn a_closed_pipe_ends_quietly() {
             (Some(status), String::new()),
             "{arguments:?}"
         );
+    }
+    write(&folder, "lines.jsonl", "{\"Ts\":0.01}\n");
+    for (arguments, status) in [
+        (&["plan", "lines.jsonl"][..], 1),
+        (&["run", "move.scan.json", "absent.scan.json"], 4),
+        (&["rum"], 2),
+    ] {
+        assert_eq!(unread(&folder, arguments).0, Some(status), "{arguments:?}");
     }
 }
 
@@ -132,7 +124,7 @@ fn bad_usage_is_told_before_anything_runs() {
     ] {
         let ended = standstill(&folder, arguments);
         assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{arguments:?}");
-        assert!(ended.err.contains(message), "{}", ended.err);
+        ended.complains(message);
     }
     assert!(!folder.join("a.csv").exists());
 }
@@ -152,11 +144,7 @@ fn files_that_are_not_there_are_errors_of_io() {
     ] {
         let ended = standstill(&folder, arguments);
         assert_eq!(ended.status, 4, "{arguments:?}");
-        assert!(
-            ended.err.starts_with(&format!("error: {name}: ")),
-            "{}",
-            ended.err
-        );
+        ended.complains_first(&format!("error: {name}: "));
     }
 }
 

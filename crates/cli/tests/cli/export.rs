@@ -1,15 +1,12 @@
 //! `export`: which files it writes, and what it refuses.
 
-use crate::support::{scratch, standstill};
+use crate::support::{scratch, standstill, typed};
 use std::fs;
 
 #[test]
 fn files_are_written_and_named() {
     let place = scratch("export_files");
-    let ended = standstill(
-        &place,
-        &["export", "st-rusty", "--out", "made/here", "--prefix", "acme"],
-    );
+    let ended = typed(&place, "export st-rusty --out made/here --prefix acme");
     assert_eq!((ended.status, ended.err.as_str()), (0, ""));
     let names = [
         "acme.h",
@@ -40,11 +37,7 @@ fn a_prefix_that_is_no_identifier_is_bad_usage() {
     for prefix in ["2a", "a-b", "Acme", ""] {
         let ended = standstill(&place, &["export", "c", "--out", "out", "--prefix", prefix]);
         assert_eq!(ended.status, 2, "{prefix}");
-        assert!(
-            ended.err.contains(&format!("the prefix is `{prefix}`")),
-            "{}",
-            ended.err
-        );
+        ended.complains(&format!("the prefix is `{prefix}`"));
         assert!(!place.join("out").exists());
     }
 }
@@ -54,13 +47,7 @@ fn an_unknown_dialect_is_bad_usage() {
     let place = scratch("export_dialect");
     let ended = standstill(&place, &["export", "c", "--out", "out", "--dialect", "klingon"]);
     assert_eq!(ended.status, 2);
-    assert!(
-        ended
-            .err
-            .contains("there is no dialect `klingon`: choose one of twincat"),
-        "{}",
-        ended.err
-    );
+    ended.complains("there is no dialect `klingon`: choose one of twincat");
 }
 
 #[test]
@@ -80,6 +67,6 @@ fn a_folder_that_cannot_be_written_leaves_nothing() {
     fs::create_dir_all(place.join("half/standstill_blocks.h/in_the_way")).unwrap();
     let ended = standstill(&place, &["export", "c", "--out", "half"]);
     assert_eq!(ended.status, 4);
-    assert!(ended.err.contains("half/standstill_blocks.h"), "{}", ended.err);
+    ended.complains("half/standstill_blocks.h");
     assert_eq!(fs::read_dir(place.join("half")).unwrap().count(), 1);
 }

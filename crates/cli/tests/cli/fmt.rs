@@ -30,7 +30,7 @@ fn a_script_that_is_no_json_is_left_alone() {
     write(&folder, "broken.scan.json", "{\"scans\": }");
     let ended = standstill(&folder, &["fmt", "."]);
     assert_eq!(ended.status, 3);
-    assert!(ended.err.contains("broken.scan.json:1:11"), "{}", ended.err);
+    ended.complains("broken.scan.json:1:11");
     assert_eq!(read(&folder, "broken.scan.json"), "{\"scans\": }");
 }
 

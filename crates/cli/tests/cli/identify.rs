@@ -4,7 +4,7 @@
     reason = "a judge that takes logarithms and sines from elsewhere than what it judges; its tolerances are far above rounding"
 )]
 
-use crate::support::{is_an_outcome, read, scratch, standstill, write};
+use crate::support::{read, scratch, standstill, write};
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -83,9 +83,7 @@ fn of_peaks(samples: &[f64]) -> (f64, f64) {
 fn found(folder: &Path, arguments: &[&str]) -> Value {
     let ended = standstill(folder, &[&["identify", "--json"], arguments].concat());
     assert_eq!(ended.status, 0, "{}{}", ended.out, ended.err);
-    let outcome: Value = serde_json::from_str(&ended.out).expect("JSON");
-    is_an_outcome(&outcome);
-    outcome["signals"][0].clone()
+    ended.answer()["signals"][0].clone()
 }
 
 #[test]
@@ -144,7 +142,7 @@ fn the_text_says_with_how_much_error() {
     // A vibration that the loops feed is reported as such.
     recorded(&folder, 0.0);
     let ended = standstill(&folder, &["identify", "swing.csv"]);
-    assert!(ended.out.contains("it grows, the loops feed it"), "{}", ended.out);
+    ended.prints("it grows, the loops feed it");
 }
 
 /// A scope with decimal commas, milliseconds, and samples that are not quite even.
@@ -232,7 +230,7 @@ fn what_is_wrong_is_said_with_its_remedy() {
             "{arguments:?}: {}",
             ended.err
         );
-        assert!(ended.err.contains(told), "{arguments:?}: {}", ended.err);
+        ended.complains(told);
     }
     // No vibration is a result, with status 1.
     for (arguments, told) in [
@@ -242,6 +240,6 @@ fn what_is_wrong_is_said_with_its_remedy() {
     ] {
         let ended = standstill(&folder, &[&["identify", "swing.csv"], arguments].concat());
         assert_eq!(ended.status, 1, "{arguments:?}: {}", ended.err);
-        assert!(ended.out.contains(told), "{arguments:?}: {}", ended.out);
+        ended.prints(told);
     }
 }

@@ -1,6 +1,8 @@
 //! `init`: a first test in an empty folder; existing files are not overwritten.
 
-use crate::support::{command, ended, read, scratch, standstill, write};
+#[cfg(unix)]
+use crate::support::limited;
+use crate::support::{read, scratch, standstill, write};
 use std::fs;
 use std::path::Path;
 
@@ -29,11 +31,7 @@ fn what_it_writes_passes_at_once_and_kills_its_mutants() {
     let begun = standstill(&folder, &["init"]);
     assert_eq!((begun.status, begun.err.as_str()), (0, ""));
     assert_eq!(begun.out.matches("wrote     ").count(), below(&folder).len());
-    assert!(
-        begun.out.ends_with("\nnext: standstill test --strict\n"),
-        "{}",
-        begun.out
-    );
+    begun.prints_last("\nnext: standstill test --strict\n");
     let tested = standstill(&folder, &["test", "--strict"]);
     assert_eq!((tested.status, tested.err.as_str()), (0, ""), "{}", tested.out);
     assert_eq!(
@@ -51,7 +49,7 @@ fn editors_find_the_schemas_and_ci_is_strict() {
     let begun = standstill(&folder, &["init", "new/cell"]);
     assert_eq!(begun.status, 0, "{}", begun.err);
     let next = "next: standstill test --strict new/cell/scan-tests\n";
-    assert!(begun.out.ends_with(next), "{}", begun.out);
+    begun.prints_last(next);
     let cell = folder.join("new/cell");
     let settings: serde_json::Value = serde_json::from_str(&read(&cell, ".vscode/settings.json")).unwrap();
     let jetbrains = read(&cell, ".idea/jsonSchemas.xml");
@@ -90,9 +88,9 @@ fn it_overwrites_nothing_and_writes_nothing_beside_what_stands_there() {
     let again = standstill(&folder, &["init"]);
     assert_eq!((again.status, again.out.as_str()), (2, ""));
     for (name, _) in before.iter().filter(|(name, _)| name != "main.st") {
-        assert!(again.err.contains(&format!("./{name}")), "{name}: {}", again.err);
+        again.complains(&format!("./{name}"));
     }
-    assert!(again.err.contains("nothing was written"), "{}", again.err);
+    again.complains("nothing was written");
     assert_eq!(below(&folder), before);
     // One file is enough, and so is a file where a folder would be.
     for name in [".vscode/settings.json", ".github", "scan-tests"] {
@@ -102,20 +100,14 @@ fn it_overwrites_nothing_and_writes_nothing_beside_what_stands_there() {
         let clash = standstill(&folder, &["init"]);
         let told = format!("error: ./{name} exists already: nothing was written");
         assert_eq!(clash.status, 2);
-        assert!(clash.err.starts_with(&told), "{}", clash.err);
+        clash.complains_first(&told);
         assert_eq!(below(&folder), [(name.to_owned(), b"mine".to_vec())]);
     }
     let file = scratch("init_file");
     write(&file, "cell", "mine");
     let clash = standstill(&file, &["init", "cell"]);
     assert_eq!(clash.status, 2);
-    assert!(
-        clash
-            .err
-            .starts_with("error: cell exists already and is no folder"),
-        "{}",
-        clash.err
-    );
+    clash.complains_first("error: cell exists already and is no folder");
     assert_eq!(read(&file, "cell"), "mine");
 }
 
@@ -128,23 +120,17 @@ fn no_link_is_followed_and_what_cannot_be_written_leaves_nothing() {
     std::os::unix::fs::symlink("../elsewhere", folder.join("cell/.idea")).unwrap();
     let link = standstill(&folder, &["init", "cell"]);
     assert_eq!(link.status, 2);
-    assert!(link.err.contains("cell/.idea exists already"), "{}", link.err);
+    link.complains("cell/.idea exists already");
     assert_eq!(below(&folder).len(), 0);
     // A folder that nobody may write to, not even root.
     if Path::new("/proc/self").is_dir() {
         let refused = standstill(&folder, &["init", "/proc/self"]);
         assert_eq!((refused.status, refused.out.as_str()), (4, ""));
-        assert!(refused.err.contains("/proc/self/scan-tests"), "{}", refused.err);
+        refused.complains("/proc/self/scan-tests");
     }
     // Files of at most 4 KiB: the schema is the first that is longer.
-    let limited = ended(
-        std::process::Command::new("sh")
-            .arg("-c")
-            .arg("ulimit -f 8; exec \"$0\" init full")
-            .arg(command(&[]).get_program())
-            .current_dir(&folder),
-    );
+    let limited = limited("-f 8", &folder, &["init", "full"]);
     assert_eq!(limited.status, 4, "{}", limited.err);
-    assert!(limited.err.contains("scan-script.schema.json"), "{}", limited.err);
+    limited.complains("scan-script.schema.json");
     assert!(!folder.join("full").exists());
 }

@@ -1,6 +1,6 @@
 //! `live`: the same run, paced by the wall clock, and its ends.
 
-use crate::support::{standstill, with_script};
+use crate::support::{standstill, typed, with_script};
 
 #[cfg(not(target_os = "linux"))]
 #[test]
@@ -8,11 +8,7 @@ fn without_linux_it_says_so() {
     let folder = with_script("live_elsewhere");
     let ended = standstill(&folder, &["live", "move.scan.json", "--period", "10ms"]);
     assert_eq!((ended.status, ended.out.as_str()), (2, ""));
-    assert!(
-        ended.err.contains("live is unsupported on this system"),
-        "{}",
-        ended.err
-    );
+    ended.complains("live is unsupported on this system");
 }
 
 #[cfg(target_os = "linux")]
@@ -41,18 +37,9 @@ mod linux {
         write(&folder, "paced.scan.json", &script);
         let run = standstill(&folder, &["run", "-q", "paced.scan.json", "--trace", "run.csv"]);
         let start = Instant::now();
-        let live = standstill(
+        let live = typed(
             &folder,
-            &[
-                "live",
-                "paced.scan.json",
-                "--period",
-                "1ms",
-                "--trace",
-                "live.csv",
-                "--timing",
-                "timing.json",
-            ],
+            "live paced.scan.json --period 1ms --trace live.csv --timing timing.json",
         );
         assert!(start.elapsed() >= Duration::from_millis(500));
         assert_eq!((run.status, live.status), (0, 0), "{}", live.err);
@@ -100,17 +87,14 @@ mod linux {
             "is 10000000 ns",
             "write `--period 10000000ns`",
         ] {
-            assert!(ended.err.contains(part), "{part}: {}", ended.err);
+            ended.complains(part);
         }
         for wrong in ["0ms", "fast", "-1ms"] {
             let ended = standstill(&folder, &["live", "move.scan.json", &format!("--period={wrong}")]);
             assert_eq!(ended.status, 2);
-            assert!(ended.err.contains("such as 1ms or 250us"), "{}", ended.err);
+            ended.complains("such as 1ms or 250us");
         }
-        let ended = standstill(
-            &folder,
-            &["live", "move.scan.json", "--period", "10ms", "--trace", "x.txt"],
-        );
+        let ended = typed(&folder, "live move.scan.json --period 10ms --trace x.txt");
         assert_eq!(ended.status, 2, "{}", ended.err);
         assert_eq!(
             standstill(&folder, &["live", "absent.scan.json", "--period", "10ms"]).status,

@@ -1,7 +1,9 @@
 //! Runs of more scans than rows are kept of: the same text except for the drawing, constant memory, and a
 //! trace file with whole rows after every kind of end.
 
-use crate::support::{Ended, command, ended, read, scratch, standstill, write};
+#[cfg(target_os = "linux")]
+use crate::support::limited;
+use crate::support::{Ended, command, ended, read, scratch, standstill, unread, write};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
@@ -48,7 +50,7 @@ fn a_long_run_tells_what_a_short_one_tells_but_draws_nothing() {
     let long = standstill(&folder, &["run", "long.scan.json", "--trace", "long.csv"]);
     let short = standstill(&folder, &["run", "short.scan.json", "--trace", "short.csv"]);
     assert_eq!((long.status, long.err.as_str()), (0, ""), "{}", long.out);
-    assert!(long.out.contains("\nno drawing: 10000 scans are"), "{}", long.out);
+    long.prints("\nno drawing: 10000 scans are");
     // Columns are as wide as the script may need them.
     let same = |text: &str| {
         let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -149,11 +151,7 @@ fn failing_claims_are_told_as_ever_and_where_their_cause_is_to_be_looked_for() {
     let claim = |ended: &Ended| ended.out.lines().next().map(str::to_owned);
     assert_eq!(claim(&long), claim(&short));
     assert!(claim(&long).is_some_and(|line| line.contains("expect[2].always.X.Velocity: ")));
-    assert!(
-        long.err.contains("set `scans` to 1000000 at most"),
-        "{}",
-        long.err
-    );
+    long.complains("set `scans` to 1000000 at most");
 }
 
 #[test]
@@ -172,11 +170,7 @@ fn pages_and_pictures_of_a_long_run_are_refused_with_what_to_do() {
     }
     let test = standstill(&folder, &["test", "long.scan.json"]);
     assert_eq!(test.status, 3);
-    assert!(
-        test.err.contains("`standstill run` keeps no rows"),
-        "{}",
-        test.err
-    );
+    test.complains("`standstill run` keeps no rows");
 }
 
 /// The rows of a partial file, all of them whole.
@@ -198,13 +192,8 @@ fn a_disk_that_fills_leaves_whole_rows_and_says_where() {
     write(&folder, "x.csv", "what was there\n");
     // A file that may not grow fails as a full disk does, and needs no special system. The signal that comes with
     // it ends nothing.
-    let program = env!("CARGO_BIN_EXE_standstill");
-    let line = format!("ulimit -f 100; '{program}' run -q endless.scan.json --trace x.csv");
-    let run = ended(
-        std::process::Command::new("sh")
-            .args(["-c", &line])
-            .current_dir(&folder),
-    );
+    let endless = ["run", "-q", "endless.scan.json", "--trace", "x.csv"];
+    let run = limited("-f 100", &folder, &endless);
     assert_eq!(run.status, 4, "{}", run.err);
     let rows = rows(&folder, "x.csv.partial");
     assert!(rows > 100, "{rows}");
@@ -230,19 +219,14 @@ fn a_device_that_is_full_is_an_error_of_io_and_a_link_is_not_followed() {
         link("/dev/full", "full.csv");
         let run = standstill(&folder, &["run", "-q", "long.scan.json", "--trace", "full.csv"]);
         assert_eq!(run.status, 4);
-        assert!(run.err.starts_with("error: full.csv: "), "{}", run.err);
+        run.complains_first("error: full.csv: ");
         assert!(!folder.join("full.csv.partial").exists());
     }
     write(&folder, "other.txt", "not to be touched\n");
     link("other.txt", "a.csv.partial");
     let run = standstill(&folder, &["run", "-q", "long.scan.json", "--trace", "a.csv"]);
     assert_eq!(run.status, 4);
-    assert!(
-        run.err
-            .contains("a.csv.partial: this is no file that could be replaced"),
-        "{}",
-        run.err
-    );
+    run.complains("a.csv.partial: this is no file that could be replaced");
     link("other.txt", "b.csv");
     let run = standstill(&folder, &["run", "-q", "long.scan.json", "--trace", "b.csv"]);
     assert_eq!(run.status, 0, "{}", run.err);
@@ -286,17 +270,7 @@ fn a_signal_leaves_whole_rows_and_a_kill_at_most_one_that_is_torn() {
 #[test]
 fn a_closed_pipe_changes_nothing_of_the_verdict() {
     let folder = with_scripts("long_pipe");
-    let (reader, writer) = std::io::pipe().expect("a pipe");
-    drop(reader);
-    let mut run = command(&["run", "long.scan.json", "--trace", "x.csv"]);
-    let output = run
-        .current_dir(&folder)
-        .stdout(writer)
-        .output()
-        .expect("it starts");
-    assert_eq!(
-        (output.status.code(), output.stderr.as_slice()),
-        (Some(0), &b""[..])
-    );
+    let run = ["run", "long.scan.json", "--trace", "x.csv"];
+    assert_eq!(unread(&folder, &run), (Some(0), String::new()));
     assert_eq!(rows(&folder, "x.csv"), 10_000);
 }

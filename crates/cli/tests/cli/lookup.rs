@@ -12,11 +12,7 @@ fn asked(arguments: &[&str]) -> Ended {
 fn a_block_is_found_by_its_name() {
     let one = asked(&["blocks", "MC_TouchProbe"]);
     assert_eq!(one.status, 0, "{}", one.err);
-    assert!(
-        one.out.starts_with("MC_TouchProbe  (administrative)\n"),
-        "{}",
-        one.out
-    );
+    one.prints_first("MC_TouchProbe  (administrative)\n");
     assert!(
         one.out.contains("WindowOnly") && !one.out.contains("MC_AbortTrigger  ("),
         "{}",
@@ -33,23 +29,14 @@ fn a_block_is_found_by_its_name() {
     assert_eq!(names, ["MC_Stop", "MC_Halt"]);
     let slip = asked(&["blocks", "MC_TouchProb"]);
     assert_eq!((slip.status, slip.out.as_str()), (2, ""));
-    assert!(
-        slip.err
-            .contains("there is no block MC_TouchProb; did you mean `MC_TouchProbe`?"),
-        "{}",
-        slip.err
-    );
+    slip.complains("there is no block MC_TouchProb; did you mean `MC_TouchProbe`?");
 }
 
 #[test]
 fn an_error_is_explained_by_number_and_by_name() {
     let by_number = asked(&["blocks", "--error", "201"]);
     assert_eq!(by_number.status, 0, "{}", by_number.err);
-    assert!(
-        by_number.out.starts_with("201 NotPowered\n    "),
-        "{}",
-        by_number.out
-    );
+    by_number.prints_first("201 NotPowered\n    ");
     assert!(
         by_number.out.contains("\n    remedy: ") && by_number.out.contains("MC_Power"),
         "{}",
@@ -122,9 +109,5 @@ fn every_command_has_a_manual_page() {
     // A folder that cannot be made.
     let clash = standstill(&folder, &["man", "pages/man1/standstill.1/more"]);
     assert_eq!(clash.status, 4);
-    assert!(
-        clash.err.starts_with("error: pages/man1/standstill.1/more: "),
-        "{}",
-        clash.err
-    );
+    clash.complains_first("error: pages/man1/standstill.1/more: ");
 }

@@ -266,7 +266,7 @@ fn nothing_is_read_or_written_outside_the_folders_that_are_named() {
     // A folder that is not there.
     let gone = fed(&["mcp", "/gone/away"], b"");
     assert_eq!(gone.status, 4);
-    assert!(gone.err.starts_with("error: /gone/away: "), "{}", gone.err);
+    gone.complains_first("error: /gone/away: ");
 }
 
 #[test]

@@ -315,11 +315,7 @@ fn plans_are_drawn_over_each_other() {
     let seven: Vec<_> = (0..7).map(|at| line(&at.to_string(), "0.001")).collect();
     let drawn = fed(&["plan", "--svg", &svg], seven.join("\n").as_bytes());
     assert_eq!((drawn.status, drawn.out.lines().count()), (0, 7));
-    assert!(
-        drawn.err.contains("note: of 7 plans the first 6 are drawn"),
-        "{}",
-        drawn.err
-    );
+    drawn.complains("note: of 7 plans the first 6 are drawn");
     // Nothing at all is a picture, too.
     assert_eq!(fed(&["plan", "--svg", &svg], b"").status, 0);
     assert!(read(&folder, "x.svg").ends_with("</svg>\n"));

@@ -1,29 +1,13 @@
 //! The output and the remaining files of a command that cannot do its work.
 
-use crate::support::{
-    Ended, LONG, SCRIPT, command, ended, is_an_outcome, read, scratch, standstill, with_script, write,
-};
-use serde_json::Value;
+use crate::support::{LONG, SCRIPT, late, read, scratch, standstill, typed, with_script, write};
 use std::fs;
-
-/// The one object on standard output.
-#[track_caller]
-fn answer(ended: &Ended) -> Value {
-    assert_eq!(ended.out.lines().count(), 1, "{}", ended.out);
-    let answer = serde_json::from_str(&ended.out).expect("JSON");
-    is_an_outcome(&answer);
-    answer
-}
 
 #[test]
 fn with_json_every_answer_is_an_object() {
     let folder = with_script("refusals_json");
     fs::create_dir(folder.join("empty")).expect("a folder");
-    write(
-        &folder,
-        "late.scan.json",
-        &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
-    );
+    write(&folder, "late.scan.json", &late());
     write(&folder, "dense.scan.json", "{");
     write(&folder, "p.st", "PROGRAM p\nx := 1;\nEND_PROGRAM\n");
     for (arguments, command, status) in [
@@ -57,7 +41,7 @@ fn with_json_every_answer_is_an_object() {
     ] {
         let ended = standstill(&folder, &[arguments, &["--json"]].concat());
         assert_eq!(ended.status, status, "{arguments:?}: {}", ended.err);
-        let answer = answer(&ended);
+        let answer = ended.answer();
         assert_eq!(answer["command"], command, "{arguments:?}");
         assert_eq!(answer["passed"], false, "{arguments:?}");
         assert_eq!(answer["status"], status, "{arguments:?}");
@@ -69,7 +53,7 @@ fn with_json_every_answer_is_an_object() {
         let scripts = ["--json", "move.scan.json", "dense.scan.json"];
         let ended = standstill(&folder, &[arguments, &scripts].concat());
         assert_eq!(ended.status, 3, "{}", ended.err);
-        let answer = answer(&ended);
+        let answer = ended.answer();
         assert_eq!(answer["scripts"][1]["verdict"], "broken", "{answer}");
         assert!(answer["scripts"][1]["error"].is_string(), "{answer}");
     }
@@ -78,7 +62,7 @@ fn with_json_every_answer_is_an_object() {
     assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{}", ended.err);
     let checked = standstill(&folder, &["st", "check", "--json", "p.st"]);
     assert_eq!(checked.status, 3);
-    assert_eq!(answer(&checked)["diagnostics"][0]["code"], "unknown_name");
+    assert_eq!(checked.answer()["diagnostics"][0]["code"], "unknown_name");
 }
 
 #[test]
@@ -89,11 +73,11 @@ fn with_json_a_time_limit_is_an_answer() {
         let arguments = ["--time-limit", "300ms", name, "--json", "long.scan.json"];
         let ended = standstill(&folder, &arguments);
         assert_eq!(ended.status, 1);
-        let answer = answer(&ended);
+        let answer = ended.answer();
         assert_eq!(answer["command"], name);
         assert_eq!(answer["status"], 1);
         assert_eq!(answer["error"].as_str(), Some(ended.err.trim_end()));
-        assert!(ended.err.contains("the time is up"), "{}", ended.err);
+        ended.complains("the time is up");
     }
 }
 
@@ -187,11 +171,7 @@ fn two_outputs_in_one_file_are_refused_before_anything_is_written() {
     ] {
         let refused = standstill(&folder, arguments);
         assert_eq!(refused.status, 2, "{arguments:?}: {}{}", refused.out, refused.err);
-        assert!(
-            refused.err.starts_with(&format!("error: {told}")),
-            "{}",
-            refused.err
-        );
+        refused.complains_first(&format!("error: {told}"));
         assert_eq!(refused.out, "", "{arguments:?}");
         assert_eq!(names(&folder), before, "{arguments:?}");
     }
@@ -207,62 +187,30 @@ fn a_link_to_a_folder_is_another_way_to_the_same_file_and_a_device_takes_two() {
     symlink("sub", folder.join("other")).expect("a link");
     symlink("move.scan.json", folder.join("link.scan.json")).expect("a link");
     for arguments in [
-        [
-            "run",
-            "-q",
-            "move.scan.json",
-            "--trace",
-            "sub/a.csv",
-            "--report",
-            "other/a.csv",
-        ],
+        "run -q move.scan.json --trace sub/a.csv --report other/a.csv",
         // The target of the link is read, not the link.
-        [
-            "run",
-            "-q",
-            "link.scan.json",
-            "--svg",
-            "a.svg",
-            "--report",
-            "move.scan.json",
-        ],
-        [
-            "run",
-            "-q",
-            "link.scan.json",
-            "--svg",
-            "a.svg",
-            "--report",
-            "link.scan.json",
-        ],
+        "run -q link.scan.json --svg a.svg --report move.scan.json",
+        "run -q link.scan.json --svg a.svg --report link.scan.json",
     ] {
-        let refused = standstill(&folder, &arguments);
-        assert_eq!(refused.status, 2, "{arguments:?}: {}", refused.err);
+        let refused = typed(&folder, arguments);
+        assert_eq!(refused.status, 2, "{arguments}: {}", refused.err);
     }
     assert!(names(&folder.join("sub")).is_empty());
     assert_eq!(read(&folder, "link.scan.json"), SCRIPT);
-    let nowhere = [
-        "run",
-        "-q",
-        "move.scan.json",
-        "--svg",
-        "/dev/null",
-        "--report",
-        "/dev/null",
-    ];
-    assert_eq!(standstill(&folder, &nowhere).status, 0);
+    assert_eq!(
+        typed(
+            &folder,
+            "run -q move.scan.json --svg /dev/null --report /dev/null"
+        )
+        .status,
+        0
+    );
     // A link at the place of an output is replaced, so these are two files.
     symlink("b.svg", folder.join("a.svg")).expect("a link");
-    let two = [
-        "run",
-        "-q",
-        "move.scan.json",
-        "--svg",
-        "a.svg",
-        "--report",
-        "b.svg",
-    ];
-    assert_eq!(standstill(&folder, &two).status, 0);
+    assert_eq!(
+        typed(&folder, "run -q move.scan.json --svg a.svg --report b.svg").status,
+        0
+    );
     assert!(read(&folder, "a.svg").starts_with("<svg"));
     assert!(read(&folder, "b.svg").starts_with("<!"));
 }
@@ -278,7 +226,7 @@ fn a_claim_without_a_value_says_so_and_why() {
             "{\"at\": 5, \"that\": \"=1 / TRUNC(n) = 1\"}, {\"always\": \"=1 / TRUNC(n) = 1\"}, {\"at\": 5, \"that\": \"=late.Done\"}",
         );
     write(&folder, "value.scan.json", &script);
-    let ended = ended(command(&["run", "-q", "value.scan.json"]).current_dir(&folder));
+    let ended = standstill(&folder, &["run", "-q", "value.scan.json"]);
     assert_eq!(ended.status, 1, "{}", ended.err);
     for line in [
         "  expect[1].that.=1 / TRUNC(n) = 1: no value at scan 5, expected TRUE; it was so in no scan\n",
@@ -288,6 +236,6 @@ fn a_claim_without_a_value_says_so_and_why() {
         "  expect[3].that.=late.Done: FALSE at scan 5, expected TRUE; it was so in no scan\n",
         "    late is never called: its task asked never runs\n",
     ] {
-        assert!(ended.out.contains(line), "{}", ended.out);
+        ended.prints(line);
     }
 }

@@ -1,6 +1,8 @@
 //! Traces as pages, pictures and waveforms, and the message if there is none.
 
-use crate::support::{Ended, SCRIPT, ended, read, standstill, with_script, write};
+#[cfg(unix)]
+use crate::support::limited;
+use crate::support::{Ended, SCRIPT, read, standstill, typed, with_script, write};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -67,18 +69,7 @@ fn the_page_of_a_trace_tells_what_the_page_of_its_run_tells() {
 #[test]
 fn a_failing_run_has_its_page_too() {
     let folder = with_script("reports_fail");
-    let ended = standstill(
-        &folder,
-        &[
-            "run",
-            "-q",
-            "--set",
-            "v=2",
-            "move.scan.json",
-            "--report",
-            "out.html",
-        ],
-    );
+    let ended = typed(&folder, "run -q --set v=2 move.scan.json --report out.html");
     assert_eq!(ended.status, 1);
     assert!(
         read(&folder, "out.html")
@@ -176,11 +167,7 @@ fn what_cannot_be_reported_is_said_and_nothing_is_written() {
         &[&["report", "-o", "x.html"][..], &["a.csv"; 7]].concat(),
     );
     assert_eq!(many.status, 2);
-    assert!(
-        many.err.contains("7 traces: a report shows 1 to 6"),
-        "{}",
-        many.err
-    );
+    many.complains("7 traces: a report shows 1 to 6");
     assert_eq!(left(&folder), Vec::<String>::new());
 }
 
@@ -196,12 +183,10 @@ fn a_target_that_cannot_be_written_leaves_the_old_file() {
     let files = || fs::read_dir(&folder).unwrap().count();
     let count = files();
     // No file may grow beyond half a kilobyte, as on a full disk.
-    let mut shell = std::process::Command::new("sh");
-    let command = "ulimit -f 1; exec \"$0\" report long.jsonl -o out.html";
-    shell.args(["-c", command, env!("CARGO_BIN_EXE_standstill")]);
-    let ended = ended(shell.current_dir(&folder));
+    let report = ["report", "long.jsonl", "-o", "out.html"];
+    let ended = limited("-f 1", &folder, &report);
     assert_eq!(ended.status, 4);
-    assert!(ended.err.contains("out.html: "), "{}", ended.err);
+    ended.complains("out.html: ");
     assert_eq!(read(&folder, "out.html"), before);
     assert_eq!(files(), count, "nothing is left beside it");
 }
@@ -259,7 +244,7 @@ fn csv_takes_other_delimiters_and_decimal_commas() {
             &[&["run", "-q", "move.scan.json"][..], arguments].concat(),
         );
         assert_eq!(ended.status, 2, "{arguments:?}");
-        assert!(ended.err.contains(message), "{}", ended.err);
+        ended.complains(message);
     }
 }
 
@@ -272,10 +257,6 @@ fn one_file_holds_one_run() {
             &["run", "-q", "move.scan.json", "move.scan.json", option, "x.csv"],
         );
         assert_eq!(ended.status, 2);
-        assert!(
-            ended.err.contains(&format!("{option} takes one script")),
-            "{}",
-            ended.err
-        );
+        ended.complains(&format!("{option} takes one script"));
     }
 }

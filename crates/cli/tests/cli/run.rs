@@ -1,6 +1,6 @@
 //! Scripts, run and shown.
 
-use crate::support::{SCRIPT, scratch, standstill, with_script, write};
+use crate::support::{SCRIPT, late, scratch, standstill, typed, with_script, write};
 
 #[test]
 fn a_run_shows_events_curves_extremes_and_a_digest() {
@@ -29,11 +29,7 @@ fn a_run_shows_events_curves_extremes_and_a_digest() {
 #[test]
 fn a_failing_claim_is_shown_and_fails() {
     let folder = scratch("run_fails");
-    write(
-        &folder,
-        "late.scan.json",
-        &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
-    );
+    write(&folder, "late.scan.json", &late());
     let ended = standstill(&folder, &["run", "--quiet", "late.scan.json"]);
     assert_eq!((ended.status, ended.err.as_str()), (1, ""));
     let lines: Vec<_> = ended.out.lines().collect();
@@ -59,10 +55,7 @@ fn parameters_are_replaced() {
     let folder = with_script("run_set");
     let ended = standstill(&folder, &["run", "-q", "--set", "v=2", "move.scan.json"]);
     assert_eq!(ended.status, 1, "slower, so Done comes later");
-    let ended = standstill(
-        &folder,
-        &["run", "-q", "--set", "v=2", "--set", "v=10", "move.scan.json"],
-    );
+    let ended = typed(&folder, "run -q --set v=2 --set v=10 move.scan.json");
     assert_eq!(ended.status, 0, "the last one counts");
 }
 
@@ -72,7 +65,7 @@ fn a_parameter_that_makes_no_sense_is_a_mistake_of_the_command_line() {
     let wrong = |set: &str, message: &str| {
         let ended = standstill(&folder, &["run", "--set", set, "move.scan.json"]);
         assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{set}");
-        assert!(ended.err.contains(message), "{}", ended.err);
+        ended.complains(message);
     };
     wrong(
         "v=fast",
@@ -89,23 +82,10 @@ fn a_parameter_that_makes_no_sense_is_a_mistake_of_the_command_line() {
 fn several_scripts_are_run_in_order_and_the_worst_one_counts() {
     let folder = with_script("run_several");
     write(&folder, "broken.scan.json", "{");
-    write(
-        &folder,
-        "late.scan.json",
-        &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
-    );
-    let ended = standstill(
-        &folder,
-        &[
-            "run",
-            "-q",
-            "late.scan.json",
-            "broken.scan.json",
-            "move.scan.json",
-        ],
-    );
+    write(&folder, "late.scan.json", &late());
+    let ended = typed(&folder, "run -q late.scan.json broken.scan.json move.scan.json");
     assert_eq!(ended.status, 3);
-    assert!(ended.err.contains("--> broken.scan.json:1:2"), "{}", ended.err);
+    ended.complains("--> broken.scan.json:1:2");
     assert!(
         ended
             .out
@@ -130,6 +110,6 @@ fn a_mistake_in_a_script_is_pointed_at() {
     );
     let ended = standstill(&folder, &["run", "typing.scan.json"]);
     assert_eq!((ended.status, ended.out.as_str()), (3, ""));
-    assert!(ended.err.contains("typing.scan.json:15:29"), "{}", ended.err);
-    assert!(ended.err.contains("did you mean `Execute`?"), "{}", ended.err);
+    ended.complains("typing.scan.json:15:29");
+    ended.complains("did you mean `Execute`?");
 }

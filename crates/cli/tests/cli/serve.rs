@@ -350,14 +350,7 @@ fn links_that_lead_out_and_pipes_are_refused() {
     )
     .expect("a link");
     symlink("loop.scan.json", folder.join("cells/loop.scan.json")).expect("a link");
-    let pipe = folder.join("cells/pipe.scan.json");
-    assert!(
-        std::process::Command::new("mkfifo")
-            .arg(&pipe)
-            .status()
-            .expect("mkfifo")
-            .success()
-    );
+    crate::support::fifo(&folder.join("cells/pipe.scan.json"));
     let served = Served::new(&folder, &["cells"]);
     for (path, why) in [
         ("/folder/out.scan.json", "it leads out of the folder"),
@@ -404,13 +397,9 @@ fn it_says_what_is_missing_before_it_serves() {
     let port = served.port.to_string();
     let taken = standstill(&folder, &["serve", "--port", &port, "--site", "site", "cells"]);
     assert_eq!(taken.status, 4);
-    assert!(
-        taken.err.contains(&format!(
-            "error: port {port}: another program has it; `--port N` takes another one"
-        )),
-        "{}",
-        taken.err
-    );
+    taken.complains(&format!(
+        "error: port {port}: another program has it; `--port N` takes another one"
+    ));
 }
 
 #[test]

@@ -8,18 +8,10 @@ fn replans_hold_and_an_interrupted_run_ends_as_one_that_is_not() {
     let soak = |arguments: &[&str]| standstill(&folder, &[&["soak", "planner"], arguments].concat());
     let whole = soak(&["--seed", "1", "--count", "20010"]);
     assert_eq!((whole.status, whole.err.as_str()), (0, ""), "{}", whole.out);
-    assert!(
-        whole.out.ends_with("seed 1: 20010 replans, 0 failed\n"),
-        "{}",
-        whole.out
-    );
+    whole.prints_last("seed 1: 20010 replans, 0 failed\n");
     // It stops in the middle of a chain, and continues.
     let part = soak(&["--count", "7007", "--resume", "state.json"]);
-    assert!(
-        part.out.ends_with("seed 1: 7007 replans, 0 failed\n"),
-        "{}",
-        part.out
-    );
+    part.prints_last("seed 1: 7007 replans, 0 failed\n");
     let rest = soak(&["--count", "20010", "--resume", "state.json"]);
     assert_eq!(rest.out, whole.out);
     assert!(read(&folder, "state.json").contains(r#""chains":1000,"#));

@@ -1,6 +1,6 @@
 //! `st`: its messages about a program, and its output.
 
-use crate::support::{scratch, standstill};
+use crate::support::{scratch, standstill, typed};
 use std::fs;
 
 const GOOD: &str = "PROGRAM Cell\nVAR\n  X : AXIS_REF;\nEND_VAR\nVAR_OUTPUT\n  Count : INT;\nEND_VAR\nCount := Count + 1;\nEND_PROGRAM\n";
@@ -14,10 +14,7 @@ fn a_good_program_is_built_with_its_symbols() {
         (ended.status, ended.out.as_str(), ended.err.as_str()),
         (0, "", "")
     );
-    let ended = standstill(
-        &place,
-        &["st", "build", "cell.st", "-o", "cell.wasm", "--axis", "X"],
-    );
+    let ended = typed(&place, "st build cell.st -o cell.wasm --axis X");
     assert_eq!((ended.status, ended.err.as_str()), (0, ""));
     assert_eq!(ended.out, "cell.wasm\ncell.symbols.json\n");
     assert!(fs::read(place.join("cell.wasm")).unwrap().starts_with(b"\0asm"));
@@ -63,26 +60,13 @@ fn a_program_runs_without_a_script() {
     fs::write(place.join("cell.st"), text).unwrap();
     let machine = r#"{"standstill": 1, "axes": {"X": {"limits": {"velocity": 1, "acceleration": 1}}}}"#;
     fs::write(place.join("m.machine.json"), machine).unwrap();
-    let ended = standstill(
+    let ended = typed(
         &place,
-        &[
-            "run",
-            "cell.st",
-            "--axes",
-            "m.machine.json",
-            "--scans",
-            "20",
-            "--cycle",
-            "T#2ms",
-        ],
+        "run cell.st --axes m.machine.json --scans 20 --cycle T#2ms",
     );
     assert_eq!((ended.status, ended.err.as_str()), (0, ""));
-    assert!(ended.out.contains("Disabled -> Standstill"), "{}", ended.out);
-    assert!(
-        ended.out.contains("cell.st: passed, 1 of 1 claims, 20 scans"),
-        "{}",
-        ended.out
-    );
+    ended.prints("Disabled -> Standstill");
+    ended.prints("cell.st: passed, 1 of 1 claims, 20 scans");
     for (arguments, status) in [
         (&["run", "gone.st"][..], 4),
         (&["run", "cell.st", "--axes", "gone.json"], 4),
@@ -129,7 +113,7 @@ fn files_are_laid_out_in_place_and_only_those_that_change_are_named() {
     fs::write(place.join("bad.st"), "PROGRAM P x := ; END_PROGRAM").unwrap();
     let ended = standstill(&place, &["st", "fmt", "bad.st"]);
     assert_eq!(ended.status, 3);
-    assert!(ended.err.contains("bad.st:1:16"), "{}", ended.err);
+    ended.complains("bad.st:1:16");
 }
 
 /// Executed statements are counted in a run beside the judged one.
@@ -171,7 +155,7 @@ END_PROGRAM
     assert_eq!(ended.status, 0, "{} {}", ended.out, ended.err);
     let line = "  cell.st: not executed: lines 3, 14; a branch not taken: line 11
 coverage: 5 of 7 (71.4 %) statements, 5 of 6 (83.3 %) branches: cov.lcov\n";
-    assert!(ended.out.ends_with(line), "{}", ended.out);
+    ended.prints_last(line);
     let lcov = fs::read_to_string(place.join("cov.lcov")).unwrap();
     let expected = "TN:
 SF:cell.st
@@ -198,11 +182,7 @@ end_of_record
     // With a folder for reports there is a page of the sources.
     let arguments = ["test", "--coverage", "cov.lcov", "--report", "out", "a.scan.json"];
     let ended = standstill(&place, &arguments);
-    assert!(
-        ended.out.ends_with("    report: out/coverage.html\n"),
-        "{}",
-        ended.out
-    );
+    ended.prints_last("    report: out/coverage.html\n");
     let page = fs::read_to_string(place.join("out/coverage.html")).unwrap();
     for row in [
         "<h2>cell.st</h2>\n<p>5 of 7 (71.4 %) statements, 5 of 6 (83.3 %) branches</p>",

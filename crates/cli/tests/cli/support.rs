@@ -1,9 +1,10 @@
 //! Starting the program, and places for it to write to.
 
+use serde_json::Value;
 use std::fs;
-use std::io::Write;
+use std::io::{Write, pipe};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
 use std::thread;
 
 /// A script that takes longer than any time limit of a test.
@@ -46,6 +47,69 @@ pub struct Ended {
     pub err: String,
 }
 
+impl Ended {
+    fn of(output: Output) -> Self {
+        Self {
+            status: output.status.code().expect("it ends by itself"),
+            out: String::from_utf8(output.stdout).expect("UTF-8"),
+            err: String::from_utf8(output.stderr).expect("UTF-8"),
+        }
+    }
+
+    /// Checks that this is on standard output.
+    #[track_caller]
+    pub fn prints(&self, part: &str) {
+        assert!(self.out.contains(part), "no {part:?} in\n{}", self.out);
+    }
+
+    /// Checks that standard output begins with this.
+    #[track_caller]
+    pub fn prints_first(&self, part: &str) {
+        assert!(
+            self.out.starts_with(part),
+            "{part:?} does not begin\n{}",
+            self.out
+        );
+    }
+
+    /// Checks that standard output ends with this.
+    #[track_caller]
+    pub fn prints_last(&self, part: &str) {
+        assert!(self.out.ends_with(part), "{part:?} does not end\n{}", self.out);
+    }
+
+    /// Checks that this is on standard error.
+    #[track_caller]
+    pub fn complains(&self, part: &str) {
+        assert!(self.err.contains(part), "no {part:?} in\n{}", self.err);
+    }
+
+    /// Checks that standard error begins with this.
+    #[track_caller]
+    pub fn complains_first(&self, part: &str) {
+        assert!(
+            self.err.starts_with(part),
+            "{part:?} does not begin\n{}",
+            self.err
+        );
+    }
+
+    /// The answer to `--json`, checked: one line, which fulfils the program's own schema.
+    #[track_caller]
+    pub fn answer(&self) -> Value {
+        assert_eq!(self.out.lines().count(), 1, "{}", self.out);
+        let answer = serde_json::from_str(&self.out).expect("JSON");
+        let schema = ended(&mut command(&["schema", "json"])).out;
+        let schema = serde_json::from_str(&schema).expect("JSON");
+        let mut schemas = boon::Schemas::new();
+        let mut compiler = boon::Compiler::new();
+        compiler.add_resource("outcome.json", schema).expect("a schema");
+        let index = compiler.compile("outcome.json", &mut schemas).expect("a schema");
+        assert!(schemas.validate(&answer, index).is_ok(), "{answer}");
+        answer
+    }
+}
+
 /// The program with these arguments, in an environment of its own.
 pub fn command(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_standstill"));
@@ -58,12 +122,7 @@ pub fn command(arguments: &[&str]) -> Command {
 
 /// Runs a command to its end.
 pub fn ended(command: &mut Command) -> Ended {
-    let output = command.output().expect("the program starts");
-    Ended {
-        status: output.status.code().expect("it ends by itself"),
-        out: String::from_utf8(output.stdout).expect("UTF-8"),
-        err: String::from_utf8(output.stderr).expect("UTF-8"),
-    }
+    Ended::of(command.output().expect("the program starts"))
 }
 
 /// Runs the program with these arguments in a folder.
@@ -71,9 +130,42 @@ pub fn standstill(folder: &Path, arguments: &[&str]) -> Ended {
     ended(command(arguments).current_dir(folder))
 }
 
+/// Runs the program in a folder with a line of arguments, as one types them.
+pub fn typed(folder: &Path, arguments: &str) -> Ended {
+    let arguments: Vec<&str> = arguments.split(' ').collect();
+    standstill(folder, &arguments)
+}
+
+/// Runs the program with these arguments in a folder, with this limit of `ulimit`.
+#[cfg(unix)]
+pub fn limited(limit: &str, folder: &Path, arguments: &[&str]) -> Ended {
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &format!("ulimit {limit}; exec \"$@\""), "sh"]);
+    shell.arg(env!("CARGO_BIN_EXE_standstill")).args(arguments);
+    shell.env_remove("CI").env_remove("INSTA_UPDATE");
+    ended(shell.current_dir(folder))
+}
+
+/// The status and the messages of the program if its output has no reader.
+pub fn unread(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+    let (reader, writer) = pipe().expect("a pipe");
+    drop(reader);
+    let mut command = command(arguments);
+    let piped = command.current_dir(folder).stdout(writer).stderr(Stdio::piped());
+    let output = piped.output().expect("the program starts");
+    (
+        output.status.code(),
+        String::from_utf8_lossy(&output.stderr).into_owned(),
+    )
+}
+
 /// Runs the program with this standard input.
 pub fn fed(arguments: &[&str], input: &[u8]) -> Ended {
-    let mut command = command(arguments);
+    fed_to(&mut command(arguments), input)
+}
+
+/// The same for a command.
+pub fn fed_to(command: &mut Command, input: &[u8]) -> Ended {
     let piped = command
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -83,12 +175,7 @@ pub fn fed(arguments: &[&str], input: &[u8]) -> Ended {
     thread::scope(|scope| {
         // In parallel with reading its output, or both sides could wait for each other.
         scope.spawn(move || stdin.write_all(input).expect("it reads all"));
-        let output = child.wait_with_output().expect("it ends");
-        Ended {
-            status: output.status.code().expect("it ends by itself"),
-            out: String::from_utf8(output.stdout).expect("UTF-8"),
-            err: String::from_utf8(output.stderr).expect("UTF-8"),
-        }
+        Ended::of(child.wait_with_output().expect("it ends"))
     })
 }
 
@@ -98,6 +185,18 @@ pub fn scratch(name: &str) -> PathBuf {
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("a folder to write to");
     folder
+}
+
+/// [`SCRIPT`] with a claim that fails: the move would have to take two scans less.
+pub fn late() -> String {
+    SCRIPT.replace("\"at\": 21", "\"at\": 19")
+}
+
+/// Makes a named pipe.
+#[cfg(unix)]
+pub fn fifo(path: &Path) {
+    let made = Command::new("mkfifo").arg(path).status();
+    assert!(made.expect("every Unix has it").success());
 }
 
 /// An empty folder with [`SCRIPT`] in it as `move.scan.json`.
@@ -115,16 +214,4 @@ pub fn write(folder: &Path, name: &str, text: &str) {
 /// Reads a file of the folder.
 pub fn read(folder: &Path, name: &str) -> String {
     fs::read_to_string(folder.join(name)).expect("a file that was written")
-}
-
-/// Checks that the output of a command with `--json` fulfils the program's own schema.
-#[track_caller]
-pub fn is_an_outcome(outcome: &serde_json::Value) {
-    let schema = ended(&mut command(&["schema", "json"])).out;
-    let schema = serde_json::from_str(&schema).expect("JSON");
-    let mut schemas = boon::Schemas::new();
-    let mut compiler = boon::Compiler::new();
-    compiler.add_resource("outcome.json", schema).expect("a schema");
-    let index = compiler.compile("outcome.json", &mut schemas).expect("a schema");
-    assert!(schemas.validate(outcome, index).is_ok(), "{outcome}");
 }

@@ -1,6 +1,6 @@
 //! Scripts as tests.
 
-use crate::support::{SCRIPT, command, ended, is_an_outcome, read, scratch, standstill, with_script, write};
+use crate::support::{SCRIPT, command, ended, late, read, scratch, standstill, typed, with_script, write};
 use std::fs;
 use std::path::Path;
 
@@ -9,13 +9,7 @@ fn a_golden_is_accepted_once_and_judges_from_then_on() {
     let folder = with_script("test_accept");
     let missing = standstill(&folder, &["test", "."]);
     assert_eq!(missing.status, 1);
-    assert!(
-        missing
-            .out
-            .contains("FAILED    ./move.scan.json\n    golden: there is no golden yet\n"),
-        "{}",
-        missing.out
-    );
+    missing.prints("FAILED    ./move.scan.json\n    golden: there is no golden yet\n");
     let accepted = standstill(&folder, &["test", "--accept", "."]);
     assert_eq!((accepted.status, accepted.err.as_str()), (0, ""));
     assert_eq!(accepted.out, "accepted  ./move.scan.json\n1 script: 1 accepted\n");
@@ -76,7 +70,7 @@ fn the_default_is_scan_tests_or_what_is_in_the_folder() {
     let nothing = standstill(&folder, &["test"]);
     assert_eq!(nothing.status, 2);
     let told = "error: .: there is no .scan.json file in it; `standstill init` writes a first one\n";
-    assert!(nothing.err.starts_with(told), "{}", nothing.err);
+    nothing.complains_first(told);
     write(&folder, "here.scan.json", SCRIPT);
     let here = standstill(&folder, &["test", "--golden", "none"]);
     assert_eq!(here.out, "ok        ./here.scan.json\n1 script: 1 passed\n");
@@ -84,7 +78,7 @@ fn the_default_is_scan_tests_or_what_is_in_the_folder() {
     let empty = standstill(&folder, &["test"]);
     assert_eq!(empty.status, 2);
     let told = "scan-tests: there is no .scan.json file in it";
-    assert!(empty.err.contains(told), "{}", empty.err);
+    empty.complains(told);
     write(&folder, "scan-tests/moves/move.scan.json", SCRIPT);
     assert_eq!(standstill(&folder, &["test", "--accept"]).status, 0);
     let passed = standstill(&folder, &["test"]);
@@ -97,25 +91,17 @@ fn the_default_is_scan_tests_or_what_is_in_the_folder() {
 #[test]
 fn nothing_is_accepted_under_ci_or_against_the_claims() {
     let folder = scratch("test_refused");
-    write(
-        &folder,
-        "late.scan.json",
-        &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
-    );
+    write(&folder, "late.scan.json", &late());
     let claims = standstill(&folder, &["test", "--accept", "late.scan.json"]);
     assert_eq!(claims.status, 1);
-    assert!(
-        claims.out.contains("golden: not accepted: claims fail"),
-        "{}",
-        claims.out
-    );
+    claims.prints("golden: not accepted: claims fail");
     let ci = ended(
         command(&["test", "--accept", "late.scan.json"])
             .current_dir(&folder)
             .env("CI", "true"),
     );
     assert_eq!((ci.status, ci.out.as_str()), (2, ""));
-    assert!(ci.err.contains("goldens are not accepted under CI"), "{}", ci.err);
+    ci.complains("goldens are not accepted under CI");
     assert!(!folder.join("late.snap").exists());
 }
 
@@ -126,24 +112,18 @@ fn orphans_fail_and_broken_scripts_do_not_hide_the_others() {
     fs::copy(folder.join("move.snap"), folder.join("gone.snap")).unwrap();
     let orphan = standstill(&folder, &["test", "."]);
     assert_eq!(orphan.status, 1);
-    assert!(orphan.out.contains("ORPHAN    ./gone.snap\n"), "{}", orphan.out);
+    orphan.prints("ORPHAN    ./gone.snap\n");
     assert!(orphan.out.ends_with("1 script: 1 passed, 1 orphaned\n"));
     // A script of another name also has its golden.
     fs::copy(folder.join("move.scan.json"), folder.join("gone.json")).unwrap();
     let kept = standstill(&folder, &["test", "."]);
-    assert!(kept.out.ends_with("1 script: 1 passed\n"), "{}", kept.out);
+    kept.prints_last("1 script: 1 passed\n");
     fs::remove_file(folder.join("gone.json")).unwrap();
     write(&folder, "broken.scan.json", "{");
     let broken = standstill(&folder, &["test", "."]);
     assert_eq!(broken.status, 3);
-    assert!(
-        broken
-            .out
-            .contains("BROKEN    ./broken.scan.json\nok        ./move.scan.json\n"),
-        "{}",
-        broken.out
-    );
-    assert!(broken.err.contains("broken.scan.json:1:2"), "{}", broken.err);
+    broken.prints("BROKEN    ./broken.scan.json\nok        ./move.scan.json\n");
+    broken.complains("broken.scan.json:1:2");
 }
 
 #[test]
@@ -152,11 +132,7 @@ fn a_golden_that_is_no_snapshot_is_a_bad_file() {
     write(&folder, "move.snap", "not a snapshot");
     let ended = standstill(&folder, &["test", "move.scan.json"]);
     assert_eq!(ended.status, 3);
-    assert!(
-        ended.err.contains("move.snap: no snapshot in insta's form"),
-        "{}",
-        ended.err
-    );
+    ended.complains("move.snap: no snapshot in insta's form");
     assert_eq!(read(&folder, "move.snap"), "not a snapshot");
 }
 
@@ -164,11 +140,7 @@ fn a_golden_that_is_no_snapshot_is_a_bad_file() {
 fn the_outcome_goes_into_a_junit_file_that_a_reader_understands() {
     let folder = with_script("test_junit");
     fs::create_dir_all(folder.join("more")).unwrap();
-    write(
-        &folder,
-        "more/late.scan.json",
-        &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
-    );
+    write(&folder, "more/late.scan.json", &late());
     write(&folder, "more/no.scan.json", "{<");
     assert_eq!(
         standstill(&folder, &["test", "--accept", "move.scan.json"]).status,
@@ -176,13 +148,7 @@ fn the_outcome_goes_into_a_junit_file_that_a_reader_understands() {
     );
     let ended = standstill(&folder, &["test", ".", "--junit", "out.xml"]);
     assert_eq!(ended.status, 3);
-    assert!(
-        ended.out.ends_with(
-            "\nto look at\n  ./more/late.scan.json\n  ./more/no.scan.json\n3 scripts: 1 passed, 1 failed, 1 broken\n"
-        ),
-        "{}",
-        ended.out
-    );
+    ended.prints_last("\nto look at\n  ./more/late.scan.json\n  ./more/no.scan.json\n3 scripts: 1 passed, 1 failed, 1 broken\n");
     let text = read(&folder, "out.xml");
     let document = roxmltree::Document::parse(&text).unwrap();
     let told: Vec<_> = document
@@ -239,10 +205,7 @@ fn any_number_of_threads_prints_the_same() {
         assert_eq!(run(threads), one, "{threads:?}");
     }
     // A script that is named twice is judged twice in succession: both runs write the same golden.
-    let twice = standstill(
-        &folder,
-        &["test", "move.scan.json", "./move.scan.json", "--accept"],
-    );
+    let twice = typed(&folder, "test move.scan.json ./move.scan.json --accept");
     assert_eq!(
         (twice.status, twice.out.matches("move.scan.json").count()),
         (0, 2)
@@ -255,8 +218,8 @@ fn a_junit_file_that_cannot_be_written_leaves_nothing_behind() {
     assert_eq!(standstill(&folder, &["test", "--accept", "."]).status, 0);
     let ended = standstill(&folder, &["test", ".", "--junit", "nowhere/out.xml"]);
     assert_eq!(ended.status, 4);
-    assert!(ended.err.starts_with("error: nowhere/out.xml: "), "{}", ended.err);
-    assert!(ended.out.ends_with("1 script: 1 passed\n"), "{}", ended.out);
+    ended.complains_first("error: nowhere/out.xml: ");
+    ended.prints_last("1 script: 1 passed\n");
     assert!(!folder.join("nowhere").exists());
 }
 
@@ -271,21 +234,10 @@ fn a_failing_script_gets_a_page_of_golden_and_run() {
         "\"GO\": true}}, {\"at\": 25, \"set\": {\"GO\": false}}",
     );
     write(&folder, "move.scan.json", &other);
-    let ended = standstill(
-        &folder,
-        &["test", ".", "../test_report/move.scan.json", "--report", "pages"],
-    );
+    let ended = typed(&folder, "test . ../test_report/move.scan.json --report pages");
     assert_eq!((ended.status, ended.err.as_str()), (1, ""));
-    assert!(
-        ended.out.contains("\n    report: pages/move.html\n"),
-        "{}",
-        ended.out
-    );
-    assert!(
-        ended.out.contains("\n    report: pages/test_report/move.html\n"),
-        "{}",
-        ended.out
-    );
+    ended.prints("\n    report: pages/move.html\n");
+    ended.prints("\n    report: pages/test_report/move.html\n");
     let page = read(&folder, "pages/move.html");
     let traces = page
         .matches("<script type=\"text/plain\" class=\"rows\">")
@@ -314,7 +266,7 @@ fn a_page_of_one_run_where_there_is_nothing_to_lay_it_over() {
         assert!(page.contains(title), "{title}");
     };
     // The claim fails, the run is as recorded.
-    alone(&SCRIPT.replace("\"at\": 21", "\"at\": 19"), "1 of 2 claims hold");
+    alone(&late(), "1 of 2 claims hold");
     // Other cycles have no common scans.
     let slow = SCRIPT
         .replace("T#10ms", "T#20ms")
@@ -352,17 +304,9 @@ fn by_events_a_golden_admits_what_no_machine_notices() {
     assert_eq!(test(&[]).status, 1);
     let close = test(&[&events[..], &["--junit", "out.xml", "--report", "pages"]].concat());
     assert_eq!((close.status, close.err.as_str()), (0, ""));
-    assert!(
-        close.out.starts_with("ok        ./move.scan.json\n    "),
-        "{}",
-        close.out
-    );
-    assert!(
-        close.out.contains(" values within tolerance, the furthest "),
-        "{}",
-        close.out
-    );
-    assert!(close.out.ends_with("1 script: 1 passed\n"), "{}", close.out);
+    close.prints_first("ok        ./move.scan.json\n    ");
+    close.prints(" values within tolerance, the furthest ");
+    close.prints_last("1 script: 1 passed\n");
     assert!(read(&folder, "out.xml").contains("failures=\"0\""));
     assert!(!folder.join("pages/move.html").exists());
     // The strict mode finds it, names its subject, and marks it in the report and for JUnit.
@@ -371,13 +315,9 @@ fn by_events_a_golden_admits_what_no_machine_notices() {
     ];
     let found = test(&[&events[..], &strict].concat());
     assert_eq!(found.status, 1);
-    assert!(
-        found.out.contains("first difference in scan 0 (T#0s)"),
-        "{}",
-        found.out
-    );
+    found.prints("first difference in scan 0 (T#0s)");
     let line = "move.Position  expected 1.0  found 0.999999999999  (may be 1.0e-13 apart)";
-    assert!(found.out.contains(line), "{}", found.out);
+    found.prints(line);
     assert!(read(&folder, "pages/move.html").contains(",0]}"));
     assert!(read(&folder, "out.xml").contains("move.Position  expected 1.0  found 0.999999999999"));
 }
@@ -394,7 +334,7 @@ fn tolerances_belong_to_events_and_are_numbers() {
     ] {
         let ended = standstill(&folder, &[&["test", "."], arguments].concat());
         assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{arguments:?}");
-        assert!(ended.err.starts_with("error: "), "{}", ended.err);
+        ended.complains_first("error: ");
     }
 }
 
@@ -403,7 +343,7 @@ fn a_folder_that_cannot_be_made_is_told_before_the_tests_run() {
     let folder = with_script("test_report_refused");
     let ended = standstill(&folder, &["test", ".", "--report", "move.scan.json"]);
     assert_eq!((ended.status, ended.out.as_str()), (4, ""));
-    assert!(ended.err.starts_with("error: move.scan.json: "), "{}", ended.err);
+    ended.complains_first("error: move.scan.json: ");
 }
 
 #[test]
@@ -442,24 +382,11 @@ fn files_outside_the_folder_are_included_only_where_that_is_allowed() {
         "machines/m.machine.json",
         &machine.replace("lamp", "1amp"),
     );
-    let ended = standstill(
-        &folder,
-        &["run", "jobs/in.scan.json", "--include-from", "machines"],
-    );
-    assert!(
-        ended.err.contains("--> jobs/../machines/m.machine.json:1:30"),
-        "{}",
-        ended.err
-    );
+    let ended = typed(&folder, "run jobs/in.scan.json --include-from machines");
+    ended.complains("--> jobs/../machines/m.machine.json:1:30");
     write(&folder, "jobs/in.scan.json", &script("in/gone.json"));
     let ended = standstill(&folder, &["run", "jobs/in.scan.json"]);
-    assert!(
-        ended
-            .err
-            .contains("`in/gone.json` cannot be included: there is no such file"),
-        "{}",
-        ended.err
-    );
+    ended.complains("`in/gone.json` cannot be included: there is no such file");
 }
 
 #[cfg(unix)]
@@ -473,36 +400,18 @@ fn a_link_does_not_lead_outside() {
     write(&folder, "jobs/a.scan.json", &script);
     let ended = standstill(&folder, &["run", "jobs/a.scan.json"]);
     assert_eq!(ended.status, 3);
-    assert!(ended.err.contains("outside the script's folder"), "{}", ended.err);
+    ended.complains("outside the script's folder");
 }
 
 /// The claims of a script on the trace of another run, with the same names in another order of columns.
 #[test]
 fn a_recording_is_judged_by_the_claims_of_a_script() {
     let folder = with_script("test_recording");
-    let slow = standstill(
-        &folder,
-        &[
-            "run",
-            "--quiet",
-            "move.scan.json",
-            "--trace",
-            "run.jsonl",
-            "--set",
-            "v=5",
-        ],
-    );
+    let slow = typed(&folder, "run --quiet move.scan.json --trace run.jsonl --set v=5");
     assert_eq!(slow.status, 1, "{}", slow.out);
-    let judged = standstill(
+    let judged = typed(
         &folder,
-        &[
-            "test",
-            "move.scan.json",
-            "--recording",
-            "run.jsonl",
-            "--junit",
-            "out.xml",
-        ],
+        "test move.scan.json --recording run.jsonl --junit out.xml",
     );
     assert_eq!(
         (judged.status, judged.out.as_str()),
@@ -528,14 +437,8 @@ fn a_recording_is_judged_by_the_claims_of_a_script() {
     write(&folder, "cut.csv", &format!("{csv}{rows}"));
     let missing = standstill(&folder, &["test", "move.scan.json", "--recording", "cut.csv"]);
     assert_eq!(missing.status, 3);
-    assert!(
-        missing.err.ends_with(
-            "error: cut.csv: expect[0] speaks of move.Done, which the recording has not (nor what another claim speaks \
-             of); columns go by name, as the script's own trace has them\n"
-        ),
-        "{}",
-        missing.err
-    );
+    missing.complains("error: cut.csv: expect[0] speaks of move.Done, which the recording has not (nor what another claim speaks \
+             of); columns go by name, as the script's own trace has them\n");
     let claims = SCRIPT
         .replace(
             r#"{"at": 21, "that": {"move.Done": true, "X.Position": 1}}"#,
@@ -556,23 +459,13 @@ fn a_recording_is_judged_by_the_claims_of_a_script() {
     let faster = claims.replace("\"velocity\": 20", "\"velocity\": 4");
     write(&folder, "claims.scan.json", &faster);
     let failed = standstill(&folder, &["test", "claims.scan.json", "--recording", "cut.csv"]);
-    assert!(
-        failed.out.contains(
-            "expect[0].within_limits.X.Position.d1: 4.999999999999999 at scan 5, expected of magnitude <= 4.0"
-        ),
-        "{}",
-        failed.out
+    failed.prints(
+        "expect[0].within_limits.X.Position.d1: 4.999999999999999 at scan 5, expected of magnitude <= 4.0",
     );
     write(&folder, "claims.scan.json", &claims.replace("T#10ms", "T#1ms"));
     let other = standstill(&folder, &["test", "claims.scan.json", "--recording", "cut.csv"]);
     assert_eq!(other.status, 3);
-    assert!(
-        other
-            .err
-            .contains("its cycle is 10000000 ns and that of the script 1000000 ns"),
-        "{}",
-        other.err
-    );
+    other.complains("its cycle is 10000000 ns and that of the script 1000000 ns");
 }
 
 #[test]
@@ -609,7 +502,7 @@ fn a_recording_needs_one_script_and_no_golden() {
     ] {
         let ended = standstill(&folder, arguments);
         assert_eq!(ended.status, 2, "{arguments:?}: {}", ended.err);
-        assert!(ended.err.contains(wanted), "{arguments:?}: {}", ended.err);
+        ended.complains(wanted);
     }
 }
 
@@ -623,31 +516,14 @@ fn a_failing_test_says_why_in_every_form() {
     );
     let why = "move was refused in scan 1: 201 NotPowered: switch it on with MC_Power and wait for Status; there is no \
                MC_Power for X, and it does not start in Standstill";
-    let tested = standstill(
+    let tested = typed(
         &folder,
-        &[
-            "test",
-            "off.scan.json",
-            "--golden",
-            "none",
-            "--junit",
-            "out.xml",
-            "--report",
-            "pages",
-        ],
+        "test off.scan.json --golden none --junit out.xml --report pages",
     );
     assert_eq!(tested.status, 1);
-    assert!(
-        tested.out.contains(&format!("    why\n      {why}\n")),
-        "{}",
-        tested.out
-    );
+    tested.prints(&format!("    why\n      {why}\n"));
     let quiet = standstill(&folder, &["run", "-q", "off.scan.json", "--report", "run.html"]);
-    assert!(
-        quiet.out.contains(&format!("  why\n    {why}\n")),
-        "{}",
-        quiet.out
-    );
+    quiet.prints(&format!("  why\n    {why}\n"));
     let junit = read(&folder, "out.xml");
     let document = roxmltree::Document::parse(&junit).unwrap();
     let failure = document
@@ -691,7 +567,7 @@ fn what_tests_nothing_is_told_and_fails_only_under_strict() {
     let nobody = "warning[vacuous]: the input STOP is read by no wire, step or claim";
     let clamped = "warning[clamped]: move.Velocity 600.0 was lowered to 20.0 in scan 1";
     for told in [nobody, clamped, "a.scan.json:10:27"] {
-        assert!(loose.err.contains(told), "{}", loose.err);
+        loose.complains(told);
     }
     let strict = standstill(&folder, &[&arguments[..], &["--strict"]].concat());
     assert_eq!(strict.status, 1);
@@ -702,7 +578,7 @@ fn what_tests_nothing_is_told_and_fails_only_under_strict() {
     );
     let quiet = standstill(&folder, &["run", "-q", "a.scan.json"]);
     assert_eq!(quiet.status, 0);
-    assert!(quiet.err.contains(clamped), "{}", quiet.err);
+    quiet.complains(clamped);
     // An intended item is marked as such.
     let meant = doubtful()
         .replace(
@@ -747,11 +623,7 @@ fn claims_decide_alone_where_no_golden_is_asked_for() {
     );
     let nothing = standstill(&folder, &["test", "--strict", "a.scan.json"]);
     assert_eq!(nothing.status, 1);
-    assert!(
-        nothing.out.contains("the script has no claims and no golden"),
-        "{}",
-        nothing.out
-    );
+    nothing.prints("the script has no claims and no golden");
 }
 
 #[test]
@@ -768,13 +640,7 @@ fn the_outcome_as_json_is_what_its_schema_says() {
     let tested = standstill(&folder, &["test", ".", "--json", "--golden", "none"]);
     let ran = standstill(&folder, &["run", "--json", "a.scan.json", "off.scan.json"]);
     assert_eq!((tested.status, ran.status), (3, 1));
-    let [tested, ran] = [tested.out, ran.out].map(|out| {
-        assert_eq!(out.lines().count(), 1);
-        serde_json::from_str::<serde_json::Value>(&out).unwrap()
-    });
-    for outcome in [&tested, &ran] {
-        is_an_outcome(outcome);
-    }
+    let [tested, ran] = [tested, ran].map(|ended| ended.answer());
     let verdicts: Vec<_> = tested["scripts"]
         .as_array()
         .unwrap()
@@ -832,16 +698,8 @@ fn mutants_that_no_claim_notices_survive() {
     let script = &json["scripts"][0];
     assert_eq!((&script["killed"], &script["survived"]), (&6.into(), &0.into()));
     assert_eq!(script["mutants"][0]["claim"], "expect[1]");
-    write(
-        &folder,
-        "a.scan.json",
-        &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
-    );
+    write(&folder, "a.scan.json", &late());
     let broken = standstill(&folder, &["test", "--mutate", "a.scan.json"]);
     assert_eq!(broken.status, 1);
-    assert!(
-        broken.out.contains("its claims fail without a change"),
-        "{}",
-        broken.out
-    );
+    broken.prints("its claims fail without a change");
 }

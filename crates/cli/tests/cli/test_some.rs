@@ -1,8 +1,8 @@
 //! `test` of some scripts, of none, and repeatedly.
 
-use crate::support::{SCRIPT, command, ended, standstill, with_script, write};
+use crate::support::{Ended, SCRIPT, command, ended, fed_to, late, standstill, with_script, write};
 use std::fs;
-use std::io::{BufRead as _, BufReader, Write as _};
+use std::io::{BufRead as _, BufReader};
 use std::process::Stdio;
 
 #[test]
@@ -32,12 +32,7 @@ fn a_word_picks_scripts_and_list_only_names_them() {
     );
     let none = run(&["-k", "pres s"]);
     assert_eq!((none.status, none.out.as_str()), (2, ""));
-    assert!(
-        none.err
-            .contains("-k pres s: none of 3 scripts has that in its path; `--list` prints them"),
-        "{}",
-        none.err
-    );
+    none.complains("-k pres s: none of 3 scripts has that in its path; `--list` prints them");
     let mutants = run(&["--mutate", "-k", "press"]);
     assert_eq!(mutants.status, 0, "{}", mutants.err);
     assert!(!mutants.out.contains("move.scan.json"), "{}", mutants.out);
@@ -47,11 +42,7 @@ fn a_word_picks_scripts_and_list_only_names_them() {
 #[test]
 fn what_was_saved_is_judged_again_failures_first() {
     let folder = with_script("test_again");
-    write(
-        &folder,
-        "z.scan.json",
-        &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
-    );
+    write(&folder, "z.scan.json", &late());
     let mut command = command(&["test", "--watch", "--golden", "none", "--report", "pages"]);
     let piped = command
         .current_dir(&folder)
@@ -95,30 +86,15 @@ fn a_review_asks_for_each_golden_that_differs_and_takes_only_what_is_answered_ye
     let folder = with_script("test_review");
     write(&folder, "b.scan.json", SCRIPT);
     write(&folder, "broken.scan.json", "{");
-    write(
-        &folder,
-        "c.scan.json",
-        &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
-    );
+    write(&folder, "c.scan.json", &late());
     let review = |answers: &str| {
         let mut command = command(&["test", "--review"]);
-        let piped = command
-            .current_dir(&folder)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped());
-        let mut child = piped.spawn().unwrap();
-        child.stdin.take().unwrap().write_all(answers.as_bytes()).unwrap();
-        let output = child.wait_with_output().unwrap();
-        (
-            output.status.code(),
-            String::from_utf8(output.stdout).unwrap(),
-            String::from_utf8(output.stderr).unwrap(),
-        )
+        let Ended { status, out, err } = fed_to(command.current_dir(&folder), answers.as_bytes());
+        (status, out, err)
     };
     // After an invalid answer it asks again; goldens that were not reviewed stay unchanged.
     let (status, out, err) = review("perhaps\nno\nq\n");
-    assert_eq!(status, Some(3), "{out}{err}");
+    assert_eq!(status, 3, "{out}{err}");
     assert!(
         out.starts_with("differs   ./b.scan.json\n    golden: there is no golden yet\n"),
         "{out}"
@@ -173,21 +149,9 @@ fn a_terminal_has_colours_and_nothing_else_has() {
         "{plain:?}"
     );
     let forced = with(&[("CLICOLOR_FORCE", "1")], test);
-    assert!(
-        forced
-            .out
-            .contains("\u{1b}[32mok\u{1b}[0m        ./move.scan.json\n"),
-        "{}",
-        forced.out
-    );
-    assert!(
-        forced
-            .out
-            .contains("\u{1b}[31mBROKEN\u{1b}[0m    ./broken.scan.json\n"),
-        "{}",
-        forced.out
-    );
-    assert!(forced.err.contains("\u{1b}[31merror\u{1b}[0m"), "{}", forced.err);
+    forced.prints("\u{1b}[32mok\u{1b}[0m        ./move.scan.json\n");
+    forced.prints("\u{1b}[31mBROKEN\u{1b}[0m    ./broken.scan.json\n");
+    forced.complains("\u{1b}[31merror\u{1b}[0m");
     let stripped = |text: &str| {
         let mut parts = text.split('\u{1b}');
         let first = parts.next().unwrap().to_owned();
@@ -233,5 +197,5 @@ fn what_is_not_there_was_probably_something_that_is() {
     assert!(!other.err.contains("did you mean"), "{}", other.err);
     let slip = standstill(&folder, &["tset"]);
     assert_eq!(slip.status, 2);
-    assert!(slip.err.contains("'test'"), "{}", slip.err);
+    slip.complains("'test'");
 }

@@ -1,7 +1,6 @@
 //! Traces, written and compared.
 
-use crate::support::{Ended, is_an_outcome, read, standstill, with_script, write};
-use serde_json::Value;
+use crate::support::{Ended, read, standstill, with_script, write};
 use std::path::{Path, PathBuf};
 
 /// A folder with the trace of the script in both forms, and that of a slower run.
@@ -47,14 +46,8 @@ fn the_first_difference_is_explained() {
     let folder = traces("traces_differ");
     let ended = explain(&folder, "a.csv", "slow.csv");
     assert_eq!((ended.status, ended.err.as_str()), (1, ""));
-    assert!(
-        ended
-            .out
-            .starts_with("expected: a.csv\nfound:    slow.csv\nfirst difference in scan "),
-        "{}",
-        ended.out
-    );
-    assert!(ended.out.contains("move.Velocity"), "{}", ended.out);
+    ended.prints_first("expected: a.csv\nfound:    slow.csv\nfirst difference in scan ");
+    ended.prints("move.Velocity");
 }
 
 #[test]
@@ -63,10 +56,7 @@ fn the_story_is_there_as_json() {
     let json = |found: &str, status: i32| {
         let ended = standstill(&folder, &["explain", "a.csv", found, "--json"]);
         assert_eq!((ended.status, ended.err.as_str()), (status, ""));
-        assert_eq!(ended.out.lines().count(), 1);
-        let outcome: Value = serde_json::from_str(&ended.out).unwrap();
-        is_an_outcome(&outcome);
-        outcome
+        ended.answer()
     };
     let same = json("a.jsonl", 0);
     assert_eq!(
@@ -121,11 +111,7 @@ fn other_lengths_and_cycles_are_told_as_such() {
         standstill(&folder, &["run", "-q", "other.scan.json", "--trace", file]);
         let ended = explain(&folder, "a.csv", file);
         assert_eq!(ended.status, 1);
-        assert!(
-            ended.out.contains(&format!("likely cause\n  {cause}")),
-            "{}",
-            ended.out
-        );
+        ended.prints(&format!("likely cause\n  {cause}"));
     }
 }
 
@@ -134,7 +120,7 @@ fn what_a_trace_lacks_is_said() {
     let folder = traces("traces_lack");
     std::fs::remove_file(folder.join("a.csv.meta.json")).unwrap();
     let ended = explain(&folder, "a.csv", "a.jsonl");
-    assert!(ended.err.starts_with("note: a.csv lacks "), "{}", ended.err);
+    ended.complains_first("note: a.csv lacks ");
 }
 
 #[test]
@@ -176,6 +162,6 @@ fn a_file_that_is_no_trace_is_told_apart_from_one_that_is_not_there() {
             "{file}: {}",
             ended.err
         );
-        assert!(ended.err.contains(message), "{}", ended.err);
+        ended.complains(message);
     }
 }

@@ -1,23 +1,17 @@
 //! `watch` takes over a terminal and restores it on every way out.
 
-use crate::support::{SCRIPT, command, read, standstill, with_script, write};
+use crate::support::{SCRIPT, command, late, read, standstill, with_script, write};
 
 #[test]
 fn without_a_terminal_it_says_so_and_a_broken_script_comes_first() {
     let folder = with_script("watch_no_terminal");
     let ended = standstill(&folder, &["watch", "move.scan.json"]);
     assert_eq!((ended.status, ended.out.as_str()), (2, ""));
-    assert!(
-        ended
-            .err
-            .contains("watch needs a terminal, and standard input is none"),
-        "{}",
-        ended.err
-    );
+    ended.complains("watch needs a terminal, and standard input is none");
     write(&folder, "broken.scan.json", "{");
     let ended = standstill(&folder, &["watch", "broken.scan.json"]);
     assert_eq!((ended.status, ended.out.as_str()), (3, ""));
-    assert!(ended.err.contains("broken.scan.json:1:2"), "{}", ended.err);
+    ended.complains("broken.scan.json:1:2");
     assert_eq!(standstill(&folder, &["watch", "absent.scan.json"]).status, 4);
     assert_eq!(
         standstill(&folder, &["watch", "move.scan.json", "--set", "w=1"]).status,
@@ -233,18 +227,14 @@ mod terminal {
         assert!(text.contains("{\"at\": 0, \"set\": {\"GO\": true}}"), "{text}");
         // GO is TRUE a scan earlier, so Done is there, too.
         let ended = standstill(&folder, &["run", "-q", "move.watched.scan.json"]);
-        assert!(ended.out.contains("move.watched.scan.json: "), "{}", ended.out);
+        ended.prints("move.watched.scan.json: ");
         assert_ne!(ended.status, 3, "{}", ended.err);
     }
 
     #[test]
     fn a_claim_that_failed_is_the_status() {
         let folder = with_script("watch_failed");
-        write(
-            &folder,
-            "late.scan.json",
-            &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
-        );
+        write(&folder, "late.scan.json", &late());
         let mut watched = Watched::new(&folder, &["late.scan.json"]);
         watched.expect("One short move");
         watched.press("c");
