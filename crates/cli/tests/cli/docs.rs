@@ -6,14 +6,11 @@
 //! lines, as `plan --svg` draws it. The picture of a cam is that of `cam plot`. With `STANDSTILL_WRITE_DOCS=1` the
 //! test writes the pictures. Files named `out.` something are written to, and read from, a folder of the test.
 
+use crate::support::{root, scratch};
 use serde_json::Value;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
 
 fn placed(argument: &str) -> PathBuf {
     match argument.strip_prefix("out.") {
@@ -77,19 +74,24 @@ fn checked_pictures(page: &str, text: &str, input: &str) -> usize {
         .map(|name| {
             let drawn = format!("out.plan-{name}.svg");
             standstill(&format!("plan --svg {drawn}"), input, &root());
-            let drawn = std::fs::read_to_string(placed(&drawn)).unwrap();
-            let path = root().join(format!("docs/pictures/plan-{name}.svg"));
-            if std::env::var_os("STANDSTILL_WRITE_DOCS").is_some_and(|value| value == "1") {
-                std::fs::write(&path, &drawn).unwrap();
-            }
-            let kept = std::fs::read_to_string(&path).unwrap_or_default();
-            assert!(
-                kept == drawn,
-                "{page}: the picture plan-{name}.svg is not that of its lines: \
-                 STANDSTILL_WRITE_DOCS=1 cargo test -p standstill-cli --test cli docs draws it"
-            );
+            is_kept(&drawn, &format!("plan-{name}.svg"), page);
         })
         .count()
+}
+
+/// Checks that a picture of a page is the one that was drawn into a file of the test.
+fn is_kept(drawn: &str, picture: &str, page: &str) {
+    let drawn = std::fs::read_to_string(placed(drawn)).unwrap();
+    let path = root().join("docs/pictures").join(picture);
+    if std::env::var_os("STANDSTILL_WRITE_DOCS").is_some_and(|value| value == "1") {
+        std::fs::write(&path, &drawn).unwrap();
+    }
+    let kept = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(
+        kept == drawn,
+        "{page}: the picture {picture} is not what is drawn: \
+         STANDSTILL_WRITE_DOCS=1 cargo test -p standstill-cli --test cli docs draws it"
+    );
 }
 
 /// Runs a console block: its first line is the command, the rest its output; `...` represents any lines.
@@ -236,16 +238,7 @@ fn the_picture_of_a_cam_is_drawn_by_the_commands_beside_it() {
     ] {
         standstill(arguments, "", &root());
     }
-    let drawn = std::fs::read_to_string(placed("out.cam.svg")).unwrap();
-    let path = root().join("docs/pictures/cam-modified-sine.svg");
-    if std::env::var_os("STANDSTILL_WRITE_DOCS").is_some_and(|value| value == "1") {
-        std::fs::write(&path, &drawn).unwrap();
-    }
-    let kept = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(
-        kept == drawn,
-        "cam-modified-sine.svg is not what is drawn: STANDSTILL_WRITE_DOCS=1 cargo test -p standstill-cli --test cli docs draws it"
-    );
+    is_kept("out.cam.svg", "cam-modified-sine.svg", "cams.md");
 }
 
 /// A JSON block whose text before it names a file is saved as that file. An indented block replaces the item with
@@ -254,9 +247,7 @@ fn the_picture_of_a_cam_is_drawn_by_the_commands_beside_it() {
 fn the_tutorial_does_what_it_says() {
     let page = "tutorial.md";
     let text = std::fs::read_to_string(root().join("docs").join(page)).unwrap();
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("tutorial");
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = scratch("tutorial");
     let (mut before, mut file, mut shown) = ("", String::new(), 0);
     for (index, part) in text.split("```").enumerate() {
         if index % 2 == 0 {
@@ -295,8 +286,7 @@ fn with_block(script: &str, block: &str) -> String {
 #[test]
 fn the_commands_of_the_example_workflow_work() {
     let workflow = std::fs::read_to_string(root().join("docs/how-to/standstill.yml")).unwrap();
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("workflow");
-    let _ = std::fs::remove_dir_all(&folder);
+    let folder = scratch("workflow");
     std::fs::create_dir_all(folder.join("machine")).unwrap();
     for entry in std::fs::read_dir(root().join("scan-tests/tutorial")).unwrap() {
         let path = entry.unwrap().path();

@@ -2,12 +2,8 @@
 //! command runs.
 //! command runs.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
+use crate::support::{root, scratch, standstill, write};
+use std::path::PathBuf;
 
 fn readme() -> String {
     std::fs::read_to_string(root().join("README.md")).unwrap()
@@ -23,19 +19,10 @@ fn blocks(language: &str) -> Vec<String> {
         .collect()
 }
 
-fn standstill(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_standstill"))
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap()
-}
-
 /// A fresh folder with the README's script in it, changed by `edit`.
 fn folder_with_script(name: &str, edit: impl Fn(String) -> String) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    std::fs::create_dir_all(&folder).unwrap();
-    std::fs::write(folder.join("there.scan.json"), edit(blocks("json").remove(0))).unwrap();
+    let folder = scratch(name);
+    write(&folder, "there.scan.json", &edit(blocks("json").remove(0)));
     folder
 }
 
@@ -43,11 +30,8 @@ fn folder_with_script(name: &str, edit: impl Fn(String) -> String) -> PathBuf {
 fn the_script_prints_what_stands_under_it() {
     let folder = folder_with_script("readme", |script| script);
     let output = standstill(&folder, &["run", "there.scan.json"]);
-    assert_eq!(output.status.code(), Some(0));
-    let (found, shown) = (
-        String::from_utf8(output.stdout).unwrap(),
-        blocks("text").remove(0),
-    );
+    assert_eq!(output.status, 0);
+    let (found, shown) = (output.out, blocks("text").remove(0));
     // `...` stands for any lines.
     let mut parts = shown.split("...\n");
     let mut rest = found.strip_prefix(parts.next().unwrap()).expect("it begins so");
@@ -64,7 +48,7 @@ fn the_script_prints_what_stands_under_it() {
 fn the_script_is_laid_out_by_fmt_and_fits_a_page() {
     let folder = folder_with_script("readme_fmt", |script| script);
     let output = standstill(&folder, &["fmt", "--check", "there.scan.json"]);
-    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(output.status, 0);
     // The part of a line that a page of GitHub shows without scrolling.
     for block in [blocks("json"), blocks("text"), blocks("console")].concat() {
         for line in block.lines() {
@@ -95,22 +79,16 @@ fn the_comparison_is_that_of_its_page() {
 
 #[test]
 fn the_first_test_of_ones_own_passes() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("readme_init");
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = scratch("readme_init");
     let console = blocks("console").remove(0);
     let line = console
         .lines()
         .find_map(|line| line.strip_prefix("$ standstill "))
         .unwrap();
     let arguments: Vec<_> = line.split(' ').collect();
-    assert_eq!(standstill(&folder, &arguments).status.code(), Some(0));
-    assert_eq!(
-        standstill(&folder.join("cell"), &["test", "--strict"])
-            .status
-            .code(),
-        Some(0)
-    );
+    assert_eq!(standstill(&folder, &arguments).status, 0);
+    let tested = standstill(&folder.join("cell"), &["test", "--strict"]);
+    assert_eq!(tested.status, 0);
 }
 
 #[test]
@@ -119,11 +97,8 @@ fn the_mistake_is_reported_as_shown() {
         script.replacen("Execute", "Exceute", 1)
     });
     let output = standstill(&folder, &["run", "there.scan.json"]);
-    assert_eq!(output.status.code(), Some(3));
-    assert_eq!(
-        String::from_utf8(output.stderr).unwrap().trim(),
-        blocks("text")[1].trim()
-    );
+    assert_eq!(output.status, 3);
+    assert_eq!(output.err.trim(), blocks("text")[1].trim());
 }
 
 #[test]
@@ -133,5 +108,5 @@ fn the_run_command_runs() {
     let (build, script) = line.split_once(" -- run ").unwrap();
     assert_eq!(build, "$ cargo run -r -p standstill-cli --no-default-features");
     let output = standstill(&root(), &["run", script]);
-    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(output.status, 0);
 }

@@ -1,24 +1,13 @@
 //! The commands that read traces read the dumps of the flight recorder of the C library.
 #![allow(unsafe_code)]
 
+use crate::support::{read, scratch, standstill};
 use standstill_capi::*;
 use std::ffi::c_char;
-use std::path::Path;
-use std::process::Command;
+use std::fs;
 use std::ptr::null_mut;
-use std::{env, fs};
 
 const TICK: i64 = 1_000_000;
-
-fn standstill(arguments: &[&str], folder: &Path) -> (Option<i32>, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_standstill"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap();
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (output.status.code(), text(output.stdout) + &text(output.stderr))
-}
 
 /// The texts of the recorder in all of its forms, for an axis that may be pushed into a limit switch.
 fn dumps(is_pushed: bool) -> [Vec<u8>; 3] {
@@ -123,30 +112,27 @@ fn dumps(is_pushed: bool) -> [Vec<u8>; 3] {
 
 #[test]
 fn explain_and_report_read_what_a_c_host_recorded() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("recorder");
-    fs::create_dir_all(&folder).unwrap();
+    let folder = scratch("recorder");
     for (name, is_pushed) in [("still", false), ("pushed", true)] {
         let [lines, table, header] = dumps(is_pushed);
         fs::write(folder.join(format!("{name}.jsonl")), lines).unwrap();
         fs::write(folder.join(format!("{name}.csv")), table).unwrap();
         fs::write(folder.join(format!("{name}.csv.meta.json")), header).unwrap();
     }
-    let (code, text) = standstill(&["explain", "still.csv", "still.jsonl"], &folder);
+    let same = standstill(&folder, &["explain", "still.csv", "still.jsonl"]);
     assert_eq!(
-        (code, text.as_str()),
-        (Some(0), "still.csv and still.jsonl are equal to the bit\n")
+        (same.status, same.out.as_str()),
+        (0, "still.csv and still.jsonl are equal to the bit\n"),
+        "{}",
+        same.err
     );
-    let (code, text) = standstill(&["explain", "still.csv", "pushed.jsonl"], &folder);
-    assert_eq!(code, Some(1), "{text}");
+    let differ = standstill(&folder, &["explain", "still.csv", "pushed.jsonl"]);
+    assert_eq!(differ.status, 1, "{}", differ.err);
     // The first row is scan 41 of the machine.
-    for told in [
-        "first difference in scan 34 ",
-        "axis1.ActualPosition  expected 0.0  found 0.125",
-    ] {
-        assert!(text.contains(told), "{text}");
-    }
-    let (code, text) = standstill(&["report", "still.csv", "--output", "report.html"], &folder);
-    assert_eq!(code, Some(0), "{text}");
-    let page = fs::read_to_string(folder.join("report.html")).unwrap();
+    differ.prints("first difference in scan 34 ");
+    differ.prints("axis1.ActualPosition  expected 0.0  found 0.125");
+    let report = standstill(&folder, &["report", "still.csv", "--output", "report.html"]);
+    assert_eq!(report.status, 0, "{}", report.err);
+    let page = read(&folder, "report.html");
     assert!(page.contains("scans 41 to 90 of the machine; tripped by the host in scan 70, here 29"));
 }

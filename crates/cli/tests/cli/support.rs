@@ -199,6 +199,11 @@ pub fn fifo(path: &Path) {
     assert!(made.expect("every Unix has it").success());
 }
 
+/// The root of the repository.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
 /// An empty folder with [`SCRIPT`] in it as `move.scan.json`.
 pub fn with_script(name: &str) -> PathBuf {
     let folder = scratch(name);

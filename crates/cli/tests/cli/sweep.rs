@@ -1,6 +1,6 @@
 //! Sweeps from outside: tables, shards, interruptions, and invalid files.
 
-use crate::support::{SCRIPT, read, scratch, standstill, with_script, write};
+use crate::support::{SCRIPT, read, root, scratch, standstill, with_script, write};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -85,7 +85,7 @@ fn threads_shards_and_interruptions_leave_no_trace_in_a_table() {
     };
     let whole = sweep(&["-o", "all.csv", "--threads", "1"]);
     let all = read(&folder, "all.csv");
-    assert!(whole.out.starts_with("all.csv: 60 cases, "), "{}", whole.out);
+    whole.prints_first("all.csv: 60 cases, ");
     sweep(&["-o", "two.csv", "--threads", "2"]);
     assert_eq!(read(&folder, "two.csv"), all);
     assert_eq!(sweep(&[]).out, all);
@@ -131,7 +131,7 @@ fn a_table_without_digests_is_the_same_but_for_them() {
     let folder = folder("sweep_bare");
     let refused = SCRIPT.replace("\"velocity\": 20", "\"velocity\": {\"param\": \"v\"}");
     write(&folder, "refused.scan.json", &refused);
-    let turn = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/sweeps");
+    let turn = root().join("docs/sweeps");
     for name in ["turn.scan.json", "turn.sweep.json"] {
         write(&folder, name, &read(&turn, name));
     }
@@ -193,7 +193,7 @@ fn a_part_of_another_sweep_is_not_gone_on_with() {
     assert_eq!((ended.status, ended.out.as_str()), (3, ""));
     let told =
         "a.csv.part: it was begun with another sweep, script, shard or version: delete it to begin anew";
-    assert!(ended.err.contains(told), "{}", ended.err);
+    ended.complains(told);
     assert!(!folder.join("a.csv").exists());
 }
 
@@ -239,7 +239,7 @@ fn shards_that_do_not_make_a_whole_are_refused() {
             "{}",
             ended.err
         );
-        assert!(ended.err.starts_with(&format!("error: {why}")), "{}", ended.err);
+        ended.complains_first(&format!("error: {why}"));
         assert!(!folder.join("all.csv").exists());
     }
 }
@@ -359,7 +359,7 @@ fn what_a_sweep_names_must_be_there() {
     );
     let ended = standstill(&folder, &["sweep", "in/move.sweep.json"]);
     assert_eq!(ended.status, 3);
-    assert!(ended.err.contains("outside the sweep's folder"), "{}", ended.err);
+    ended.complains("outside the sweep's folder");
     let allowed = standstill(&folder, &["sweep", "in/move.sweep.json", "--include-from", "."]);
     assert_eq!(allowed.status, 1, "{}", allowed.err);
 }
@@ -378,7 +378,7 @@ fn a_sweep_without_end_is_refused_before_it_begins() {
     write(&folder, "large.sweep.json", &text);
     let ended = standstill(&folder, &["sweep", "large.sweep.json"]);
     assert_eq!(ended.status, 3);
-    assert!(ended.err.contains("more than 10000000 cases"), "{}", ended.err);
+    ended.complains("more than 10000000 cases");
     for arguments in [
         &["sweep", "large.sweep.json", "--shard", "0/4"][..],
         &["sweep", "large.sweep.json", "--shard", "5/4"],
