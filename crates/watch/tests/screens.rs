@@ -63,6 +63,12 @@ fn screen(app: &App<'_>) -> String {
     terminal(app, (80, 24), false).backend().to_string()
 }
 
+#[track_caller]
+fn shows(app: &App<'_>, text: &str) {
+    let screen = screen(app);
+    assert!(screen.contains(text), "no {text:?} in\n{screen}");
+}
+
 #[test]
 fn before_the_first_scan() {
     let script = script();
@@ -113,46 +119,30 @@ fn a_value_is_changed_and_the_run_follows() {
     let script = script();
     let mut app = app(&script);
     keys(&mut app, "s\n");
-    assert!(
-        screen(&app).contains("GO = true from scan 1 on; w writes a script"),
-        "{}",
-        screen(&app)
-    );
+    shows(&app, "GO = true from scan 1 on; w writes a script");
     keys(&mut app, "s");
-    assert!(screen(&app).contains("> DiscreteMotion"), "{}", screen(&app));
+    shows(&app, "> DiscreteMotion");
     keys(&mut app, "w");
-    assert!(
-        screen(&app).contains("written: t.watched.scan.json"),
-        "{}",
-        screen(&app)
-    );
+    shows(&app, "written: t.watched.scan.json");
     keys(&mut app, "V\n2x\u{8}.5");
     insta::assert_snapshot!("editing", screen(&app));
     keys(&mut app, "\ns");
-    assert!(screen(&app).contains("way"), "{}", screen(&app));
+    shows(&app, "way");
     keys(&mut app, "w");
-    assert!(screen(&app).contains("not written: too many"), "{}", screen(&app));
+    shows(&app, "not written: too many");
     keys(&mut app, "\nq\u{1b}");
     assert!(
         !app.is_done(),
         "q is text there, and escape leaves the text alone"
     );
     keys(&mut app, "\nmuch\n");
-    assert!(
-        screen(&app).contains("way: `much` is no number"),
-        "{}",
-        screen(&app)
-    );
+    shows(&app, "way: `much` is no number");
     keys(&mut app, "VV\n");
-    assert!(
-        screen(&app).contains("there.Execute: it is wired"),
-        "{}",
-        screen(&app)
-    );
+    shows(&app, "there.Execute: it is wired");
     keys(&mut app, "r");
     assert_eq!(app.scans(), 0);
     keys(&mut app, "w");
-    assert!(screen(&app).contains("nothing was changed"), "{}", screen(&app));
+    shows(&app, "nothing was changed");
 }
 
 #[test]
@@ -252,11 +242,7 @@ fn a_run_that_breaks_off_says_why() {
     keys(&mut app, "S");
     assert_eq!(app.broken().map(|why| why.contains("X is powered")), Some(true));
     keys(&mut app, "s ");
-    let text = screen(&app);
-    assert!(
-        text.contains("the run ended: steps[0], scan 3: X is powered"),
-        "{text}"
-    );
+    shows(&app, "the run ended: steps[0], scan 3: X is powered");
     keys(&mut app, "r");
     assert_eq!(app.broken(), None);
 }
@@ -387,5 +373,5 @@ fn a_script_without_a_program_says_so() {
     let script = script();
     let mut app = app(&script);
     keys(&mut app, "v");
-    assert!(screen(&app).contains("no program in Structured Text"));
+    shows(&app, "no program in Structured Text");
 }
