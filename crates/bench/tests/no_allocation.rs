@@ -220,7 +220,6 @@ impl standstill::runtime::Program for CamShow {
 
 /// No call of a cam uses the heap, with a table of 512 rows too: selected, selected anew while it runs, engaged,
 /// switched over, shifted, refused, stopped at corners, disengaged.
-/// heap, a table of 512 rows included.
 ///
 /// Covers: G79, G84
 #[test]

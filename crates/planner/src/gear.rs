@@ -521,7 +521,6 @@ mod tests {
 
     /// Numbers of many and of few bits, of any size, so that sums are exact, are in the middle of two numbers, or
     /// nearly cancel.
-    /// each other.
     #[test]
     fn in_a_few_operations_the_law_is_the_same_to_the_bit() {
         let mut random = standstill_testkit::Random(4);

@@ -1,6 +1,5 @@
 //! The README is true: its script prints the output shown under it, its mistake is reported as shown, and its run
 //! command runs.
-//! command runs.
 
 use crate::support::{root, scratch, standstill, write};
 use std::path::PathBuf;

@@ -230,7 +230,7 @@ impl<'d> Scene<'d> {
         Some(Project::new(self.documents, &files, self.dialect))
     }
 
-    /// All signals; `deep` includes those of programs, which must be compiled for that.
+    /// All signals. For those of programs, the programs are compiled.
     pub(crate) fn signals(&self) -> Vec<Signal> {
         let mut found = Vec::new();
         for entity in &self.entities {

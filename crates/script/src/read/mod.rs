@@ -44,7 +44,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use value::{Fields, wrong_type};
 
-/// Largest number of scans of one run; 10^7 are 2 h 46 min at 1 ms.
+/// Largest number of scans of one run; 10^9 are 11.6 days at 1 ms.
 pub const SCANS_MAX: u64 = 1_000_000_000;
 
 /// Largest number of cells (rows times columns) of one run's trace.

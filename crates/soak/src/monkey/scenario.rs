@@ -122,10 +122,9 @@ pub const FAULT_CODE: u16 = 7;
 /// The kind of a block for the rules if its tables are not empty.
 pub fn kind_of(info: &BlockInfo) -> Kind {
     match info.name {
+        "MC_PositionProfile" | "MC_VelocityProfile" | "MC_AccelerationProfile" => Kind::Motion,
         // Without a drive that holds a torque it is always refused, and the refusal must not change the axis.
-        "MC_PositionProfile" | "MC_VelocityProfile" | "MC_AccelerationProfile" | "MC_TorqueControl" => {
-            Kind::Motion
-        }
+        "MC_TorqueControl" => Kind::Motion,
         // The drive has no edges: it waits until it is aborted, or finds the probe in use.
         "MC_TouchProbe" => Kind::Administrative,
         "MC_DigitalCamSwitch" | "MC_ReadActualTorque" => Kind::Reading,
