@@ -155,6 +155,8 @@ impl<P: Planner> Axis<P> {
         self.watch_anew();
         self.tell_moved(by, scope);
         self.arm_anew(scope);
+        // A paused move that still can't continue waits for its direction.
+        let _waits = self.resume_at_rest(scope);
         Ok(())
     }
 

@@ -172,6 +172,8 @@ impl<P: Planner> Axis<P> {
         self.override_entry(&mut owner);
         if !self.leaves_to_next(owner, scope) {
             self.replan(owner, scope)?;
+            // A paused motion that still can't continue waits with the new factors.
+            let _waits = self.resume_at_rest(scope);
         }
         self.end_orphan();
         Ok(())

@@ -197,27 +197,10 @@ impl<P: Planner> Axis<P> {
     /// fails at rest.
     #[inline(never)]
     pub(super) fn resume(&mut self, scope: &mut Scope<'_>) {
-        let Some(mut owner) = self.owner.filter(|owner| owner.paused) else {
+        let Some(owner) = self.owner.filter(|owner| owner.paused) else {
             return;
         };
-        if self.has_lost_master() {
-            return;
-        }
-        owner.is_behind |= self.is_past_its_end(&owner);
-        if owner.is_behind {
-            let on_its_way = Entry {
-                paused: false,
-                ..owner
-            };
-            if self.leaves_to_next(on_its_way, scope) {
-                return;
-            }
-        }
-        if owner.turns == 0 {
-            self.look_through(&mut owner, self.mover.base().position, 0);
-            self.stay_in_direction(&mut owner, &self.mover.base());
-        }
-        match self.plan_anew(owner, scope) {
+        match self.continue_paused(owner, scope) {
             Ok(()) | Err(ErrorId::PositiveBarred | ErrorId::NegativeBarred) => {}
             Err(error) if self.mover.setpoint().is_at_rest() && !self.is_superimposing() => {
                 self.refuse_plan(&owner, error, &mut self.owner_scope(scope));
@@ -236,6 +219,46 @@ impl<P: Planner> Axis<P> {
             // It continues to brake, and is checked again at rest.
             Err(_) => {}
         }
+    }
+
+    /// The paused owner has other values, or its end has moved: at rest it continues if the direction it needs now is
+    /// permitted. While it brakes, that is checked when it comes to rest.
+    ///
+    /// # Errors
+    /// The reason why it can't continue; it stays paused.
+    #[cold]
+    pub(super) fn resume_at_rest(&mut self, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
+        let brakes = matches!(self.mover.motion(), Motion::Run { .. });
+        let waits = |owner: &Entry| owner.paused && !owner.halted && !brakes;
+        let Some(owner) = self.owner.filter(waits) else {
+            return Ok(());
+        };
+        match self.continue_paused(owner, scope) {
+            Err(ErrorId::PositiveBarred | ErrorId::NegativeBarred) => Ok(()),
+            planned => planned,
+        }
+    }
+
+    /// Plans the paused `owner` from its present state, or hands over to the next command.
+    fn continue_paused(&mut self, mut owner: Entry, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
+        if self.has_lost_master() {
+            return Ok(());
+        }
+        owner.is_behind |= self.is_past_its_end(&owner);
+        if owner.is_behind {
+            let on_its_way = Entry {
+                paused: false,
+                ..owner
+            };
+            if self.leaves_to_next(on_its_way, scope) {
+                return Ok(());
+            }
+        }
+        if owner.turns == 0 {
+            self.look_through(&mut owner, self.mover.base().position, 0);
+            self.stay_in_direction(&mut owner, &self.mover.base());
+        }
+        self.plan_anew(owner, scope)
     }
 
     /// The paused owner is at rest. The direction it needs now may be permitted, because the stop may

@@ -44,6 +44,7 @@ impl<P: Planner> Axis<P> {
             // The pins have the present values again, after others were refused.
             return Ok(());
         }
+        let was = owner;
         self.note_passing(&mut owner);
         self.take_values(&mut owner, command, work, limits);
         owner.direction = direction;
@@ -54,7 +55,10 @@ impl<P: Planner> Axis<P> {
         } else {
             self.replan(owner, scope)
         };
-        planned.map_err(|error| self.refuse_plan(&owner, error, scope))?;
+        if let Err(error) = planned.and_then(|()| self.resume_at_rest(scope)) {
+            self.own(was);
+            return Err(self.refuse_plan(&owner, error, scope));
+        }
         self.record_slowed(&owner, scope);
         Ok(())
     }
