@@ -79,6 +79,8 @@ pub struct ProfileCore<R> {
     execute: ExecuteCore,
     /// The values in force; none before the first command.
     given: Option<Shape<R>>,
+    /// The values last seen while changes counted: those in force, or those that were refused.
+    seen: Option<Shape<R>>,
     /// Changed values count, from a rising edge with ContinuousUpdate TRUE until it is FALSE (R10, R11).
     continuous: bool,
 }
@@ -88,6 +90,7 @@ impl<R> Default for ProfileCore<R> {
         Self {
             execute: ExecuteCore::default(),
             given: None,
+            seen: None,
             continuous: false,
         }
     }
@@ -100,14 +103,14 @@ impl<R: Point> ProfileCore<R> {
         if let Some((axis, id)) = self.execute.running(pins.execute, context) {
             self.follow(axis, id, pins, shape, context);
         }
-        let (given, continuous) = (&mut self.given, &mut self.continuous);
+        let (given, seen, continuous) = (&mut self.given, &mut self.seen, &mut self.continuous);
         self.execute.scan(pins.execute, context, |context, _| {
             let tables = context.tables;
             let (axis, scope) = context.axis(pins.axis)?;
             let id = shape
                 .read(tables, |profile| axis.profile(profile, pins.buffer_mode, scope))
                 .unwrap_or_else(|| Err(unknown(axis, R::PIN, scope)))?;
-            (*given, *continuous) = (Some(*shape), pins.continuous_update);
+            (*given, *seen, *continuous) = (Some(*shape), Some(*shape), pins.continuous_update);
             Ok((pins.axis, id))
         })
     }
@@ -124,14 +127,17 @@ impl<R: Point> ProfileCore<R> {
     ) {
         self.continuous &= pins.continuous_update;
         let tables = context.tables;
-        let (Some(given), Ok((axis, scope))) = (&mut self.given, context.axis(axis)) else {
+        let (Some(given), Some(seen), Ok((axis, scope))) =
+            (&mut self.given, &mut self.seen, context.axis(axis))
+        else {
             return;
         };
-        let changed = self.continuous && !given.is_same(shape);
+        let changed = self.continuous && !seen.is_same(shape);
         if changed {
-            *given = *shape;
+            *seen = *shape;
         }
         if axis.profile_is_due(id) {
+            *given = *seen;
             let start = |profile: &Profile<'_>| axis.start_profile(id, profile, scope);
             if given.read(tables, start).is_none() {
                 // Without its points it cannot start.
@@ -144,9 +150,12 @@ impl<R: Point> ProfileCore<R> {
                 };
                 axis.start_profile(id, &none, scope);
             }
-        } else if changed {
+        } else if changed && !given.is_same(shape) {
             // The block shows no Error: its command continues unchanged (R21).
-            let _recorded = given.read(tables, |profile| axis.update_profile(id, profile, scope));
+            let updated = shape.read(tables, |profile| axis.update_profile(id, profile, scope));
+            if let Some(Ok(())) = updated {
+                *given = *shape;
+            }
         }
     }
 }
