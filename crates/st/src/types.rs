@@ -406,6 +406,14 @@ impl Types {
         }
     }
 
+    /// The least and the greatest value of a whole number.
+    pub(crate) fn range(&self, id: TypeId) -> (i128, i128) {
+        match self.get(id) {
+            Type::Subrange { low, high, .. } => (*low, *high),
+            _ => self.elementary(id).map_or((0, 0), Elementary::range),
+        }
+    }
+
     pub(crate) fn is_enumeration(&self, id: TypeId) -> bool {
         matches!(self.get(id), Type::Enumeration(_))
     }

@@ -373,6 +373,59 @@ fn a_fault_names_its_place_and_value_and_writes_nothing_half() {
     }
 }
 
+/// Covers: ST14, ST30, ST36
+#[test]
+fn a_value_never_leaves_its_subrange() {
+    for (ty, first, statement, value) in [
+        ("INT(0..3)", 2, "x.4 := TRUE;", 18),
+        ("INT(2..3)", 2, "x.1 := FALSE;", 0),
+        ("SINT(0..100)", 5, "x.7 := TRUE;", -123),
+        ("SINT(-128..0)", -1, "x.7 := FALSE;", 127),
+        ("LINT(0..10)", 7, "x.62 := TRUE;", (1 << 62) + 7),
+        ("UDINT(1..2)", 1, "x.31 := TRUE;", (1 << 31) + 1),
+        ("INT(0..3)", 2, "t(Q => x.2, CLK := TRUE);", 6),
+        ("INT(0..3)", 2, "F(Out => x.2);", 6),
+        ("INT(0..3)", 3, "FOR x := 0 TO 9 DO ; END_FOR;", 4),
+        ("INT(0..3)", 2, "FOR x := 4 TO 9 DO ; END_FOR;", 4),
+        ("SINT(-2..2)", -1, "FOR x := 2 TO -9 BY -3 DO ; END_FOR;", -4),
+        ("INT(0..3)", 3, "FOR x := 1 TO 9 BY two DO ; END_FOR;", 5),
+        ("ULINT(0..3)", 3, "FOR x := 0 TO 9 DO ; END_FOR;", 4),
+    ] {
+        let text = format!(
+            "FUNCTION F VAR_OUTPUT Out : BOOL := TRUE; END_VAR END_FUNCTION
+PROGRAM P VAR x : {ty} := {first}; two : INT := 2; t : R_TRIG; after : BOOL; END_VAR
+{statement} after := TRUE;
+END_PROGRAM"
+        );
+        let mut run = Running::new(&text);
+        assert!(run.scan().is_err(), "{ty} {statement}");
+        let (place, found) = run.fault();
+        assert_eq!(
+            (place.kind, found),
+            (FaultKind::Subrange, value),
+            "{ty} {statement}"
+        );
+        assert_eq!(
+            (run.whole("x"), run.whole("after")),
+            (first, 0),
+            "{ty} {statement}"
+        );
+    }
+    for (ty, first, statement, then) in [
+        ("INT(0..3)", 2, "x.0 := TRUE;", 3),
+        ("SINT(-128..0)", -1, "x.0 := FALSE;", -2),
+        ("LINT(-8..-1)", -1, "x.2 := FALSE;", -5),
+        ("INT(0..3)", 2, "FOR x := 0 TO 3 DO ; END_FOR;", 3),
+        ("USINT(0..250)", 2, "FOR x := 0 TO 249 BY 100 DO ; END_FOR;", 200),
+    ] {
+        let mut run = Running::new(&format!(
+            "PROGRAM P VAR x : {ty} := {first}; END_VAR {statement} END_PROGRAM"
+        ));
+        run.scan().unwrap_or_else(|fault| panic!("{fault}\n{statement}"));
+        assert_eq!(run.whole("x"), then, "{ty} {statement}");
+    }
+}
+
 /// Covers: ST36
 #[test]
 fn a_loop_of_the_library_is_never_the_endless_one() {

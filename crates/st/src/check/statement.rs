@@ -292,10 +292,7 @@ impl<'a> Checker<'a> {
         if from.is_wrong() || to.is_wrong() || by.is_wrong() {
             return None;
         }
-        let range = match self.types.get(variable.ty) {
-            Type::Subrange { low, high, .. } => (*low, *high),
-            _ => of.range(),
-        };
+        let range = self.types.range(variable.ty);
         Some(StmtKind::For(Box::new(crate::typed::For {
             variable,
             ty: of,

@@ -139,8 +139,13 @@ impl<'c, 'p, 'a> Emitter<'c, 'p, 'a> {
     /// A value that must be within a subrange.
     fn within(&mut self, inner: &Expr, of: Elementary, low: i128, high: i128) {
         self.expression(inner);
+        self.must_be_within(of, (low, high), inner.span);
+    }
+
+    /// A fault if the whole number on the stack is outside a subrange; it remains there.
+    pub(super) fn must_be_within(&mut self, of: Elementary, (low, high): (i128, i128), span: Span) {
         let local = self.function.local(value_type(of));
-        let site = self.site(inner.span, FaultKind::Subrange);
+        let site = self.site(span, FaultKind::Subrange);
         self.function.sink().local_tee(local);
         self.is_outside(of, low, high);
         self.fault_if(site, local, of);

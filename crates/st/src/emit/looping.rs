@@ -92,10 +92,9 @@ impl Emitter<'_, '_, '_> {
         let stride = self.stride(&each.by);
         let (root, offset) = self.pinned(&each.variable);
         let (site, exit) = self.begin_loop(span);
-        self.check_range(each, from);
         self.push_root(root);
         self.function.sink().local_get(from);
-        self.store(each.ty, offset);
+        self.store_within(each.ty, each.range, each.from.span, offset);
         self.beyond(each.ty, from, to, stride);
         self.function.branch_if(exit);
         let top = self.function.loop_();
@@ -111,13 +110,7 @@ impl Emitter<'_, '_, '_> {
         self.function.end();
         self.push_root(root);
         self.advanced(each.ty, from, stride);
-        self.store(each.ty, offset);
-        if each.range != each.ty.range() {
-            self.push_root(root);
-            self.load(each.ty, offset);
-            self.function.sink().local_set(from);
-            self.check_range(each, from);
-        }
+        self.store_within(each.ty, each.range, each.from.span, offset);
         self.function.branch(top);
         self.function.end();
         self.end_loop();
@@ -145,18 +138,6 @@ impl Emitter<'_, '_, '_> {
         sink.local_tee(size).i64_eqz();
         self.plain_fault_if(site);
         Stride::Local { size, up, signed }
-    }
-
-    /// A value outside of the subrange of the control variable is a fault.
-    fn check_range(&mut self, each: &For, local: u32) {
-        if each.range == each.ty.range() {
-            return;
-        }
-        let site = self.site(each.from.span, FaultKind::Subrange);
-        let (low, high) = each.range;
-        self.function.sink().local_get(local);
-        self.is_outside(each.ty, low, high);
-        self.fault_if(site, local, each.ty);
     }
 
     /// Pushes whether the first value is already beyond the end.

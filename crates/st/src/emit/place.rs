@@ -3,6 +3,7 @@
 use super::expression::Emitter;
 use super::function::at;
 use super::{FaultKind, Target};
+use crate::source::Span;
 use crate::typed::{Base, Index, Kind, Place};
 use crate::types::Elementary;
 use wasm_encoder::{BlockType, ValType};
@@ -215,6 +216,16 @@ impl Emitter<'_, '_, '_> {
                 .i32_const(bit.cast_signed())
                 .i32_shl()
                 .i32_or();
+        }
+        let range = self.context.program.types.range(place.ty);
+        self.store_within(of, range, value.span, offset);
+    }
+
+    /// Writes the whole number on the stack as `store` does; a fault if what would be stored is outside the range.
+    pub(super) fn store_within(&mut self, of: Elementary, range: (i128, i128), span: Span, offset: u32) {
+        if range != of.range() {
+            self.narrow(of);
+            self.must_be_within(of, range, span);
         }
         self.store(of, offset);
     }
