@@ -90,7 +90,7 @@ const ROWS: &[Row] = &[
     row(SECTIONS, "VAR_IN_OUT, by reference", "b(x := r)", "FUNCTION_BLOCK B VAR_IN_OUT x : INT; END_VAR x := x + 5; END_FUNCTION_BLOCK", "b : B; r : INT;", "@;", 5),
     row(SECTIONS, "VAR_TEMP, new at every call", "VAR_TEMP t : INT := 3; END_VAR", "", "VAR r : INT; END_VAR @", "t := t + 1; r := t;", 4),
     row(SECTIONS, "VAR_EXTERNAL", "VAR_EXTERNAL g : INT; END_VAR", "VAR_GLOBAL g : INT := 9; END_VAR", "VAR r : INT; END_VAR @", "r := g;", 9),
-    row(SECTIONS, "VAR_STAT", "VAR_STAT r : INT := 1; END_VAR", "", "@", "", 1),
+    row(SECTIONS, "VAR_STAT of a PROGRAM", "VAR_STAT r : INT := 1; END_VAR", "", "@", "", 1),
     row(SECTIONS, "CONSTANT", "VAR CONSTANT N : INT := 3; END_VAR", "", "@ VAR a : ARRAY [1..N] OF INT; r : INT; END_VAR", "a[N] := 2; r := a[3];", 2),
     row(SECTIONS, "RETAIN, PERSISTENT", "VAR RETAIN r : INT := 1; END_VAR", "", "@", "", 1),
     row(SECTIONS, "AT an address", "r AT %QW2 : INT := 7;", "", "@", "", 7),
@@ -174,6 +174,10 @@ const REFUSED: &[(&str, &str)] = &[
     ),
     ("VAR_ACCESS", "PROGRAM P VAR_ACCESS a : INT; END_VAR END_PROGRAM"),
     ("VAR_CONFIG", "VAR_CONFIG a : INT; END_VAR"),
+    (
+        "VAR_STAT of a FUNCTION_BLOCK",
+        "FUNCTION_BLOCK B VAR_STAT a : INT; END_VAR END_FUNCTION_BLOCK",
+    ),
     (
         "VAR_INST",
         "FUNCTION_BLOCK B METHOD M VAR_INST a : INT; END_VAR END_METHOD END_FUNCTION_BLOCK",

@@ -102,14 +102,8 @@ impl<'a> Checker<'a> {
                 _ if function => MemberKind::Temp,
                 _ => MemberKind::Var,
             };
-            if function && section.kind == SectionKind::Static {
-                let span = variables.spec.span;
-                self.error(
-                    Code::Misplaced,
-                    span,
-                    "a FUNCTION or METHOD keeps nothing between calls",
-                    "make it a variable of a FUNCTION_BLOCK",
-                );
+            if section.kind == SectionKind::Static && !section.constant {
+                self.check_static(id, variables.spec.span);
             }
             let (ty, start) = self.declared(variables);
             self.check_kind(id, kind, ty, variables);
@@ -123,6 +117,25 @@ impl<'a> Checker<'a> {
                 };
                 self.add_member(id, name, member);
             }
+        }
+    }
+
+    /// VAR_STAT is one variable for all instances, so only a PROGRAM can have it as one of its own.
+    fn check_static(&mut self, id: UnitId, span: Span) {
+        match self.unit(id).kind {
+            UnitKind::Function | UnitKind::Method => self.error(
+                Code::Misplaced,
+                span,
+                "a FUNCTION or METHOD keeps nothing between calls",
+                "make it a variable of a FUNCTION_BLOCK",
+            ),
+            UnitKind::Block => self.error(
+                Code::Unsupported,
+                span,
+                "VAR_STAT of a FUNCTION_BLOCK, one variable for all of its instances, is not supported",
+                "use VAR_GLOBAL, or VAR if each instance shall have its own",
+            ),
+            UnitKind::Program | UnitKind::Library(_) => {}
         }
     }
 
