@@ -23,6 +23,7 @@ pub use drive::Ordered;
 pub(crate) use formulas::turned;
 pub use guests::Counted;
 pub use kept::Kept;
+pub(crate) use needed::signals;
 pub use recorded::{RecordingError, judge_recording};
 pub(crate) use rows::{Derivatives, Rows};
 use schedule::PENDING_MAX;

@@ -49,7 +49,7 @@ pub(super) fn column(layout: &Layout, signal: &Signal) -> Option<usize> {
 }
 
 /// All signals that a claim reads.
-pub(super) fn signals(claim: &Claim) -> Vec<Signal> {
+pub(crate) fn signals(claim: &Claim) -> Vec<Signal> {
     let mut found = Vec::new();
     match &claim.kind {
         ClaimKind::Exclusive(points) => {

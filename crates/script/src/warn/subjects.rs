@@ -1,8 +1,8 @@
 //! Inputs without a reader, blocks without effect, axes without commands.
 
 use super::Warning;
-use crate::model::{Action, Claim, ClaimKind, Condition, Instance, Point, Script, Signal, When, Wire};
-use crate::run::Rows;
+use crate::model::{Action, Condition, Instance, Point, Script, Signal, When, Wire};
+use crate::run::{Rows, signals};
 use standstill_trace::Cell;
 use std::collections::BTreeSet;
 
@@ -72,39 +72,27 @@ fn read_inputs(script: &Script) -> BTreeSet<usize> {
     let singles = script.tasks.iter().filter_map(|task| task.single.as_ref());
     let wired = wires.chain(singles).flat_map(Wire::points).copied();
     let of_formulas = script.formulas.iter().flat_map(|formula| &formula.inputs);
-    let of_formulas = of_formulas.filter_map(|input| match input.signal {
-        Signal::Point(point) => Some(point),
-        _ => None,
-    });
+    let of_formulas = of_formulas.map(|input| input.signal.clone());
     let whens = script.steps.iter().filter_map(|step| match &step.when {
         When::Holds { conditions, .. } => Some(conditions),
         When::At(_) => None,
     });
     let stop = script.stop_when.iter().map(|(conditions, _)| conditions);
-    let of_steps = whens.chain(stop).flatten().flat_map(points);
-    let of_claims = script.claims.iter().flat_map(claimed);
-    let inputs = wired.chain(of_formulas).chain(of_steps).chain(of_claims);
-    inputs
+    let of_steps = whens.chain(stop).flatten();
+    let of_steps = of_steps.flat_map(Condition::signals).cloned();
+    let of_claims = script.claims.iter().flat_map(signals);
+    let points = of_formulas.chain(of_steps).chain(of_claims);
+    let points = points.filter_map(|signal| match signal {
+        Signal::Point(point) => Some(point),
+        _ => None,
+    });
+    wired
+        .chain(points)
         .filter_map(|point| match point {
             Point::Input(index) => Some(index),
             Point::Pin(..) | Point::Symbol(..) | Point::Formula(_) => None,
         })
         .collect()
-}
-
-/// The points that a condition reads.
-fn points(condition: &Condition) -> impl Iterator<Item = Point> {
-    condition.signals().filter_map(|signal| match signal {
-        Signal::Point(point) => Some(*point),
-        _ => None,
-    })
-}
-
-fn claimed(claim: &Claim) -> Vec<Point> {
-    match &claim.kind {
-        ClaimKind::Exclusive(named) => named.iter().map(|(_, point)| *point).collect(),
-        _ => claim.conditions().flat_map(points).collect(),
-    }
 }
 
 /// Whether a task has neither an interval nor an edge that starts it.
