@@ -27,6 +27,7 @@ impl Reader {
         let mut config = AxisConfig::new(Limits::NONE);
         let good = self.keys(node, &keys::AXIS, &OTHERS, &mut config);
         let Json::Map(members) = &node.json else {
+            self.drives.push(None);
             return None;
         };
         let fields = Fields::of(node, members);
