@@ -5,7 +5,6 @@ use super::cases::GOOD;
 use super::schema::Validator;
 use serde_json::{Value, json};
 use standstill_script::read;
-use standstill_testkit::stride;
 use std::collections::BTreeMap;
 
 const TEXTS: [&str; 3] = [
