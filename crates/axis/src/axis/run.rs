@@ -231,8 +231,11 @@ impl<P: Planner> Axis<P> {
     /// passed in motion.
     fn way_on(&self, owner: &Entry, place: f64) -> Option<f64> {
         let (end, next) = (owner.end?, self.queue.first()?);
-        let target = self.end_of_leg(next, end, self.mover.last_velocity() > 0.0)?;
-        let is_onward = (target - end) * (place - end) > 0.0;
+        let forward = self.mover.last_velocity() > 0.0;
+        let target = self.end_of_leg(next, end, forward)?;
+        // Before a reversal both are on one side of the end, too, but the axis has not been there.
+        let is_behind = |position: f64| if forward { position > end } else { position < end };
+        let is_onward = is_behind(target) && is_behind(place);
         // A paused owner brakes to rest anywhere.
         let was_to_pass = owner.passage.wanted > 0.0 || owner.paused || owner.is_behind;
         let goes_on = self.mover.layer().is_none() && was_to_pass && next.mode.blends() && is_onward;
