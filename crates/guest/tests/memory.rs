@@ -7,7 +7,7 @@ use standstill_testkit::Random;
 #[test]
 fn no_guest_reaches_beyond_its_memory_or_leaves_an_axis_moving() {
     let (mut faults, mut moving, mut done) = (0, 0, 0);
-    let cases = standstill_testkit::cases(1_200 * 4).min(1_200);
+    let cases = standstill_testkit::whole_or(1_200, 96);
     for case in 0..cases {
         let mut random = Random(case);
         let bytes: Vec<u8> = (0..500).flat_map(|_| random.bits().to_le_bytes()).collect();

@@ -40,6 +40,32 @@ fn the_command_line_is_the_only_program() {
     assert_eq!(programs, BTreeSet::from(["crates/cli"]));
 }
 
+/// Plain `cargo test` leaves out only what `.ci/run` names or what has no tests.
+#[test]
+fn a_new_crate_is_tested_by_plain_cargo_test() {
+    let workspace = fs::read_to_string(root().join("Cargo.toml")).unwrap();
+    let list = |key: &str| -> BTreeSet<String> {
+        let (_, rest) = workspace.split_once(&format!("\n{key} = [")).unwrap();
+        let (inside, _) = rest.split_once(']').unwrap();
+        let members = inside.split('"').skip(1).step_by(2);
+        members.map(str::to_owned).collect()
+    };
+    let (all, tested) = (list("members"), list("default-members"));
+    let left_out: Vec<_> = all.difference(&tested).map(String::as_str).collect();
+    assert_eq!(
+        left_out,
+        [
+            "crates/bench",
+            "crates/bench/panic-probe",
+            "crates/bench/same-bits",
+            "crates/mutants",
+            "crates/peers",
+            "crates/playground",
+            "crates/python",
+        ]
+    );
+}
+
 /// If Cargo does not search for tests, a test file that is not named would not run.
 #[test]
 fn every_file_of_tests_is_part_of_a_program() {
