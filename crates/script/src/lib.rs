@@ -27,6 +27,7 @@ pub mod sweep;
 mod variable;
 mod warn;
 mod why;
+pub mod write;
 
 pub use changes::with_changes;
 pub use claims::{Failure, Standing, Verdict};
@@ -40,7 +41,7 @@ pub use read::{
 };
 pub use run::{
     Advance, Ahead, Change, Counted, Kept, Ordered, Outcome, ROWS_MAX, RecordingError, RunError, Session,
-    Shown, far_or_by_scan, judge_recording, keeps_rows, run, run_with,
+    Shown, Witness, far_or_by_scan, judge_recording, keeps_rows, run, run_with,
 };
 pub use schema::schema;
 pub use schema_machine::machine_schema;

@@ -290,7 +290,7 @@ picture: trace
 report: picture trace
 script: axis blocks drives fb guest planner record scan st trace
 testkit:
-soak: axis blocks drives fb planner scan testkit
+soak: axis blocks drives fb planner script testkit
 sweep: script trace
 watch: axis fb script trace
 live: script

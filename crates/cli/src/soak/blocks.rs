@@ -81,12 +81,12 @@ impl Trial for Episodes {
             turned_back,
             digest,
         } = episode.seen;
-        let scripts = episode.failure.map(|(failure, scenario)| {
-            let (failure, scenario) = shrink(failure, scenario);
+        let scripts = episode.failure.map(|(failure, program)| {
+            let (failure, program) = shrink(failure, program);
             Script {
                 episode: number,
                 broken: format!("{} {}", failure.broken.id, failure.broken.what),
-                text: scenario.script(Some(&failure)),
+                text: program.claiming(&failure).text(),
             }
         });
         Self {

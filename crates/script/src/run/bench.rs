@@ -14,6 +14,7 @@ use super::row::{RowWriter, Source};
 use super::rows::{ROWS_KEPT, Rows, Shift};
 use super::schedule::Schedule;
 use super::values::Values;
+use super::witness::Witness;
 use crate::model::{Action, AxisNumber, FaultKind, FormulaInput, Point, Script, Signal, Wire};
 use standstill_axis::{Axis, AxisId, AxisState, ErrorId, InstanceId, Standard};
 use standstill_fb::{Context, Value};
@@ -424,6 +425,61 @@ impl<'a> Bench<'a> {
         self.truths = truths;
     }
 
+    /// Calls the instances of a task and its guest programs before a witness, if there is one.
+    pub(super) fn run_before(
+        &mut self,
+        program: ProgramId,
+        context: &mut Context<'_, Standard>,
+        mut witness: Option<&mut dyn Witness>,
+    ) -> Result<u64, ProgramFault> {
+        let script = self.script;
+        let ProgramId(task) = program;
+        if self.wire_fault {
+            return Err(ProgramFault { reason: WIRE_FAULT });
+        }
+        self.notes.collect(context.scope.log);
+        if let Some(witness) = &mut witness {
+            witness.begins(context.scope.scan, context.axes);
+        }
+        for place in 0.. {
+            let index = self.tasks.get(task).and_then(|(blocks, _)| blocks.get(place));
+            let Some((index, declared)) = index.and_then(|&index| Some((index, script.blocks.get(index)?)))
+            else {
+                break;
+            };
+            let time = ScanTime {
+                scan: context.scope.scan,
+                now_ns: context.now_ns,
+            };
+            let axes = &*context.axes;
+            for (_, wire) in &declared.wires {
+                self.compute(wire, time, &|axis| Some(reading(axes.get(axis)?)))?;
+            }
+            self.feed(index, &declared.wires, context.scope.scan);
+            context.scope.instance = instance_id(index);
+            if let Some(instance) = self.values.instances.get_mut(index) {
+                if let Some(witness) = &mut witness {
+                    witness.before(index, context);
+                }
+                instance.call(context);
+                if let Some(witness) = &mut witness {
+                    witness.after(index, instance, context);
+                }
+                self.notes.collect(context.scope.log);
+            }
+        }
+        let guests = self.tasks.get(task).map(|(_, guests)| guests.as_slice());
+        for &(index, call) in guests.unwrap_or_default() {
+            let outcome = self.guests.scan(index, call, context);
+            if let Some(values) = self.values.symbols.get_mut(index) {
+                self.guests.refresh(index, values);
+            }
+            self.notes.collect(context.scope.log);
+            outcome.map_err(|reason| ProgramFault { reason })?;
+        }
+        Ok(0)
+    }
+
     /// Writes the wired inputs of an instance, in pin order.
     fn feed(&mut self, instance: usize, wires: &[(usize, Wire)], scan: u64) {
         for (pin, wire) in wires {
@@ -498,43 +554,7 @@ impl Programs<Standard, ScriptDrive> for Bench<'_> {
     }
 
     fn run(&mut self, program: ProgramId, context: &mut Context<'_, Standard>) -> Result<u64, ProgramFault> {
-        let script = self.script;
-        let ProgramId(task) = program;
-        if self.wire_fault {
-            return Err(ProgramFault { reason: WIRE_FAULT });
-        }
-        self.notes.collect(context.scope.log);
-        for place in 0.. {
-            let index = self.tasks.get(task).and_then(|(blocks, _)| blocks.get(place));
-            let Some((index, declared)) = index.and_then(|&index| Some((index, script.blocks.get(index)?)))
-            else {
-                break;
-            };
-            let time = ScanTime {
-                scan: context.scope.scan,
-                now_ns: context.now_ns,
-            };
-            let axes = &*context.axes;
-            for (_, wire) in &declared.wires {
-                self.compute(wire, time, &|axis| Some(reading(axes.get(axis)?)))?;
-            }
-            self.feed(index, &declared.wires, context.scope.scan);
-            context.scope.instance = instance_id(index);
-            if let Some(instance) = self.values.instances.get_mut(index) {
-                instance.call(context);
-                self.notes.collect(context.scope.log);
-            }
-        }
-        let guests = self.tasks.get(task).map(|(_, guests)| guests.as_slice());
-        for &(index, call) in guests.unwrap_or_default() {
-            let outcome = self.guests.scan(index, call, context);
-            if let Some(values) = self.values.symbols.get_mut(index) {
-                self.guests.refresh(index, values);
-            }
-            self.notes.collect(context.scope.log);
-            outcome.map_err(|reason| ProgramFault { reason })?;
-        }
-        Ok(0)
+        self.run_before(program, context, None)
     }
 
     fn observe(&mut self, _time: ScanTime, machine: &ScriptMachine) {

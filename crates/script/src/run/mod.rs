@@ -18,6 +18,7 @@ mod schedule;
 mod session;
 mod values;
 mod variables;
+mod witness;
 
 pub use drive::Ordered;
 pub(crate) use formulas::turned;
@@ -29,6 +30,7 @@ pub(crate) use rows::{Derivatives, Rows};
 use schedule::PENDING_MAX;
 pub use session::{Ahead, Change, Session};
 pub use variables::Shown;
+pub use witness::Witness;
 
 use crate::CELLS_MAX;
 use crate::claims::{Failure, Verdict};

@@ -4,14 +4,16 @@ use super::bench::{self, Bench, ScriptMachine};
 use super::cells;
 use super::drive::Ordered;
 use super::kept::Kept;
+use super::witness::{Witness, Witnessed};
 use super::{Outcome, RunError, executor, told};
 use crate::CELLS_MAX;
 use crate::claims::{self, Judges, Standing, Standings, Verdict};
 use crate::model::{FaultKind, Point, Script};
 use crate::read::time;
 use crate::why;
+use standstill_axis::{Axis, Standard};
 use standstill_fb::{Direction, PinType, Value};
-use standstill_scan::{Executor, ScanTime};
+use standstill_scan::{Executor, ScanReport, ScanTime, TimeRanBackwards};
 use standstill_trace::{Trace, shortest};
 
 /// Whether a trace with this many columns can hold the rows of a script.
@@ -107,6 +109,15 @@ impl<'a> Session<'a> {
         Self::with(script, Kept::all(script))
     }
 
+    /// The same as [`Session::long`], with only the columns that claims and steps read: for a run of which nobody
+    /// reads the rows.
+    ///
+    /// # Errors
+    /// Those of [`Session::long`].
+    pub fn without_rows(script: &'a Script) -> Result<Self, RunError> {
+        Self::with(script, Kept::read(script, &[]))
+    }
+
     fn with(script: &'a Script, kept: Kept) -> Result<Self, RunError> {
         Ok(Self {
             script,
@@ -135,6 +146,29 @@ impl<'a> Session<'a> {
     /// # Errors
     /// [`RunError`]; the run is over then.
     pub fn advance(&mut self) -> Result<bool, RunError> {
+        self.advance_by(|executor, now_ns, bench, machine| executor.scan(now_ns, bench, machine))
+    }
+
+    /// The same as [`Session::advance`]; `witness` sees every call.
+    ///
+    /// # Errors
+    /// Those of [`Session::advance`].
+    pub fn advance_before(&mut self, witness: &mut dyn Witness) -> Result<bool, RunError> {
+        self.advance_by(|executor, now_ns, bench, machine| {
+            executor.scan(now_ns, &mut Witnessed { bench, witness }, machine)
+        })
+    }
+
+    /// Runs the next scan by `scan`.
+    fn advance_by(
+        &mut self,
+        scan_by: impl FnOnce(
+            &mut Executor,
+            i64,
+            &mut Bench<'a>,
+            &mut ScriptMachine,
+        ) -> Result<ScanReport, TimeRanBackwards>,
+    ) -> Result<bool, RunError> {
         if self.over {
             return Ok(false);
         }
@@ -150,9 +184,7 @@ impl<'a> Session<'a> {
             });
         }
         let now_ns = self.now_ns();
-        let report = self
-            .executor
-            .scan(now_ns, &mut self.bench, &mut self.machine)
+        let report = scan_by(&mut self.executor, now_ns, &mut self.bench, &mut self.machine)
             .map_err(|error| RunError::Internal(error.to_string()))?;
         self.bench.check()?;
         // A guest that faults has stopped the resource: the run continues while its axes ramp down.
@@ -337,6 +369,12 @@ impl<'a> Session<'a> {
     /// the end of the run that of judging.
     pub fn standings(&mut self) -> &[Standing] {
         self.standings.look(&self.bench.rows(), self.over)
+    }
+
+    /// The axes, in the order of the script.
+    #[must_use]
+    pub fn axes(&self) -> &[Axis<Standard>] {
+        self.machine.axes()
     }
 
     /// The value at a point.

@@ -1,8 +1,9 @@
 //! Random machines.
 
-use super::scenario::{AxisSetup, BlockSetup, Scenario, TableSetup, kind_of};
+use super::program::{Block, Program, kind_of};
 use crate::cases::extreme;
 use crate::random::Random;
+use serde_json::{Map, Value as Json};
 use standstill_axis::{
     AboveLimit, AxisConfig, BlockDetection, Defaults, EdgeWhileBusy, Following, HomeDirection, Homing,
     InPosition, JogAtLimit, Limits, ModuloTargets, MoveProfile, OnLimit, OnMasterLost, PowerOff, Procedure,
@@ -13,12 +14,13 @@ use standstill_drives::cia402::Reaction;
 use standstill_drives::mechanism::{Load, Mechanism, Plant, Stops};
 use standstill_drives::simulated::{Cia402Setup, DriveSetup, IdealDriveSetup, MotorSetup, PlantSetup};
 use standstill_drives::switches::{Marker, Switches};
-use standstill_fb::{BlockInfo, PinType, Value};
+use standstill_fb::{BlockInfo, Pin, PinType};
+use standstill_script::write;
 
 use crate::rules::Kind;
 
-/// Largest number of axes of a machine.
-const AXES: u64 = 3;
+/// Names of axes; no machine has more.
+const AXES: [&str; 3] = ["X", "Y", "Z"];
 
 /// Sequences that occur more often than by chance: a curve, a command that waits for an edge and one that
 /// ends it, limits that are written while moves blend.
@@ -50,26 +52,33 @@ const FAVOURED: [&[&str]; 22] = [
 /// Lengths of a scan (ns).
 const CYCLES: [i64; 4] = [1_000_000, 250_000, 2_000_000, 10_000_000];
 
-/// A machine and a program, for `scans` scans.
-pub fn scenario(random: &mut Random, scans: u64) -> Scenario {
-    let cycle_ns = CYCLES[random.below(CYCLES.len() as u64) as usize];
-    let count = 1 + random.below(AXES);
-    let axes: Vec<_> = (0..count).map(|_| axis(random, cycle_ns as f64 / 1e9)).collect();
+/// A machine and the blocks of a program, for `scans` scans.
+pub fn program(random: &mut Random, scans: u64) -> Program {
+    let cycle_ns = one_of(random, &CYCLES);
     let cycle = cycle_ns as f64 / 1e9;
-    let blocks = axes
-        .iter()
-        .enumerate()
-        .flat_map(|(place, axis)| blocks(random, place, &axis.config.limits, cycle))
+    let axes = axes(random, cycle);
+    let mut program = Program::new(cycle_ns, scans);
+    let each = axes.iter().enumerate();
+    let mut blocks: Vec<_> = each
+        .flat_map(|(place, (config, _))| blocks(random, place, axes.len(), &config.limits, cycle))
         .collect();
-    let mut scenario = Scenario {
-        cycle_ns,
-        scans,
-        axes,
-        blocks,
-        steps: Vec::new(),
-    };
-    shuffle(random, &mut scenario.blocks);
-    scenario
+    shuffle(random, &mut blocks);
+    for (number, block) in (1..).zip(&mut blocks) {
+        let (_, short) = block.block.split_once('_').unwrap_or(("", block.block));
+        block.name = format!("{short}{number}");
+    }
+    program.blocks = blocks;
+    let axes = AXES.iter().zip(&axes);
+    program.axes = axes
+        .map(|(name, (config, drive))| ((*name).to_owned(), write::axis(config, drive)))
+        .collect();
+    program
+}
+
+/// The axes of a machine and their drives.
+fn axes(random: &mut Random, cycle: f64) -> Vec<(AxisConfig, DriveSetup)> {
+    let count = 1 + random.below(AXES.len() as u64);
+    (0..count).map(|_| axis(random, cycle)).collect()
 }
 
 fn shuffle<T>(random: &mut Random, list: &mut [T]) {
@@ -109,7 +118,7 @@ fn limits(random: &mut Random, cycle: f64) -> Limits {
 
 /// An axis; every part of its configuration differs from the default in some axes. In every eighth some
 /// rates are the usual values for "no limit"; its velocity stays, so that programs know how fast it is.
-fn axis(random: &mut Random, cycle: f64) -> AxisSetup {
+fn axis(random: &mut Random, cycle: f64) -> (AxisConfig, DriveSetup) {
     let typical = limits(random, cycle);
     let limits = if random.one_in(8) {
         Limits {
@@ -190,7 +199,7 @@ fn axis(random: &mut Random, cycle: f64) -> AxisSetup {
     homing(random, &mut config, &drive, cycle);
     choices(random, &mut config);
     vibration(&mut config, cycle);
-    AxisSetup { config, drive }
+    (config, drive)
 }
 
 /// One or two modes on every sixteenth axis with one rate.
@@ -494,8 +503,8 @@ fn homing(random: &mut Random, config: &mut AxisConfig, drive: &DriveSetup, cycl
     }
 }
 
-/// MC_Power, MC_Reset and some more for an axis.
-fn blocks(random: &mut Random, axis: usize, limits: &Limits, cycle: f64) -> Vec<BlockSetup> {
+/// MC_Power, MC_Reset and some more for an axis of `count`.
+fn blocks(random: &mut Random, axis: usize, count: usize, limits: &Limits, cycle: f64) -> Vec<Block> {
     let of = |kinds: &[Kind]| -> Vec<&'static BlockInfo> {
         REGISTRY
             .iter()
@@ -520,44 +529,62 @@ fn blocks(random: &mut Random, axis: usize, limits: &Limits, cycle: f64) -> Vec<
     if random.one_in(3) {
         names.extend(one_of(random, &FAVOURED));
     }
-    let mut setup = |block: &'static str| BlockSetup {
-        block,
-        axis,
-        constants: match kind_of(one(block)) {
-            Kind::Power => one(block)
-                .pin("Enable")
-                .map(|(pin, _)| (pin, Value::Bool(true)))
-                .into_iter()
-                .collect(),
-            // The first cam that is selected.
-            _ if block == "MC_CamIn" => one(block)
-                .pin("CamTableID")
-                .map(|(pin, _)| (pin, Value::Dword(0x1_0001)))
-                .into_iter()
-                .collect(),
-            _ => Vec::new(),
-        },
-        tables: tables(random, one(block), limits, cycle),
+    let mut block = |name: &'static str| Block {
+        name: String::new(),
+        block: name,
+        pins: pins(random, one(name), axis, count, limits, cycle),
     };
-    names.into_iter().map(&mut setup).collect()
+    names.into_iter().map(&mut block).collect()
 }
 
-/// The tables of a block.
-fn tables(random: &mut Random, info: &BlockInfo, limits: &Limits, cycle: f64) -> Vec<TableSetup> {
-    let mut tables = Vec::new();
-    for (pin, entry) in info.pins().enumerate() {
-        let PinType::Table(of) = entry.ty else { continue };
-        let records = match of.name {
-            "MC_TP_REF" | "MC_TV_REF" | "MC_TA_REF" => points(random, of.name, limits, cycle),
-            "MC_CAM_REF" => curve(random, limits.velocity * cycle),
-            "MC_CAMSWITCH_REF" => (0..1 + random.below(3))
-                .map(|_| cam(random, limits.velocity * cycle))
-                .collect(),
-            _ => Vec::new(),
+/// The pins of a block that hold from the start.
+fn pins(
+    random: &mut Random,
+    info: &BlockInfo,
+    axis: usize,
+    count: usize,
+    limits: &Limits,
+    cycle: f64,
+) -> Map<String, Json> {
+    let mut pins = Map::new();
+    for pin in info.pins() {
+        let value = match pin.ty {
+            PinType::Axis(_) => AXES[wired(pin, axis, count)].into(),
+            PinType::Table(of) => write::table(&of, &records(random, of.name, limits, cycle)),
+            _ => match (info.name, pin.name) {
+                ("MC_Power", "Enable") => true.into(),
+                // The first cam that is selected.
+                ("MC_CamIn", "CamTableID") => 0x1_0001.into(),
+                _ => continue,
+            },
         };
-        tables.push(TableSetup { pin, records });
+        pins.insert(pin.name.to_owned(), value);
     }
-    tables
+    pins
+}
+
+/// The axis of `count` at a pin of a block of `axis`. A master is the next axis, so that all of them
+/// could form a ring; a second master is the one after that, which is the same one if there are two.
+fn wired(pin: &Pin, axis: usize, count: usize) -> usize {
+    let further = match pin.name {
+        "Master" | "Master1" => 1,
+        "Master2" if count > 2 => 2,
+        "Master2" => 1,
+        _ => 0,
+    };
+    (axis + further) % count
+}
+
+/// The records of a table.
+fn records(random: &mut Random, of: &str, limits: &Limits, cycle: f64) -> Vec<Vec<f64>> {
+    match of {
+        "MC_TP_REF" | "MC_TV_REF" | "MC_TA_REF" => points(random, of, limits, cycle),
+        "MC_CAM_REF" => curve(random, limits.velocity * cycle),
+        "MC_CAMSWITCH_REF" => (0..1 + random.below(3))
+            .map(|_| cam(random, limits.velocity * cycle))
+            .collect(),
+        _ => Vec::new(),
+    }
 }
 
 /// Points of a profile that most axes can follow from rest: time since the one before (ns), value, and whether the
@@ -672,15 +699,16 @@ mod tests {
         let mut played = BTreeSet::new();
         for number in 0..3000 {
             let mut random = Random::new(7, number);
-            for axis in scenario(&mut random, 1).axes {
+            let cycle = one_of(&mut random, &CYCLES) as f64 / 1e9;
+            for (config, drive) in axes(&mut random, cycle) {
                 differing(
                     &AXIS,
                     "axis",
-                    &axis.config,
+                    &config,
                     &AxisConfig::new(Limits::NONE),
                     &mut played,
                 );
-                match &axis.drive {
+                match &drive {
                     DriveSetup::Ideal(setup) => {
                         differing(&IDEAL, "ideal", setup, &IdealDriveSetup::PLAIN, &mut played);
                     }

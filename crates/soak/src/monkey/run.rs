@@ -1,42 +1,27 @@
-//! The run of a scenario through the executor, with every rule checked in every scan.
+//! The run of a random program, with every rule checked in every scan.
 
-use super::scenario::{Action, Bench, FAULT_CODE, FaultKind, Scenario, axis_id, kind_of};
+use super::program::Role;
 use crate::rules::arrows::{Part, Reach};
 use crate::rules::fence::Fence;
 use crate::rules::law::Law;
 use crate::rules::limits::{Track, check_excess, check_torque};
 use crate::rules::{Broken, Call, Held, Kind, Outputs, Shown, Truth, check_call, check_truth};
 use standstill_axis::{
-    Axis, AxisState, CommandId, EdgeWhileBusy, ErrorId, Event, Fate, InstanceId, LOG_KEPT, Log, Plan, Record,
-    Standard, StandardPlan, WorkKind,
+    Axis, AxisState, CommandId, EdgeWhileBusy, Event, Fate, LOG_KEPT, Log, Plan, Record, Standard,
+    StandardPlan, WorkKind,
 };
 use standstill_blocks::BlockInstance;
-use standstill_drives::simulated::SimulatedDrive;
 use standstill_fb::{AnyInstance, Context, Value};
-use standstill_scan::{Executor, ProgramConfig, ProgramFault, ProgramId, Programs, ScanTime, TaskConfig};
+use standstill_script::model::Script;
+use standstill_script::{Session, Witness};
 
-/// The actor in a scan.
-pub trait Hands {
-    /// The action at the latch of `scan`; called with the machine and the instances in the state after
-    /// the last scan.
-    fn next(&mut self, scan: u64, machine: &Bench, instances: &[Instance]) -> Option<Action>;
-}
-
-/// An instance in the run.
+/// What the rules know of an instance.
 #[derive(Clone, Debug)]
-pub struct Instance {
-    /// The block.
-    pub block: BlockInstance,
-    /// Its kind for the rules.
-    pub kind: Kind,
-    /// Index of its axis.
-    pub axis: usize,
+struct Instance {
+    role: Role,
     /// The outputs of its last call.
-    pub shown: Shown,
-    /// Execute, Enable or JogForward, if it has one of them.
-    pub trigger: Option<usize>,
-    /// Execute or Enable now, and at the last call.
-    pub on: bool,
+    shown: Shown,
+    /// Execute or Enable at the last call.
     was_on: bool,
     outputs: Outputs,
     command: Option<CommandId>,
@@ -61,17 +46,19 @@ pub struct Failure {
 }
 
 impl Failure {
-    /// A program that does not begin has broken no other rule.
-    const REFUSED: Self = Self {
-        scan: 0,
-        who: Who::Axis(0),
-        broken: Broken {
-            id: "refused",
-            what: "an axis, a drive or a block is refused",
-        },
-        shown: None,
-        state: None,
-    };
+    /// A program that does not run to its end has broken no other rule.
+    pub(super) fn refused(scan: u64) -> Self {
+        Self {
+            scan,
+            who: Who::Axis(0),
+            broken: Broken {
+                id: "refused",
+                what: "the program cannot run",
+            },
+            shown: None,
+            state: None,
+        }
+    }
 }
 
 /// The instance or axis that breaks a rule.
@@ -111,10 +98,11 @@ impl Seen {
     }
 }
 
-/// One program: calls every instance and checks the rules.
-struct Run<'a, H> {
-    hands: &'a mut H,
+/// Checks the rules in every scan of a program.
+struct Rules {
     instances: Vec<Instance>,
+    /// The axis before the call that is being made.
+    found: Option<Found>,
     reach: Reach,
     tracks: Vec<Track>,
     fences: Vec<Fence>,
@@ -136,109 +124,96 @@ struct Run<'a, H> {
     records: Vec<Record>,
     /// Number of coordinate moves of each axis at the last check.
     moves: Vec<u32>,
+    /// Programs call blocks, too.
+    has_guests: bool,
     failure: Option<Failure>,
     seen: Seen,
 }
 
+/// An axis before a call.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    /// Index of the axis.
+    axis: usize,
+    state: AxisState,
+    newest: CommandId,
+    /// The profile of the instance owns its axis and gives its points in this call.
+    due: bool,
+    /// A rising edge would be ignored.
+    ignoring: bool,
+}
+
 impl Instance {
-    fn new(block: BlockInstance, axis: usize) -> Self {
-        let info = block.info();
-        let place = |pin: &str| info.pin(pin).map(|(place, _)| place);
-        let trigger = ["Execute", "Enable", "JogForward"].into_iter().find_map(place);
-        let on = trigger.and_then(|pin| block.get(pin)) == Some(Value::Bool(true));
+    fn new(role: Role) -> Self {
         Self {
-            kind: kind_of(info),
-            outputs: Outputs::of(info),
-            axis,
+            outputs: Outputs::of(role.info),
+            role,
             shown: Shown::default(),
-            trigger,
-            on,
             was_on: false,
             command: None,
             fate: None,
             given: [None; 2],
-            block,
         }
     }
 
     /// Whether it waits in the buffer of its axis, according to its outputs.
     fn waits(&self) -> bool {
         let elsewhere =
-            matches!(self.block.info().name, "MC_Reset" | "MC_TouchProbe") || self.kind.is_superimposed();
+            matches!(self.role.info.name, "MC_Reset" | "MC_TouchProbe") || self.role.kind.is_superimposed();
         self.shown.busy && !self.shown.active && !elsewhere
-    }
-
-    /// Writes an input.
-    fn set(&mut self, pin: usize, value: Value) {
-        // Drawn for the pin's type, or from a script that was.
-        if self.block.set(pin, value).is_ok() && Some(pin) == self.trigger {
-            self.on = value == Value::Bool(true);
-        }
     }
 
     fn follows_commands(&self) -> bool {
         matches!(
-            self.kind,
+            self.role.kind,
             Kind::Motion | Kind::Stop | Kind::Superimposed | Kind::HaltSuperimposed
         )
     }
 }
 
-/// Runs `scenario` with `hands` as the actor instead of its steps.
+/// Runs a script, in which `act` may act before every scan.
 ///
-/// Ends at the first broken rule. A scenario that is refused breaks one, too.
-pub fn run(scenario: &Scenario, hands: &mut impl Hands) -> (Seen, Option<Failure>) {
-    let made = scenario.machine().zip(scenario.instances());
-    let (Some((mut machine, blocks)), Some(mut executor)) = (made, executor(scenario)) else {
-        return (Seen::default(), Some(Failure::REFUSED));
+/// Ends at the first broken rule. A script that cannot run breaks one, too.
+pub fn run(script: &Script, mut act: impl FnMut(&mut Session<'_>)) -> (Seen, Option<Failure>) {
+    let Ok(mut session) = Session::without_rows(script) else {
+        return (Seen::default(), Some(Failure::refused(0)));
     };
-    let instances = blocks
-        .into_iter()
-        .zip(&scenario.blocks)
-        .map(|(block, setup)| Instance::new(block, setup.axis));
-    let mut run = Run {
-        hands,
-        instances: instances.collect(),
-        reach: Reach::default(),
-        tracks: machine
-            .axes()
-            .iter()
-            .map(|axis| Track::new(axis, scenario.cycle()))
-            .collect(),
-        fences: machine.axes().iter().map(Fence::new).collect(),
-        laws: vec![Law::default(); machine.axes().len()],
-        states: machine.axes().iter().map(Axis::state).collect(),
-        following: vec![true; machine.axes().len()],
-        torques: vec![false; machine.axes().len()],
-        measured: vec![false; machine.axes().len()],
-        fastest: vec![0.0; machine.axes().len()],
-        orphans: vec![None; machine.axes().len()],
-        taken: 0,
-        records: Vec::new(),
-        moves: machine.axes().iter().map(Axis::coordinates).collect(),
-        failure: None,
-        seen: Seen::default(),
-    };
-    for scan in 0..scenario.scans {
-        let now_ns = scenario.cycle_ns.saturating_mul(scan.cast_signed());
-        if executor.scan(now_ns, &mut run, &mut machine).is_err() || run.failure.is_some() {
-            break;
+    let mut rules = Rules::new(script, session.axes());
+    while rules.failure.is_none() && !session.is_over() {
+        act(&mut session);
+        if session.advance_before(&mut rules).is_err() {
+            rules.failure = Some(Failure::refused(session.scans()));
         }
     }
-    (run.seen, run.failure)
+    (rules.seen, rules.failure)
 }
 
-fn executor(scenario: &Scenario) -> Option<Executor> {
-    let cycle_ns = scenario.cycle_ns.unsigned_abs();
-    Executor::new(
-        cycle_ns,
-        &[TaskConfig::every("main", cycle_ns)],
-        &[ProgramConfig::with("main", "main")],
-    )
-    .ok()
-}
+impl Rules {
+    fn new(script: &Script, axes: &[Axis<Standard>]) -> Self {
+        let cycle = script.cycle_ns as f64 / 1e9;
+        let count = axes.len();
+        Self {
+            instances: script.blocks.iter().map(Role::of).map(Instance::new).collect(),
+            found: None,
+            reach: Reach::default(),
+            tracks: axes.iter().map(|axis| Track::new(axis, cycle)).collect(),
+            fences: axes.iter().map(Fence::new).collect(),
+            laws: vec![Law::default(); count],
+            states: axes.iter().map(Axis::state).collect(),
+            following: vec![true; count],
+            torques: vec![false; count],
+            measured: vec![false; count],
+            fastest: vec![0.0; count],
+            orphans: vec![None; count],
+            taken: 0,
+            records: Vec::new(),
+            moves: axes.iter().map(Axis::coordinates).collect(),
+            has_guests: !script.programs.is_empty(),
+            failure: None,
+            seen: Seen::default(),
+        }
+    }
 
-impl<H: Hands> Run<'_, H> {
     #[cold]
     fn fail(&mut self, scan: u64, who: Who, broken: Broken) {
         let (shown, state) = match who {
@@ -252,28 +227,6 @@ impl<H: Hands> Run<'_, H> {
             shown,
             state,
         });
-    }
-
-    fn apply(&mut self, action: Action, time: ScanTime, machine: &mut Bench) {
-        match action {
-            Action::Set { block, pin, value } => {
-                if let Some(instance) = self.instances.get_mut(block) {
-                    instance.set(pin, value);
-                }
-            }
-            Action::Fault { axis, kind } => {
-                self.seen.faults += 1;
-                fail(axis, kind, time, machine);
-            }
-            Action::Clear { axis } => {
-                if let Some(drive) = machine.drives_mut().get_mut(axis) {
-                    drive.clear_cause();
-                }
-                if let Some(axis) = machine.axes_mut().get_mut(axis) {
-                    axis.clear_cause();
-                }
-            }
-        }
     }
 
     /// State changes of all axes since the last check.
@@ -304,26 +257,28 @@ impl<H: Hands> Run<'_, H> {
         }
     }
 
-    /// Calls an instance and checks its outputs.
-    fn call(&mut self, index: usize, context: &mut Context<'_, Standard>) -> Result<(), Broken> {
-        let instance = &mut self.instances[index];
-        let axis = &context.axes[instance.axis];
-        let state = axis.state();
+    /// Checks the outputs of an instance that was called.
+    fn check_outputs(
+        &mut self,
+        index: usize,
+        block: &BlockInstance,
+        axes: &[Axis<Standard>],
+    ) -> Result<(), Broken> {
+        let Some(found) = self.found.take() else {
+            return Ok(());
+        };
+        let Found { state, newest, .. } = found;
+        let axis = &axes[found.axis];
         let refusing = matches!(state, AxisState::Disabled | AxisState::ErrorStop);
-        let newest = axis.newest_command();
-        let due = instance.command.is_some_and(|id| axis.profile_is_due(id));
-        let part = if due { Part::DueCall } else { Part::Call };
-        let ignoring = axis.config().edge_while_busy == EdgeWhileBusy::Ignore
-            && state != AxisState::Stopping
-            && instance
-                .command
-                .is_some_and(|id| ended(axis.fate(id)) == [false; 3]);
-        instance.block.call(context);
-        let axis = &context.axes[instance.axis];
-        let (was, now) = (instance.shown, instance.outputs.read(&instance.block));
+        let instance = &mut self.instances[index];
+        // MC_Power lets a paused command go on, which may fail.
+        let starts = found.due || instance.role.kind == Kind::Power;
+        let part = if starts { Part::DueCall } else { Part::Call };
+        let (was, now) = (instance.shown, instance.outputs.read(block));
+        let on = instance.role.trigger.and_then(|pin| block.get(pin)) == Some(Value::Bool(true));
         // An ignored edge does not count as one.
-        let ignored = ignoring && axis.newest_command() == newest;
-        let (executed, execute) = (instance.was_on || ignored, instance.on);
+        let ignored = found.ignoring && axis.newest_command() == newest;
+        let (executed, execute) = (instance.was_on || ignored, on);
         instance.was_on = execute;
         instance.shown = now;
         if was != now {
@@ -339,7 +294,7 @@ impl<H: Hands> Run<'_, H> {
             );
         }
         let call = Call {
-            kind: instance.kind,
+            kind: instance.role.kind,
             executed,
             execute,
             was,
@@ -361,7 +316,7 @@ impl<H: Hands> Run<'_, H> {
             let is_over = |id: &CommandId| axis.fate(*id) == Fate::Done;
             instance.given = instance.given.map(|id| id.filter(is_over));
         }
-        if instance.kind == Kind::Jog {
+        if instance.role.kind == Kind::Jog {
             // Its commands follow each other, so the fate of one of them is not its output.
             if axis.newest_command() != newest {
                 self.seen.accepted += 1;
@@ -398,7 +353,7 @@ impl<H: Hands> Run<'_, H> {
         }
         let (was, now) = (state, axis.state());
         if was != now {
-            self.states[instance.axis] = now;
+            self.states[found.axis] = now;
             self.reach.check(part, was, now)?;
         }
         Ok(())
@@ -437,6 +392,17 @@ impl<H: Hands> Run<'_, H> {
                     self.tracks[index].follows(&master, ratio);
                 }
             }
+            if let Some(master) = axis.master().filter(|_| axis.is_on_a_cam())
+                && let Some((track, of)) = self
+                    .tracks
+                    .get(master.index())
+                    .cloned()
+                    .zip(axes.get(master.index()))
+            {
+                // The slope of the cam is not known here: one with which both go as fast as they may.
+                let ratio = axis.config().limits.velocity / of.config().limits.velocity;
+                self.tracks[index].follows(&track, ratio);
+            }
             self.tracks[index].is_beside(axis.deviation());
             self.tracks[index].check(&setpoint)?;
         }
@@ -457,16 +423,16 @@ impl<H: Hands> Run<'_, H> {
     fn check_commands(&mut self, index: usize, axis: &Axis<Standard>) -> Result<(), Broken> {
         let mut beside_held = false;
         for instance in &mut self.instances {
-            if instance.axis != index {
+            if instance.role.axis != Some(index) {
                 continue;
             }
             let Some(id) = instance.command else { continue };
             let fate = axis.fate(id);
             if Some(fate) != instance.fate {
                 let was = instance.fate.replace(fate);
-                check_life(was, fate, instance.kind)?;
+                check_life(was, fate, instance.role.kind)?;
             }
-            beside_held |= instance.kind.is_superimposed();
+            beside_held |= instance.role.kind.is_superimposed();
         }
         let (state, owned) = (axis.state(), axis.active_command().is_some());
         self.check_followed(index, axis)?;
@@ -479,7 +445,7 @@ impl<H: Hands> Run<'_, H> {
         let holds = |id| {
             self.instances
                 .iter()
-                .any(|one| one.axis == index && one.command == Some(id))
+                .any(|one| one.role.axis == Some(index) && one.command == Some(id))
         };
         let truth = Truth {
             state,
@@ -491,13 +457,16 @@ impl<H: Hands> Run<'_, H> {
             added: added.map(|(.., own)| own),
             orphaned: added.is_some_and(|(id, ..)| !holds(id)),
         };
-        let held = self.instances.iter().filter(|instance| instance.axis == index);
+        let held = self
+            .instances
+            .iter()
+            .filter(|instance| instance.role.axis == Some(index));
         check_truth(
             &truth,
             held.filter_map(|instance| {
-                let superimposed = instance.kind.is_superimposed();
+                let superimposed = instance.role.kind.is_superimposed();
                 let fate = instance.fate.filter(|_| instance.command.is_some())?;
-                let active = matches!(fate, Fate::Active { .. }) && instance.kind != Kind::Stop;
+                let active = matches!(fate, Fate::Active { .. }) && instance.role.kind != Kind::Stop;
                 let busy = matches!(fate, Fate::Active { .. } | Fate::Waiting);
                 Some(Held {
                     superimposed,
@@ -509,11 +478,21 @@ impl<H: Hands> Run<'_, H> {
     }
 
     /// No motion without a block: an owner or a waiting command belongs to an instance, or is recorded as
-    /// orphaned.
+    /// orphaned. The instances of a guest are not known here.
     fn check_followed(&self, index: usize, axis: &Axis<Standard>) -> Result<(), Broken> {
-        let instances = || self.instances.iter().filter(|instance| instance.axis == index);
+        if self.has_guests {
+            return Ok(());
+        }
+        let instances = || {
+            self.instances
+                .iter()
+                .filter(|instance| instance.role.axis == Some(index))
+        };
         let broken = |what| Err(Broken { id: "R97", what });
+        // At the end of a command that fails at rest.
+        let is_over = axis.plan().is_some_and(|(plan, _)| plan.scans() == 0);
         if let Some(owner) = axis.active_command()
+            && !is_over
             && !instances().any(|instance| instance.given.contains(&Some(owner)))
         {
             if self.orphans[index] != Some(owner) {
@@ -556,14 +535,14 @@ impl<H: Hands> Run<'_, H> {
     }
 
     /// The records of this scan, and the rules that require a record.
-    fn read_records(&mut self, time: ScanTime, machine: &Bench) {
-        self.collect(machine.log());
+    fn read_records(&mut self, scan: u64, axes: &[Axis<Standard>], log: &Log) {
+        self.collect(log);
         let mut found = None;
         for record in core::mem::take(&mut self.records) {
             match record.event {
                 Event::Unavoidable(excess) => {
                     let index = record.axis.index();
-                    let limits = &machine.axes()[index].config().limits;
+                    let limits = &axes[index].config().limits;
                     self.seen.turned_back += 1;
                     let is_planned = !self.measured[index];
                     if let Err(broken) = check_excess(&excess, limits)
@@ -574,7 +553,7 @@ impl<H: Hands> Run<'_, H> {
                 }
                 Event::Orphaned => {
                     let index = record.axis.index();
-                    self.orphans[index] = machine.axes()[index].active_command();
+                    self.orphans[index] = axes[index].active_command();
                 }
                 Event::Refused { .. }
                 | Event::PointRefused { .. }
@@ -604,7 +583,7 @@ impl<H: Hands> Run<'_, H> {
             }
         }
         if let Some((axis, broken)) = found {
-            self.fail(time.scan, Who::Axis(axis), broken);
+            self.fail(scan, Who::Axis(axis), broken);
         }
     }
 }
@@ -676,51 +655,44 @@ fn check_life(was: Option<Fate>, now: Fate, kind: Kind) -> Result<(), Broken> {
     }
 }
 
-/// Makes an axis or its drive fail.
-fn fail(axis: usize, kind: FaultKind, time: ScanTime, machine: &mut Bench) {
-    let drive = machine.drives_mut().get_mut(axis);
-    match (kind, drive) {
-        (FaultKind::Drive, Some(drive)) => drive.fail(FAULT_CODE),
-        (FaultKind::Power, Some(drive)) => drive.cut_power(),
-        (FaultKind::Communication, Some(drive)) => drive.cut_communication(),
-        (FaultKind::Axis, _) => {
-            let mut context = machine.context(time, InstanceId::default());
-            if let Ok((axis, scope)) = context.axis(axis_id(axis)) {
-                axis.raise(ErrorId::AxisFault, FAULT_CODE, scope);
-            }
-        }
-        (FaultKind::Drive | FaultKind::Power | FaultKind::Communication, None) => {}
-    }
-}
-
-impl<H: Hands> Programs<Standard, SimulatedDrive> for Run<'_, H> {
-    fn latch(&mut self, time: ScanTime, machine: &mut Bench) {
-        while let Some(action) = self.hands.next(time.scan, machine, &self.instances) {
-            self.apply(action, time, machine);
-        }
+impl Witness for Rules {
+    fn begins(&mut self, scan: u64, axes: &[Axis<Standard>]) {
+        self.follow_states(Part::Feedback, scan, axes);
     }
 
-    fn run(&mut self, _: ProgramId, context: &mut Context<'_, Standard>) -> Result<u64, ProgramFault> {
-        self.follow_states(Part::Feedback, context.scope.scan, context.axes);
-        for index in 0..self.instances.len() {
-            context.scope.instance = u16::try_from(index + 1).map_or(InstanceId::default(), InstanceId);
-            if let Err(broken) = self.call(index, context) {
-                self.fail(context.scope.scan, Who::Instance(index), broken);
-            }
-            self.collect(context.scope.log);
-        }
-        Ok(0)
+    fn before(&mut self, instance: usize, context: &Context<'_, Standard>) {
+        let Instance { role, command, .. } = self.instances[instance];
+        let Some(axis) = role.axis.and_then(|axis| context.axes.get(axis)) else {
+            return;
+        };
+        let state = axis.state();
+        self.found = Some(Found {
+            axis: axis.id().index(),
+            state,
+            newest: axis.newest_command(),
+            due: command.is_some_and(|id| axis.profile_is_due(id)),
+            ignoring: axis.config().edge_while_busy == EdgeWhileBusy::Ignore
+                && state != AxisState::Stopping
+                && command.is_some_and(|id| ended(axis.fate(id)) == [false; 3]),
+        });
     }
 
-    fn published(&mut self, time: ScanTime, machine: &Bench) {
+    fn after(&mut self, instance: usize, block: &BlockInstance, context: &Context<'_, Standard>) {
+        if let Err(broken) = self.check_outputs(instance, block, context.axes) {
+            self.fail(context.scope.scan, Who::Instance(instance), broken);
+        }
+        self.collect(context.scope.log);
+    }
+
+    fn published(&mut self, scan: u64, axes: &[Axis<Standard>], log: &Log) {
         self.seen.scans += 1;
-        self.follow_states(Part::Motion, time.scan, machine.axes());
-        self.follow_torques(machine.axes());
-        self.follow_coordinates(machine.axes());
-        self.read_records(time, machine);
-        for (index, axis) in machine.axes().iter().enumerate() {
-            if let Err(broken) = self.check_axis(index, axis, machine.axes()) {
-                self.fail(time.scan, Who::Axis(index), broken);
+        self.follow_states(Part::Motion, scan, axes);
+        self.follow_torques(axes);
+        self.follow_coordinates(axes);
+        self.read_records(scan, axes, log);
+        for (index, axis) in axes.iter().enumerate() {
+            if let Err(broken) = self.check_axis(index, axis, axes) {
+                self.fail(scan, Who::Axis(index), broken);
             }
         }
     }

@@ -1,41 +1,39 @@
-//! Makes a scenario that breaks a rule smaller: fewer instances, fewer steps, fewer changes, rounder numbers.
+//! Makes a program that breaks a rule smaller: fewer instances, fewer steps, fewer changes, rounder numbers.
 
-use super::replay;
+use super::judge;
+use super::program::{Program, scan_of, set_by};
 use super::run::Failure;
-use super::scenario::{Action, Scenario, Step};
-use standstill_axis::keys::{AXIS, Holds};
-use standstill_axis::{AxisConfig, Limits, StartState};
-use standstill_drives::simulated::DriveSetup;
-use standstill_fb::Value;
+use serde_json::{Value as Json, json};
+use standstill_script::model::Script;
 
-/// Largest number of scans that are run to find a smaller scenario.
+/// Largest number of scans that are run to find a smaller program.
 const BUDGET: u64 = 4_000_000;
 
 struct Shrinker<J> {
     judge: J,
-    best: Scenario,
+    best: Program,
     failure: Failure,
     /// Scans left to run.
     budget: u64,
 }
 
-/// The smallest scenario found that breaks the same rule as `scenario`, and its failure.
-pub fn shrink(failure: Failure, scenario: Scenario) -> (Failure, Scenario) {
-    shrink_by(failure, scenario, |candidate| {
-        let (seen, failure) = replay(candidate);
+/// The smallest program found that breaks the same rule as `program`, and its failure.
+pub fn shrink(failure: Failure, program: Program) -> (Failure, Program) {
+    shrink_by(failure, program, |_, script| {
+        let (seen, failure) = judge(script);
         (seen.scans, failure)
     })
 }
 
-/// The same as [`shrink`], with another judge, which returns the number of scans that a scenario ran and its
-/// failure.
-pub fn shrink_by<J>(failure: Failure, scenario: Scenario, judge: J) -> (Failure, Scenario)
+/// The same as [`shrink`], with another judge, which gets a program and its script and returns the
+/// number of scans that it ran and its failure.
+pub fn shrink_by<J>(failure: Failure, program: Program, judge: J) -> (Failure, Program)
 where
-    J: Fn(&Scenario) -> (u64, Option<Failure>),
+    J: Fn(&Program, &Script) -> (u64, Option<Failure>),
 {
     let mut shrinker = Shrinker {
         judge,
-        best: scenario,
+        best: program,
         failure,
         budget: BUDGET,
     };
@@ -46,9 +44,8 @@ where
         shrinker.fewer_blocks();
         shrinker.fewer_steps();
         shrinker.fewer_axes();
-        shrinker.plainer_axes();
         shrinker.fewer_changes();
-        shrinker.shorter_tables();
+        shrinker.plainer();
         shrinker.sooner();
         shrinker.rounder();
         if shrinker.best == before || shrinker.budget == 0 {
@@ -58,13 +55,16 @@ where
     (shrinker.failure, shrinker.best)
 }
 
-impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
+impl<J: Fn(&Program, &Script) -> (u64, Option<Failure>)> Shrinker<J> {
     /// Takes `candidate` if it breaks the same rule.
-    fn attempt(&mut self, candidate: Scenario) -> bool {
+    fn attempt(&mut self, candidate: Program) -> bool {
         if candidate == self.best || self.budget < candidate.scans {
             return false;
         }
-        let (scans, failure) = (self.judge)(&candidate);
+        let Ok(script) = candidate.read() else {
+            return false;
+        };
+        let (scans, failure) = (self.judge)(&candidate, &script);
         self.budget = self.budget.saturating_sub(scans);
         match failure {
             Some(failure) if failure.broken == self.failure.broken => {
@@ -77,48 +77,41 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
         }
     }
 
+    /// The same with the best program as `change` makes it.
+    fn attempt_with(&mut self, change: impl FnOnce(&mut Program)) -> bool {
+        let mut changed = self.best.clone();
+        change(&mut changed);
+        self.attempt(changed)
+    }
+
     /// Removes all actions after the failure.
     fn end(&mut self) {
         let last = self.failure.scan;
         self.best.scans = last + 1;
-        self.best.steps.retain(|step| step.scan <= last);
+        self.best.steps.retain(|step| scan_of(step) <= last);
     }
 
     fn fewer_blocks(&mut self) {
         for index in (0..self.best.blocks.len()).rev() {
-            let mut less = self.best.clone();
-            less.blocks.remove(index);
-            less.steps.retain_mut(|step| match &mut step.action {
-                Action::Set { block, .. } if *block == index => false,
-                Action::Set { block, .. } => {
-                    *block -= usize::from(*block > index);
-                    true
-                }
-                Action::Fault { .. } | Action::Clear { .. } => true,
+            self.attempt_with(|less| {
+                let name = less.blocks.remove(index).name;
+                let of_it = |step: &Json| set_by(step).is_some_and(|(block, ..)| block == name);
+                less.steps.retain(|step| !of_it(step));
             });
-            self.attempt(less);
         }
     }
 
     fn fewer_axes(&mut self) {
-        for index in (0..self.best.axes.len()).rev() {
-            if self.best.axes.len() == 1 || self.best.blocks.iter().any(|block| block.axis == index) {
-                continue;
-            }
-            let mut less = self.best.clone();
-            less.axes.remove(index);
-            for block in &mut less.blocks {
-                block.axis -= usize::from(block.axis > index);
-            }
-            less.steps.retain_mut(|step| match &mut step.action {
-                Action::Fault { axis, .. } | Action::Clear { axis } if *axis == index => false,
-                Action::Fault { axis, .. } | Action::Clear { axis } => {
-                    *axis -= usize::from(*axis > index);
-                    true
-                }
-                Action::Set { .. } => true,
+        let names: Vec<_> = self.best.axes.keys().cloned().collect();
+        for name in names.iter().rev() {
+            self.attempt_with(|less| {
+                less.axes.remove(name);
+                let of_it = |step: &Json| {
+                    let fault = step.get("fault").or_else(|| step.get("clear"));
+                    fault.is_some_and(|fault| fault["axis"] == json!(name))
+                };
+                less.steps.retain(|step| !of_it(step));
             });
-            self.attempt(less);
         }
     }
 
@@ -128,10 +121,9 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
         loop {
             let mut start = 0;
             while start < self.best.steps.len() {
-                let mut less = self.best.clone();
-                let end = (start + length).min(less.steps.len());
-                less.steps.drain(start..end);
-                if !self.attempt(less) {
+                let end = (start + length).min(self.best.steps.len());
+                let taken = self.attempt_with(|less| drop(less.steps.drain(start..end)));
+                if !taken {
                     start += length;
                 }
             }
@@ -142,66 +134,58 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
         }
     }
 
-    /// Sets each part of a configuration to its default.
-    fn plainer_axes(&mut self) {
-        let mut keys: Vec<_> = AXIS.keys.iter().collect();
-        AXIS.each(&mut |key| keys.push(key));
-        let paths: Vec<_> = keys
-            .iter()
-            .filter(|key| !key.is_needed())
-            .map(|key| key.path)
-            .collect();
-        for axis in 0..self.best.axes.len() {
-            for path in &paths {
-                let mut less = self.best.clone();
-                let config = &mut less.axes[axis].config;
-                *config = without(config, path);
-                self.attempt(less);
-            }
-            let mut less = self.best.clone();
-            less.axes[axis].config.start = StartState::Standstill;
-            self.attempt(less);
-            let mut less = self.best.clone();
-            less.axes[axis].drive = DriveSetup::default();
-            self.attempt(less);
-        }
-    }
-
     /// Replaces steps by values that hold from the start.
     fn fewer_changes(&mut self) {
         let mut index = 0;
         while index < self.best.steps.len() {
-            let mut less = self.best.clone();
-            let step = less.steps.remove(index);
-            let taken = match step.action {
-                Action::Set { block, pin, value } => {
-                    let constants = &mut less.blocks[block].constants;
-                    constants.retain(|(other, _)| *other != pin);
-                    constants.push((pin, value));
-                    self.attempt(less)
+            let taken = self.attempt_with(|less| {
+                let step = less.steps.remove(index);
+                let set = set_by(&step);
+                let block =
+                    set.and_then(|(name, ..)| less.blocks.iter_mut().find(|block| block.name == name));
+                if let (Some(block), Some((_, pin, value))) = (block, set) {
+                    block.pins.insert(pin.to_owned(), value.clone());
                 }
-                Action::Fault { .. } | Action::Clear { .. } => false,
-            };
+            });
             index += usize::from(!taken);
         }
-        for block in 0..self.best.blocks.len() {
-            for place in (0..self.best.blocks[block].constants.len()).rev() {
-                let mut less = self.best.clone();
-                less.blocks[block].constants.remove(place);
-                self.attempt(less);
+    }
+
+    /// Leaves out keys of axes and drives, pins, and records of tables.
+    fn plainer(&mut self) {
+        for name in self.best.axes.keys().cloned().collect::<Vec<_>>() {
+            self.attempt_with(|less| less.axes[&name]["state"] = json!("Standstill"));
+            self.without_parts(&|program| &mut program.axes[&name]);
+        }
+        for index in 0..self.best.blocks.len() {
+            let pins: Vec<_> = self.best.blocks[index].pins.keys().cloned().collect();
+            for pin in pins {
+                let taken = self.attempt_with(|less| drop(less.blocks[index].pins.remove(&pin)));
+                if !taken {
+                    self.without_parts(&|program| &mut program.blocks[index].pins[&pin]);
+                }
             }
         }
     }
 
-    /// Tables with fewer records.
-    fn shorter_tables(&mut self) {
-        for block in 0..self.best.blocks.len() {
-            for table in 0..self.best.blocks[block].tables.len() {
-                for record in (0..self.best.blocks[block].tables[table].records.len()).rev() {
-                    let mut less = self.best.clone();
-                    less.blocks[block].tables[table].records.remove(record);
-                    self.attempt(less);
-                }
+    /// Leaves out the members and elements of a part, and those of its parts.
+    fn without_parts(&mut self, part: &dyn Fn(&mut Program) -> &mut Json) {
+        let keys: Vec<Key> = match part(&mut self.best.clone()) {
+            Json::Object(members) => members.keys().cloned().map(Key::Member).collect(),
+            Json::Array(elements) => (0..elements.len()).rev().map(Key::Element).collect(),
+            _ => return,
+        };
+        for key in keys {
+            let taken = self.attempt_with(|less| match (part(less), &key) {
+                (Json::Object(members), Key::Member(name)) => drop(members.remove(name)),
+                (Json::Array(elements), Key::Element(index)) => drop(elements.remove(*index)),
+                _ => {}
+            });
+            if !taken {
+                self.without_parts(&|program| match &key {
+                    Key::Member(name) => &mut part(program)[name],
+                    Key::Element(index) => &mut part(program)[*index],
+                });
             }
         }
     }
@@ -211,11 +195,12 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
         for index in 0..self.best.steps.len() {
             let mut by = self.pause_before(index);
             while by > 0 {
-                let mut less = self.best.clone();
-                for Step { scan, .. } in &mut less.steps[index..] {
-                    *scan -= by;
-                }
-                if self.attempt(less) {
+                let taken = self.attempt_with(|less| {
+                    for step in &mut less.steps[index..] {
+                        step["at"] = json!(scan_of(step) - by);
+                    }
+                });
+                if taken {
                     by = self.pause_before(index).min(by);
                 } else {
                     by /= 2;
@@ -228,7 +213,7 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
     }
 
     fn pause_before(&self, index: usize) -> u64 {
-        let scan = |index: usize| self.best.steps.get(index).map_or(0, |step| step.scan);
+        let scan = |index: usize| self.best.steps.get(index).map_or(0, scan_of);
         match index.checked_sub(1) {
             Some(before) => scan(index) - scan(before),
             // An edge of a script needs a scan before it.
@@ -238,17 +223,19 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
 
     /// Numbers of one, two, three digits.
     fn rounder(&mut self) {
-        for index in 0..numbers(&mut self.best.clone(), None).len() {
+        for index in 0..numbers(&mut self.best.clone()).len() {
             for digits in 1..=4 {
                 let mut less = self.best.clone();
-                let Some(number) = numbers(&mut less, None).get(index).copied() else {
+                let mut numbers = numbers(&mut less);
+                let Some(number) = numbers.get_mut(index) else {
                     return;
                 };
-                let round = rounded(number, digits);
-                if round == number {
+                let is = number.as_f64().unwrap_or(0.0);
+                let round = rounded(is, digits);
+                if round == is {
                     break;
                 }
-                numbers(&mut less, Some((index, round)));
+                **number = json!(round);
                 if self.attempt(less) {
                     break;
                 }
@@ -257,65 +244,37 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
     }
 }
 
-/// A configuration with a key, or all of an object's keys, at the default.
-fn without(config: &AxisConfig, path: &str) -> AxisConfig {
-    let mut plain = AxisConfig::new(Limits::NONE);
-    AXIS.each(&mut |key| {
-        let is_it = key.path == path
-            || key
-                .path
-                .strip_prefix(path)
-                .is_some_and(|rest| rest.starts_with('.'));
-        if !is_it && !key.is_same(config, &plain) {
-            key.take(config, &mut plain);
-        }
-    });
-    plain
+/// A part of JSON.
+enum Key {
+    Member(String),
+    Element(usize),
 }
 
-/// Every number of a scenario that can be changed; one of them is changed.
-fn numbers(scenario: &mut Scenario, change: Option<(usize, f64)>) -> Vec<f64> {
+/// Every number of a program with a fraction.
+fn numbers(program: &mut Program) -> Vec<&mut Json> {
     let mut all = Vec::new();
-    let mut look = |number: f64| {
-        let new = change
-            .filter(|(index, _)| *index == all.len())
-            .map(|(_, new)| new);
-        all.push(number);
-        new
-    };
-    for axis in &mut scenario.axes {
-        let config = &mut axis.config;
-        AXIS.each(&mut |key| {
-            if let Holds::Number { get, set, .. } = &key.holds
-                && let Some(new) = get(config).and_then(&mut look)
-            {
-                set(config, new);
-            }
-        });
-    }
-    let constants = scenario.blocks.iter_mut().flat_map(|block| &mut block.constants);
-    let constants = constants.map(|(_, value)| value);
-    let steps = scenario
-        .steps
+    let axes = program.axes.values_mut();
+    let pins = program
+        .blocks
         .iter_mut()
-        .filter_map(|step| match &mut step.action {
-            Action::Set { value, .. } => Some(value),
-            Action::Fault { .. } | Action::Clear { .. } => None,
-        });
-    for value in constants.chain(steps) {
-        if let Value::Lreal(number) = value
-            && let Some(new) = look(*number)
-        {
-            *number = new;
-        }
+        .flat_map(|block| block.pins.values_mut());
+    let steps = program.steps.iter_mut().filter_map(|step| step.get_mut("set"));
+    for part in axes.chain(pins).chain(steps) {
+        numbers_in(part, &mut all);
     }
     all
 }
 
+fn numbers_in<'a>(part: &'a mut Json, all: &mut Vec<&'a mut Json>) {
+    match part {
+        Json::Object(members) => members.values_mut().for_each(|member| numbers_in(member, all)),
+        Json::Array(elements) => elements.iter_mut().for_each(|element| numbers_in(element, all)),
+        Json::Number(number) if number.is_f64() => all.push(part),
+        _ => {}
+    }
+}
+
 /// `number` to `digits` significant digits.
 fn rounded(number: f64, digits: usize) -> f64 {
-    if !number.is_finite() {
-        return number;
-    }
     format!("{number:.*e}", digits - 1).parse().unwrap_or(number)
 }

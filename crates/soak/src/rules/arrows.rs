@@ -10,7 +10,8 @@ pub enum Part {
     Feedback,
     /// One call of a block.
     Call,
-    /// The call in which a profile that owns the axis gives its points, or fails to.
+    /// A call in which a command starts or fails that was given before: a profile gives its points, or MC_Power lets a
+    /// paused command go on.
     DueCall,
     /// The motion step.
     Motion,
@@ -48,8 +49,8 @@ impl Part {
                 ],
                 1,
             ),
-            // A profile that cannot start is replaced by the next command. If there is none, an axis in motion
-            // fails: the arrow of an error starts at every state (note 1 of the diagram).
+            // A command that cannot start is replaced by the next one. If there is none, an axis in motion fails: the
+            // arrow of an error starts at every state (note 1 of the diagram).
             Self::DueCall => (
                 &[
                     E::MotionDone,

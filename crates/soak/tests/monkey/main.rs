@@ -1,37 +1,35 @@
-//! The record of a random program repeats its run to the bit, and its scan script runs.
+//! A random program repeats its run to the bit, as a scan script does.
 
 mod programs;
+mod scripts;
 mod wired;
 
-use standstill_axis::{AxisConfig, Limits, Scaling, StartState};
+use serde_json::{Value, json};
 use standstill_blocks::REGISTRY;
-use standstill_blocks::registry::find;
-use standstill_drives::mechanism::Plant;
-use standstill_drives::simulated::{DriveSetup, PlantSetup};
-use standstill_fb::{Group, Value};
-use standstill_planner::VibrationMode;
-use standstill_soak::monkey::{
-    Action, AxisSetup, BlockSetup, Failure, Scenario, Step, TableSetup, Who, kind_of, play, record, replay,
-    shrink_by,
-};
+use standstill_fb::Group;
+use standstill_script::model::Script;
+use standstill_soak::monkey::{Failure, Program, Who, judge, kind_of, play, record, replay, shrink_by};
 use standstill_soak::rules::{Broken, Kind};
 use std::collections::BTreeSet;
 
-/// Runs the script of a scenario: whether its claims hold.
-fn passes(scenario: &Scenario, failure: Option<&Failure>) -> bool {
-    let text = scenario.script(failure);
-    let script = standstill_script::read(&text, "random.scan.json", &[])
-        .unwrap_or_else(|error| panic!("{error:?}\n{text}"));
-    standstill_script::run(&script).expect("a run").passed()
+fn read(text: &str) -> Script {
+    standstill_script::read(text, "random.scan.json", &[]).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// Runs a program as a script: whether its claims hold.
+fn passes(program: &Program) -> bool {
+    standstill_script::run(&read(&program.text()))
+        .expect("a run")
+        .passed()
 }
 
 #[test]
 fn minutes_repeat_an_episode_and_are_a_script() {
     for number in 0..standstill_testkit::whole_or(20, 5) {
-        let (seen, failure, scenario) = record(3, number, 600);
-        assert_eq!(replay(&scenario), (seen, failure), "episode {number}");
+        let (seen, failure, program) = record(3, number, 600);
+        assert_eq!(replay(&program), (seen, failure), "episode {number}");
         assert_eq!(failure, None);
-        assert!(passes(&scenario, None));
+        assert!(passes(&program));
     }
     assert_eq!(play(3, 5, 600).seen, play(3, 5, 600).seen);
     assert_ne!(play(3, 5, 600).seen.digest, play(4, 5, 600).seen.digest);
@@ -42,9 +40,7 @@ fn minutes_repeat_an_episode_and_are_a_script() {
 fn programs_that_rest_may_be_left_out() {
     use standstill_script::{Ahead, Session};
     for number in 0..standstill_testkit::whole_or(40, 8) {
-        let text = record(5, number, 400).2.script(None);
-        let script = standstill_script::read(&text, "random.scan.json", &[])
-            .unwrap_or_else(|error| panic!("{error:?}\n{text}"));
+        let script = read(&record(5, number, 400).2.text());
         let mut by_scan = Session::new(&script).expect("a run");
         while by_scan.advance().expect("a scan") {}
         let mut far = Session::new(&script).expect("a run");
@@ -70,9 +66,9 @@ fn programs_that_rest_may_be_left_out() {
 /// A program that cannot begin tests nothing.
 #[test]
 fn a_refused_program_is_a_failure() {
-    let mut scenario = record(3, 0, 10).2;
-    scenario.axes[0].config.limits.velocity = f64::NAN;
-    let (seen, failure) = replay(&scenario);
+    let mut program = record(3, 0, 10).2;
+    program.axes["X"]["velocity"] = json!("NaN");
+    let (seen, failure) = replay(&program);
     assert_eq!(
         (seen.scans, failure.map(|failure| failure.broken.id)),
         (0, Some("refused"))
@@ -96,70 +92,20 @@ fn every_block_is_played_and_known_to_the_rules() {
 /// The ring of records holds 64, and the coordinates of 70 axes are shifted in one scan.
 #[test]
 fn seventy_axes_are_judged_as_one() {
-    let limits = Limits {
-        velocity: 10.0,
-        acceleration: 100.0,
-        deceleration: 100.0,
-        ..Limits::NONE
-    };
-    let config = AxisConfig {
-        start: StartState::Standstill,
-        ..AxisConfig::new(limits)
-    };
-    let info = find("MC_SetPosition").expect("a block of the registry");
-    let pin = |name| info.pin(name).expect("one of its pins").0;
-    let axes = 0..70;
-    let scenario = Scenario {
-        cycle_ns: 1_000_000,
-        scans: 10,
-        axes: axes
-            .clone()
-            .map(|_| AxisSetup {
-                config,
-                drive: DriveSetup::default(),
-            })
-            .collect(),
-        blocks: axes
-            .clone()
-            .map(|axis| BlockSetup {
-                block: info.name,
-                axis,
-                constants: vec![(pin("Position"), Value::Lreal(1e3))],
-                tables: Vec::new(),
-            })
-            .collect(),
-        steps: axes
-            .map(|block| Step {
-                scan: 5,
-                action: Action::Set {
-                    block,
-                    pin: pin("Execute"),
-                    value: Value::Bool(true),
-                },
-            })
-            .collect(),
-    };
-    let (seen, failure) = replay(&scenario);
+    let axes = || (0..70).map(|axis| format!("A{axis:02}"));
+    let limits = json!({"state": "Standstill", "limits": {"velocity": 10.0, "acceleration": 100.0}});
+    let block = |axis: String| json!({"name": format!("Set{axis}"), "type": "MC_SetPosition", "pins": {"Axis": axis, "Position": 1e3}});
+    let step = |axis| json!({"at": 5, "set": {(format!("Set{axis}.Execute")): true}});
+    let script = json!({
+        "standstill": 1,
+        "cycle": "T#1ms",
+        "scans": 10,
+        "axes": axes().map(|axis| (axis, limits.clone())).collect::<serde_json::Map<_, _>>(),
+        "blocks": axes().map(block).collect::<Value>(),
+        "steps": axes().map(step).collect::<Value>(),
+    });
+    let (seen, failure) = judge(&read(&script.to_string()));
     assert_eq!((seen.scans, failure), (10, None));
-}
-
-/// The index of a pin.
-fn pin(block: &str, name: &str) -> usize {
-    let info = find(block).expect("a block of the registry");
-    info.pin(name).expect("one of its pins").0
-}
-
-/// An instance on axis 0 with these inputs.
-fn instance(block: &'static str, inputs: &[(&str, Value)]) -> BlockSetup {
-    BlockSetup {
-        block,
-        axis: 0,
-        constants: inputs
-            .iter()
-            .map(|(name, value)| (pin(block, name), *value))
-            .collect(),
-        tables: Vec::new(),
-    }
 }
 
 /// A motor that follows its set-point a scan late is faster than the axis may be when a torque takes over, and so
@@ -167,41 +113,25 @@ fn instance(block: &'static str, inputs: &[(&str, Value)]) -> BlockSetup {
 /// so the axis stops.
 #[test]
 fn a_torque_takes_over_from_a_motor_that_is_too_fast() {
-    let config = AxisConfig {
-        start: StartState::Standstill,
-        scaling: Scaling::new(1000, 360, false, 0.0).ok(),
-        software_limits: Some((-10.0, f64::INFINITY)),
-        ..AxisConfig::new(Limits {
-            velocity: 30.0,
-            acceleration: 700.0,
-            deceleration: 200.0,
-            ..Limits::NONE
-        })
-    };
-    let mut drive = PlantSetup {
-        plant: Plant {
-            inertia: 1.8,
-            viscous: 10.0,
-            ..PlantSetup::NONE.plant
-        },
-        ..PlantSetup::NONE
-    };
-    drive.gains.position = 20.0;
-    let on = ("Execute", Value::Bool(true));
-    let scenario = Scenario {
-        cycle_ns: 10_000_000,
-        scans: 40,
-        axes: vec![AxisSetup {
-            config,
-            drive: DriveSetup::Plant(drive.with_gains(0.01)),
-        }],
-        blocks: vec![
-            instance("MC_MoveVelocity", &[on, ("Velocity", Value::Lreal(-20.0))]),
-            instance("MC_TorqueControl", &[on, ("BufferMode", Value::Enum(1))]),
+    let script = json!({
+        "standstill": 1,
+        "cycle": "T#10ms",
+        "scans": 40,
+        "axes": {"X": {
+            "state": "Standstill",
+            "limits": {"velocity": 30.0, "acceleration": 700.0, "deceleration": 200.0},
+            "scaling": {"increments": 1000, "units": 360},
+            "software_limits": {"min": -10.0},
+            "drive": {"plant": {"inertia": 1.8, "viscous": 10.0, "gains": {"position": 20.0}}},
+        }},
+        "blocks": [
+            {"name": "Move", "type": "MC_MoveVelocity", "pins": {"Axis": "X", "Execute": true, "Velocity": -20.0}},
+            {"name": "Torque", "type": "MC_TorqueControl", "pins": {
+                "Axis": "X", "Execute": true, "BufferMode": "mcBuffered",
+            }},
         ],
-        steps: Vec::new(),
-    };
-    let (seen, failure) = replay(&scenario);
+    });
+    let (seen, failure) = judge(&read(&script.to_string()));
     assert_eq!((seen.scans, failure), (40, None));
     // The excess of its speed is recorded.
     assert_eq!(seen.turned_back, 1);
@@ -211,68 +141,40 @@ fn a_torque_takes_over_from_a_motor_that_is_too_fast() {
 /// again and refused, and no block has to follow its motion.
 #[test]
 fn a_completed_profile_stays_so_on_a_shaped_axis() {
-    let config = AxisConfig {
-        start: StartState::Standstill,
-        vibration: [Some(VibrationMode::new(7.4)), None],
-        ..AxisConfig::new(Limits {
-            velocity: 2.0,
-            acceleration: 28.0,
-            deceleration: 28.0,
-            ..Limits::NONE
-        })
-    };
-    let on = Value::Bool(true);
-    let mut profile = instance(
-        "MC_AccelerationProfile",
-        &[("Execute", on), ("BufferMode", Value::Enum(1))],
-    );
-    profile.tables.push(TableSetup {
-        pin: pin(profile.block, "TimeAcceleration"),
-        records: vec![vec![1.3e9, -0.29, 0.0]],
+    let script = json!({
+        "standstill": 1,
+        "cycle": "T#10ms",
+        "scans": 200,
+        "axes": {"X": {
+            "state": "Standstill",
+            "limits": {"velocity": 2.0, "acceleration": 28.0},
+            "vibration": [{"frequency": 7.4}],
+        }},
+        "blocks": [
+            {"name": "Added", "type": "MC_MoveSuperimposed", "pins": {
+                "Axis": "X", "Distance": -5.0, "VelocityDiff": 0.2,
+            }},
+            {"name": "Profile", "type": "MC_AccelerationProfile", "pins": {
+                "Axis": "X", "Execute": true, "BufferMode": "mcBuffered",
+                "TimeAcceleration": [{"DeltaTime": "T#1300ms", "Acceleration": -0.29}],
+            }},
+        ],
+        "steps": [
+            {"at": 113, "set": {"Profile.Execute": false}},
+            {"at": 160, "set": {"Added.Execute": true}},
+            {"at": 161, "set": {"Profile.Execute": true}},
+            {"at": 162, "set": {"Profile.Execute": false}},
+            {"at": 163, "set": {"Profile.BufferMode": 99, "Profile.Execute": true}},
+        ],
     });
-    let set = |scan, block, pin, value| Step {
-        scan,
-        action: Action::Set { block, pin, value },
-    };
-    let (added, execute) = (
-        pin("MC_MoveSuperimposed", "Execute"),
-        pin(profile.block, "Execute"),
-    );
-    let mode = pin(profile.block, "BufferMode");
-    let scenario = Scenario {
-        cycle_ns: 10_000_000,
-        scans: 200,
-        axes: vec![AxisSetup {
-            config,
-            drive: DriveSetup::default(),
-        }],
-        blocks: vec![
-            instance(
-                "MC_MoveSuperimposed",
-                &[
-                    ("Distance", Value::Lreal(-5.0)),
-                    ("VelocityDiff", Value::Lreal(0.2)),
-                ],
-            ),
-            profile,
-        ],
-        steps: vec![
-            set(113, 1, execute, Value::Bool(false)),
-            set(160, 0, added, on),
-            set(161, 1, execute, on),
-            set(162, 1, execute, Value::Bool(false)),
-            set(163, 1, mode, Value::Enum(99)),
-            set(163, 1, execute, on),
-        ],
-    };
-    let (seen, failure) = replay(&scenario);
+    let (seen, failure) = judge(&read(&script.to_string()));
     assert_eq!((seen.scans, failure), (200, None));
     assert_eq!((seen.ended[0], seen.refused), (1, 1));
 }
 
 #[test]
 fn the_script_of_a_failure_fails_where_it_happens() {
-    let (_, _, scenario) = record(3, 0, 100);
+    let program = record(3, 0, 100).2;
     let states = standstill_axis::AxisState::ALL;
     // Forbidding the state of the axis in the last scan must fail, for any state, and no other.
     let forbidding = |state| Failure {
@@ -287,22 +189,24 @@ fn the_script_of_a_failure_fails_where_it_happens() {
     };
     let failing = states
         .iter()
-        .filter(|state| !passes(&scenario, Some(&forbidding(**state))));
+        .filter(|state| !passes(&program.clone().claiming(&forbidding(**state))));
     assert_eq!(failing.count(), 1);
 }
 
 /// A rule that is broken whenever an MC_MoveVelocity is triggered: the rest is exactly that, as a script.
 #[test]
 fn what_does_not_matter_is_left_out() {
-    let told_to_move = |scenario: &Scenario| {
-        let told = scenario.steps.iter().find(|step| match step.action {
-            Action::Set { block, value, .. } => {
-                scenario.blocks[block].block == "MC_MoveVelocity" && value == Value::Bool(true)
-            }
-            Action::Fault { .. } | Action::Clear { .. } => false,
-        });
+    let told_to_move = |program: &Program, _: &Script| {
+        let starts = |step: &&Value| {
+            let mut moves = program
+                .blocks
+                .iter()
+                .filter(|block| block.block == "MC_MoveVelocity");
+            moves.any(|block| step["set"][format!("{}.Execute", block.name)] == json!(true))
+        };
+        let told = program.steps.iter().find(starts);
         let failure = told.map(|step| Failure {
-            scan: step.scan,
+            scan: step["at"].as_u64().expect("a scan"),
             who: Who::Axis(0),
             broken: Broken {
                 id: "S3",
@@ -311,16 +215,16 @@ fn what_does_not_matter_is_left_out() {
             shown: None,
             state: None,
         });
-        (scenario.scans, failure)
+        (program.scans, failure)
     };
     let mut shrunk = 0;
     for number in 0..80 {
-        let (_, _, scenario) = record(3, number, 400);
-        let (_, Some(failure)) = told_to_move(&scenario) else {
+        let program = record(3, number, 400).2;
+        let (_, Some(failure)) = told_to_move(&program, &program.read().expect("a script")) else {
             continue;
         };
-        let (steps, blocks) = (scenario.steps.len(), scenario.blocks.len());
-        let (failure, least) = shrink_by(failure, scenario, told_to_move);
+        let (steps, blocks) = (program.steps.len(), program.blocks.len());
+        let (failure, least) = shrink_by(failure, program, told_to_move);
         assert!(
             steps > 1 || blocks > 1,
             "episode {number} had nothing to leave out"
@@ -332,10 +236,13 @@ fn what_does_not_matter_is_left_out() {
         );
         assert_eq!(least.blocks[0].block, "MC_MoveVelocity");
         assert_eq!(
-            (least.scans, told_to_move(&least).1),
+            (
+                least.scans,
+                told_to_move(&least, &least.read().expect("a script")).1
+            ),
             (failure.scan + 1, Some(failure))
         );
-        assert!(passes(&least, None));
+        assert!(passes(&least));
         shrunk += 1;
     }
     assert!(shrunk >= 10, "{shrunk}");

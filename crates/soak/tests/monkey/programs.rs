@@ -226,7 +226,7 @@ fn seen(outcome: &Outcome) -> (BTreeMap<String, Vec<String>>, Vec<String>) {
 fn a_program_in_structured_text_moves_the_axes_as_a_script_does() {
     let mut compared = 0;
     for number in 0..cases(400) {
-        let mut script: Value = serde_json::from_str(&record(19, number, 200).2.script(None)).expect("JSON");
+        let mut script: Value = serde_json::from_str(&record(19, number, 200).2.text()).expect("JSON");
         let (program, hosted) = written(&mut script);
         let (plain, plain_notes) = seen(&run(&script, ""));
         let (hosted, hosted_notes) = seen(&run(&hosted, &program));

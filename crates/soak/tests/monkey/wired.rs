@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use standstill_blocks::{REGISTRY, registry::find};
 use standstill_fb::{BlockInfo, Direction, Group, Pin, PinType};
 use standstill_script::{Ahead, Outcome, Session};
-use standstill_soak::monkey::record;
+use standstill_soak::monkey::{judge, record};
 use standstill_testkit::{Random, cases};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -330,7 +330,7 @@ fn wires_and_tasks_keep_the_order_of_a_scan() {
     let mut drawn = BTreeSet::new();
     for number in 0..cases(400) {
         let mut random = Random(number);
-        let text = record(17, number, 200).2.script(None);
+        let text = record(17, number, 200).2.text();
         let script = rewired(&mut random, &text);
         let text = serde_json::to_string_pretty(&script).expect("JSON");
         let read = standstill_script::read(&text, "wired.scan.json", &[])
@@ -342,6 +342,8 @@ fn wires_and_tasks_keep_the_order_of_a_scan() {
                 .iter()
                 .map(|block| info(block).name),
         );
+        let (_, failure) = judge(&read);
+        assert_eq!(failure, None, "episode {number}\n{text}");
         let outcome = standstill_script::run(&read).expect("a run");
         let names = outcome.trace.columns().iter().map(|column| column.name.clone());
         let rows_by_scan = rows(&outcome);

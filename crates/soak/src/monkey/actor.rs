@@ -1,12 +1,14 @@
-//! The actors of a run: a monkey that presses everything, and a replay of its record.
+//! The actor of a random program: a monkey that presses everything.
 
 use super::draw::one_of;
-use super::run::{Hands, Instance};
-use super::scenario::{Action, Bench, FaultKind, Scenario, Step};
+use super::program::Role;
 use crate::random::Random;
 use crate::rules::Kind;
+use serde_json::{Value as Json, json};
 use standstill_axis::{Axis, AxisState};
-use standstill_fb::{AnyInstance, Direction, Pin, PinType, Value};
+use standstill_fb::{Direction, Pin, PinType, Value};
+use standstill_script::model::{FaultKind, Point, Script};
+use standstill_script::{Session, write};
 
 /// Longest pause between two bursts of actions (scans).
 const PAUSE: f64 = 150.0;
@@ -27,116 +29,140 @@ const BAD_NUMBERS: [f64; 9] = [
     1e9,
 ];
 
+/// The kinds of faults, with their names in scripts.
+const FAULTS: [(FaultKind, &str); 4] = [
+    (FaultKind::Axis, "axis"),
+    (FaultKind::Drive, "drive"),
+    (FaultKind::Power, "power"),
+    (FaultKind::Communication, "communication"),
+];
+
+/// The code of injected faults.
+const FAULT_CODE: u16 = 7;
+
 /// Presses at random, and keeps a record.
 #[derive(Debug)]
 pub struct Monkey<'a> {
     random: &'a mut Random,
     /// Length of a scan (s).
     cycle: f64,
+    roles: Vec<Role>,
     next: u64,
-    /// The remaining actions of this scan, last first.
-    todo: Vec<Action>,
     /// Axes with a cause that persists.
     broken: Vec<bool>,
-    /// Everything done.
-    pub minutes: Vec<Step>,
+    /// Everything done, as steps.
+    pub minutes: Vec<Json>,
 }
 
 impl<'a> Monkey<'a> {
     /// Takes its numbers from `random`.
-    pub fn new(random: &'a mut Random, cycle: f64) -> Self {
+    pub fn new(random: &'a mut Random, script: &Script) -> Self {
         Self {
             random,
-            cycle,
+            cycle: script.cycle_ns as f64 / 1e9,
+            roles: script.blocks.iter().map(Role::of).collect(),
             next: 0,
-            todo: Vec::new(),
-            broken: Vec::new(),
+            broken: vec![false; script.axes.len()],
             minutes: Vec::new(),
         }
     }
 
-    /// The actions in this scan.
-    fn draw(&mut self, machine: &Bench, instances: &[Instance]) {
-        self.broken.resize(machine.axes().len(), false);
-        let axis = self.random.below(machine.axes().len() as u64) as usize;
-        let mut actions = Vec::new();
-        for _ in 0..1 + self.random.below(3) {
-            self.press(axis, machine, instances, &mut actions);
+    /// Acts before a scan, or waits.
+    pub fn act(&mut self, session: &mut Session<'_>) {
+        if session.scans() < self.next {
+            return;
         }
-        actions.reverse();
-        self.todo = actions;
+        let axis = self.random.below(session.axes().len() as u64) as usize;
+        for _ in 0..1 + self.random.below(3) {
+            self.press(axis, session);
+        }
+        self.next = session.scans() + 1 + self.random.log_between(1.0, PAUSE) as u64;
     }
 
-    fn press(&mut self, axis: usize, machine: &Bench, instances: &[Instance], actions: &mut Vec<Action>) {
-        let state = machine.axes()[axis].state();
+    /// Makes an axis or its drive fail; without a fault its cause is removed.
+    fn fail(&mut self, session: &mut Session<'_>, axis: usize, fault: Option<(FaultKind, &str)>) {
+        self.broken[axis] = fault.is_some();
+        session.fail(axis, fault.map(|(kind, _)| (kind, FAULT_CODE)));
+        let (scan, name) = (session.scans(), &session.script().axes[axis].name);
+        self.minutes.push(match fault {
+            Some((_, kind)) => {
+                json!({"at": scan, "fault": {"axis": name, "kind": kind, "code": FAULT_CODE}})
+            }
+            None => json!({"at": scan, "clear": {"axis": name}}),
+        });
+    }
+
+    /// Writes an input.
+    fn set(&mut self, session: &mut Session<'_>, pin: Point, value: Value) {
+        let Some(value) = write::value(value) else { return };
+        let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        // Drawn for the pin's type.
+        if session.change(pin, &text).is_ok()
+            && let Some(change) = session.changes().last()
+        {
+            let set = json!({ (change.name.as_str()): value });
+            self.minutes.push(json!({"at": change.scan, "set": set}));
+        }
+    }
+
+    fn press(&mut self, axis: usize, session: &mut Session<'_>) {
         if self.broken[axis] && self.random.one_in(3) {
-            self.broken[axis] = false;
-            actions.push(Action::Clear { axis });
+            self.fail(session, axis, None);
             return;
         }
         if self.random.one_in(100) {
-            let kinds = [
-                FaultKind::Axis,
-                FaultKind::Drive,
-                FaultKind::Power,
-                FaultKind::Communication,
-            ];
-            self.broken[axis] = true;
-            actions.push(Action::Fault {
-                axis,
-                kind: one_of(self.random, &kinds),
-            });
+            let fault = one_of(self.random, &FAULTS);
+            self.fail(session, axis, Some(fault));
             return;
         }
         // In an axis out of operation, the inputs that bring it back are pressed more often.
-        let wanted = match state {
+        let wanted = match session.axes()[axis].state() {
             AxisState::ErrorStop if self.random.one_in(2) => Some("MC_Reset"),
             AxisState::Disabled if self.random.one_in(2) => Some("MC_Power"),
             _ => None,
         };
-        let of_axis: Vec<_> = (0..instances.len())
+        let of_axis: Vec<_> = (0..self.roles.len())
             .filter(|index| {
-                let instance = &instances[*index];
-                instance.axis == axis && wanted.is_none_or(|name| instance.block.info().name == name)
+                let role = &self.roles[*index];
+                role.axis == Some(axis) && wanted.is_none_or(|name| role.info.name == name)
             })
             .collect();
         if of_axis.is_empty() {
             return;
         }
         let block = one_of(self.random, &of_axis);
-        let instance = &instances[block];
-        let Some(trigger) = instance.trigger else { return };
+        let role = self.roles[block];
+        let Some(trigger) = role.trigger else { return };
+        let trigger = Point::Pin(block, trigger);
+        let on = session.value(trigger) == Some(Value::Bool(true));
         // Power is left on most of the time.
-        if instance.kind == Kind::Power && instance.on && !self.random.one_in(15) {
+        if role.kind == Kind::Power && on && !self.random.one_in(15) {
             return;
         }
-        if !instance.on || self.random.one_in(10) {
-            self.fill_in(block, instance, &machine.axes()[axis], actions);
+        if !on || self.random.one_in(10) {
+            self.fill_in(block, &role, axis, session);
         }
-        actions.push(Action::Set {
-            block,
-            pin: trigger,
-            value: Value::Bool(!instance.on),
-        });
+        self.set(session, trigger, Value::Bool(!on));
     }
 
-    /// Changes some inputs of an instance.
-    fn fill_in(&mut self, block: usize, instance: &Instance, axis: &Axis, actions: &mut Vec<Action>) {
-        for (pin, entry) in instance.block.info().pins().enumerate() {
-            if entry.direction != Direction::Input || Some(pin) == instance.trigger {
+    /// Changes some inputs of an instance of an axis.
+    fn fill_in(&mut self, block: usize, role: &Role, axis: usize, session: &mut Session<'_>) {
+        for (pin, entry) in role.info.pins().enumerate() {
+            if entry.direction != Direction::Input || Some(pin) == role.trigger {
                 continue;
             }
-            if let Some(value) = self.value(instance, entry, axis)
-                && instance.block.get(pin) != Some(value)
+            let pin = Point::Pin(block, pin);
+            if let Some(value) = self.value(role, entry, &session.axes()[axis])
+                && session.value(pin) != Some(value)
             {
-                actions.push(Action::Set { block, pin, value });
+                self.set(session, pin, value);
             }
         }
     }
 
     /// A value for a pin; none leaves it unchanged.
-    fn value(&mut self, instance: &Instance, pin: &Pin, axis: &Axis) -> Option<Value> {
-        let (kind, block) = (instance.kind, instance.block.info().name);
+    fn value(&mut self, role: &Role, pin: &Pin, axis: &Axis) -> Option<Value> {
+        let (kind, block) = (role.kind, role.info.name);
         match pin.ty {
             PinType::Bool => {
                 let odds = match (kind, pin.name) {
@@ -270,46 +296,5 @@ impl<'a> Monkey<'a> {
             let part = if self.random.one_in(20) { 1.5 } else { 1.0 };
             limit * part * self.random.between(0.05, 1.0)
         })
-    }
-}
-
-impl Hands for Monkey<'_> {
-    fn next(&mut self, scan: u64, machine: &Bench, instances: &[Instance]) -> Option<Action> {
-        if self.todo.is_empty() {
-            if scan < self.next {
-                return None;
-            }
-            self.draw(machine, instances);
-            self.next = scan + 1 + self.random.log_between(1.0, PAUSE) as u64;
-        }
-        let action = self.todo.pop()?;
-        self.minutes.push(Step { scan, action });
-        Some(action)
-    }
-}
-
-/// Performs the steps of a scenario.
-#[derive(Debug)]
-pub struct Replay<'a> {
-    steps: core::slice::Iter<'a, Step>,
-}
-
-impl<'a> Replay<'a> {
-    /// Of `scenario`.
-    pub fn new(scenario: &'a Scenario) -> Self {
-        Self {
-            steps: scenario.steps.iter(),
-        }
-    }
-}
-
-impl Hands for Replay<'_> {
-    fn next(&mut self, scan: u64, _: &Bench, _: &[Instance]) -> Option<Action> {
-        let step = self.steps.as_slice().first()?;
-        if step.scan > scan {
-            return None;
-        }
-        self.steps.next();
-        Some(step.action)
     }
 }
