@@ -5,7 +5,7 @@ use super::wired::{info, rows};
 use serde_json::{Map, Value, json};
 use standstill_fb::{Direction, PinType, TableInfo};
 use standstill_script::{Outcome, read_with_programs};
-use standstill_soak::monkey::record;
+use standstill_soak::monkey::{judge, record};
 use standstill_testkit::cases;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -203,6 +203,8 @@ fn run(script: &Value, program: &str) -> Outcome {
     let mut source = |_: &str| Ok(program.as_bytes().to_vec());
     let read = read_with_programs(&text, "random.scan.json", &[], &mut machine, &mut source)
         .unwrap_or_else(|error| panic!("{error}\n{program}\n{text}"));
+    let (_, failure) = judge(&read);
+    assert_eq!(failure, None, "{program}\n{text}");
     standstill_script::run(&read).expect("a run")
 }
 
