@@ -38,6 +38,25 @@ pub struct Place {
     pub phase: f64,
 }
 
+impl Place {
+    /// The place in this turn, without a phase shift.
+    #[inline]
+    pub const fn new(turns: i64, position: f64) -> Self {
+        Self {
+            turns,
+            position,
+            phase: 0.0,
+        }
+    }
+
+    /// The place at another `position` (u), counted from the same turn.
+    #[inline]
+    #[must_use]
+    pub const fn moved_to(&self, position: f64) -> Self {
+        Self { position, ..*self }
+    }
+}
+
 /// A place of the master, and the slave's place when the master is there.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Anchor {

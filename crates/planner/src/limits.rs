@@ -198,6 +198,13 @@ impl Limits {
         }
     }
 
+    /// The same with another velocity (u/s).
+    #[inline]
+    #[must_use]
+    pub const fn with_velocity(&self, velocity: f64) -> Self {
+        Self { velocity, ..*self }
+    }
+
     /// The larger one of each finite pair; an infinite bound of `before` is ignored, and that of these
     /// limits stays.
     pub fn or_larger(&self, before: &Self) -> Self {

@@ -30,13 +30,25 @@ impl Setpoint {
         }
     }
 
+    /// At a constant `velocity` (u/s), at `position` (u).
+    pub const fn at_velocity(position: f64, velocity: f64) -> Self {
+        Self {
+            velocity,
+            ..Self::at_rest(position)
+        }
+    }
+
+    /// The same motion at another `position` (u).
+    #[inline]
+    #[must_use]
+    pub const fn moved_to(&self, position: f64) -> Self {
+        Self { position, ..*self }
+    }
+
     /// The same motion at position 0, where positions have the finest resolution.
     #[must_use]
-    pub(crate) const fn at_origin(&self) -> Self {
-        Self {
-            position: 0.0,
-            ..*self
-        }
+    pub const fn at_origin(&self) -> Self {
+        self.moved_to(0.0)
     }
 
     /// Whether velocity, acceleration and jerk are all exactly zero.

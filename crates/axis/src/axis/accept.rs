@@ -384,10 +384,7 @@ impl<P: Planner> Axis<P> {
 
     fn positioning(&self, dynamics: &Dynamics, scope: &mut Scope<'_>) -> Result<Limits, ErrorId> {
         let velocity = self.positive_velocity("Velocity", dynamics.velocity, scope)?;
-        Ok(Limits {
-            velocity,
-            ..self.resolve(dynamics, scope)?
-        })
+        Ok(self.resolve(dynamics, scope)?.with_velocity(velocity))
     }
 
     /// The sign of Velocity times the sign of Direction (V3).

@@ -189,10 +189,7 @@ impl<P: Planner> Axis<P> {
                 .map_or(u64::MAX, |plan| u64::from(plan.scans())),
             None => 0,
         };
-        let passed = Setpoint {
-            position: end,
-            ..last
-        };
+        let passed = last.moved_to(end);
         let in_motion = u64::from(passing.scans()).saturating_add(after(&passed));
         in_motion < to_rest.saturating_add(after(&Setpoint::at_rest(end)))
     }
@@ -554,8 +551,5 @@ impl<P: Planner> Axis<P> {
 /// `limits` with the velocity at the end of `plan` if that is higher (B3).
 fn raised<P: Plan>(limits: &Limits, plan: &P) -> Limits {
     let end = plan.at(u64::from(plan.scans())).velocity.abs();
-    Limits {
-        velocity: limits.velocity.max(end),
-        ..*limits
-    }
+    limits.with_velocity(limits.velocity.max(end))
 }

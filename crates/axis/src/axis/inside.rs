@@ -114,10 +114,7 @@ impl<P: Planner> Axis<P> {
         if !leaves(&motion) {
             return motion;
         }
-        let limits = Limits {
-            velocity: entry.limits.velocity,
-            ..*axis
-        };
+        let limits = axis.with_velocity(entry.limits.velocity);
         let mut free = Entry { limits, ..*entry };
         match self.plan_from(&mut free, start, before) {
             Ok(planned) if !leaves(&planned) => {

@@ -511,11 +511,7 @@ impl<P: Planner> Axis<P> {
         };
         let [velocity, acceleration, jerk, snap] = state.rates;
         Seen {
-            place: Place {
-                turns,
-                position,
-                ..Place::default()
-            },
+            place: Place::new(turns, position),
             at: Setpoint {
                 position,
                 velocity: velocity * unit / cycle,

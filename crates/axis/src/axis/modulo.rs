@@ -11,7 +11,7 @@ use super::Axis;
 use super::commands::{Entry, Place, REST, Run, Work};
 use crate::{AxisConfig, Direction, DrivePosition, ErrorId, ModuloTargets, Scaling, Turn};
 use standstill_planner::turns::{split, two_product};
-use standstill_planner::{Limits, Passage, Plan, Planner, Setpoint};
+use standstill_planner::{Passage, Plan, Planner, Setpoint};
 
 /// The distance of a target before the end of a stop that still counts as reached, relative to the travel of the
 /// stop. It is rounding, and no visible reversal.
@@ -78,10 +78,7 @@ impl Modulo {
     /// The set-point as programs see it.
     #[inline(never)]
     pub fn shown(&self, setpoint: &Setpoint) -> Setpoint {
-        Setpoint {
-            position: self.in_turn(setpoint.position),
-            ..*setpoint
-        }
+        setpoint.moved_to(self.in_turn(setpoint.position))
     }
 
     /// A position of the frame (u) in increments, for any number of turns.
@@ -223,10 +220,7 @@ impl<P: Planner> Axis<P> {
             entry.end = entry.work.end(from);
             return start;
         }
-        let here = Setpoint {
-            position: start,
-            ..self.mover.base()
-        };
+        let here = self.mover.base().moved_to(start);
         self.aim_from(entry, &here, from)
     }
 
@@ -302,10 +296,9 @@ impl<P: Planner> Axis<P> {
     #[inline]
     pub(super) fn in_frame_of(&self, entry: &Entry, start: &Setpoint) -> Option<Setpoint> {
         match &self.modulo {
-            Some(modulo) if entry.turns != 0 => Some(Setpoint {
-                position: back_by(start.position, entry.turns, modulo.length),
-                ..*start
-            }),
+            Some(modulo) if entry.turns != 0 => {
+                Some(start.moved_to(back_by(start.position, entry.turns, modulo.length)))
+            }
             _ => None,
         }
     }
@@ -383,17 +376,13 @@ impl<P: Planner> Axis<P> {
             _ => 0.0,
         };
         let before = self.limits_before(&entry.limits);
-        let here = Setpoint {
-            position: back_by(start.position, turns, length),
-            ..*start
-        };
+        let here = start.moved_to(back_by(start.position, turns, length));
         let to_target = target - here.position;
         let missing_to = |velocity: f64| {
             // The velocity at its target may be above its own limit.
-            let limits = Limits {
-                velocity: entry.limits.velocity.max(velocity.abs()),
-                ..entry.limits
-            };
+            let limits = entry
+                .limits
+                .with_velocity(entry.limits.velocity.max(velocity.abs()));
             let ramp = self.planner.ramp_to(start, velocity, &limits, &before).ok()?;
             let way = ramp.at(u64::from(ramp.scans())).position - start.position;
             let missing = if forward { way - to_target } else { to_target - way };

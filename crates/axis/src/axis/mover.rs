@@ -308,10 +308,7 @@ impl<P: Plan> Mover<P> {
 
     /// Takes the actual state as the set-point: `velocity` (u/s) at `position` (u).
     pub fn take_actual(&mut self, position: f64, velocity: f64) {
-        self.setpoint = Setpoint {
-            velocity,
-            ..Setpoint::at_rest(position)
-        };
+        self.setpoint = Setpoint::at_velocity(position, velocity);
     }
 
     /// Sets the set-point to rest at `position` (u): after a motion, or after a shift of coordinates.

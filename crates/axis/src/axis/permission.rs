@@ -14,7 +14,7 @@
 use super::commands::{Entry, Place};
 use super::{Axis, Motion};
 use crate::{AxisEvent, AxisState, ErrorId, Event, Fate, Scope};
-use standstill_planner::{Limits, Plan, Planner, Setpoint};
+use standstill_planner::{Limits, Plan, Planner};
 
 /// The rounding of the comparison with a stop, relative to the travel.
 const ROUNDING: f64 = 1e-9;
@@ -172,10 +172,7 @@ impl<P: Planner> Axis<P> {
         self.mover.keep(self.limits_before(self.mover.in_force()));
         let setpoint = *self.mover.setpoint();
         if let Some(layer) = self.mover.layer_mut() {
-            layer.pass_velocity(Setpoint {
-                position: layer.base().position,
-                ..setpoint
-            });
+            layer.pass_velocity(setpoint.moved_to(layer.base().position));
         }
         let (start, mut limits) = (self.mover.base(), self.slowed(&self.stop_limits()));
         let axis = &self.slowed(&self.hardest_limits());

@@ -114,10 +114,7 @@ impl<P: Planner> Axis<P> {
             self.allowed(layer.end_above(plan.at(u64::from(plan.scans())).position))?;
         }
         if !self.fits_under(&motion, &layer) {
-            let sum = Setpoint {
-                position: layer.base().position,
-                ..*self.mover.setpoint()
-            };
+            let sum = self.mover.setpoint().moved_to(layer.base().position);
             let both = self.limits_before(&owner.limits).or_larger(before);
             *owner = asked;
             motion = self.plan_from(owner, &sum, &both)?;
@@ -190,10 +187,7 @@ impl<P: Planner> Axis<P> {
         if slowed == held {
             return held;
         }
-        let at_speed = Limits {
-            velocity: held.velocity,
-            ..slowed
-        };
+        let at_speed = slowed.with_velocity(held.velocity);
         let fits = |limits: &Limits| self.stops_within(state, limits);
         [slowed, at_speed].into_iter().find(fits).unwrap_or(held)
     }

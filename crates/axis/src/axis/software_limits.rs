@@ -164,10 +164,7 @@ impl<P: Planner> Axis<P> {
             velocity
         };
         let position = self.feedback.position() + velocity * self.planner.cycle();
-        let next = Setpoint {
-            velocity,
-            ..Setpoint::at_rest(position)
-        };
+        let next = Setpoint::at_velocity(position, velocity);
         let rest = self.rest(&next, &self.stop_limits());
         (velocity > 0.0 && !(rest <= max)) || (velocity < 0.0 && !(rest >= min))
     }

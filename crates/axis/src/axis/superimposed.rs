@@ -274,10 +274,7 @@ impl<P: Plan> Layer<P> {
 
     fn sum(&self) -> Setpoint {
         let position = self.added.position - self.taken;
-        self.base.plus(&Setpoint {
-            position,
-            ..self.added
-        })
+        self.base.plus(&self.added.moved_to(position))
     }
 }
 

@@ -212,10 +212,8 @@ impl<P: Planner> Axis<P> {
     ) -> Option<P::Plan> {
         let (own, next) = (&entry.limits, &behind.next.limits);
         // A faster motion slows down with these rates, too.
-        let limits = Limits {
-            velocity: own.velocity.max(wanted).max(start.velocity.abs()),
-            ..rates_of_both(own, next)
-        };
+        let limits =
+            rates_of_both(own, next).with_velocity(own.velocity.max(wanted).max(start.velocity.abs()));
         let velocity = if behind.forward { wanted } else { -wanted };
         let ramp = self.planner.ramp_to(start, velocity, &limits, before).ok()?;
         let at_end = ramp.at(goal_past(&ramp, 0, behind.end, behind.forward));
@@ -258,10 +256,7 @@ impl<P: Planner> Axis<P> {
         if !is_lower {
             return None;
         }
-        let limits = Limits {
-            velocity: own.velocity.max(wanted),
-            ..*own
-        };
+        let limits = own.with_velocity(own.velocity.max(wanted));
         let pushing = Passage {
             wanted,
             most: wanted,
@@ -310,14 +305,11 @@ impl<P: Planner> Axis<P> {
     /// The deceleration (u/s^2) of the next command at a `way` (u) before it has slowed down from `speed` to the
     /// velocity at its end.
     fn deceleration_before(&self, way: f64, speed: f64, behind: &Behind<'_>) -> Option<f64> {
-        let begin = Setpoint {
-            velocity: speed,
-            ..Setpoint::at_rest(0.0)
-        };
-        let limits = Limits {
-            velocity: speed.max(behind.next.limits.velocity),
-            ..behind.next.limits
-        };
+        let begin = Setpoint::at_velocity(0.0, speed);
+        let limits = behind
+            .next
+            .limits
+            .with_velocity(speed.max(behind.next.limits.velocity));
         let ramp = self.planner.ramp_to(&begin, behind.exit.wanted, &limits, &limits);
         let ramp = ramp.ok()?;
         let there = ramp.at(u64::from(ramp.scans())).position - way;

@@ -61,10 +61,7 @@ impl<P: Planner> Axis<P> {
         } else {
             self.positive_velocity("Velocity", dynamics.velocity, scope)?
         };
-        let limits = Limits {
-            velocity,
-            ..self.resolve(dynamics, scope)?
-        };
+        let limits = self.resolve(dynamics, scope)?.with_velocity(velocity);
         Ok((Work::Torque { torque, ramp, along }, limits))
     }
 

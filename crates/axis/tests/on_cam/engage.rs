@@ -157,10 +157,7 @@ fn just_below_the_highest_velocity_it_is_in_sync_and_just_above_it_lags() {
         row(180.0, 60.0, CamShape::Line),
         row(360.0, 120.0, CamShape::Through),
     ];
-    let slow = Limits {
-        velocity: 100.0,
-        ..WIDE
-    };
+    let slow = WIDE.with_velocity(100.0);
     for (rows, limits) in [
         (with_slopes(CamShape::Poly7), WIDE),
         (with_slopes(CamShape::Poly5), third),
@@ -168,13 +165,7 @@ fn just_below_the_highest_velocity_it_is_in_sync_and_just_above_it_lags() {
         (one(CamShape::Rest7), WIDE),
         (one(CamShape::Rest5), third),
         (through, WIDE),
-        (
-            one(CamShape::Rest7),
-            Limits {
-                velocity: 4e3,
-                ..WIDE
-            },
-        ),
+        (one(CamShape::Rest7), WIDE.with_velocity(4e3)),
         (
             one(CamShape::Rest7),
             Limits {
@@ -223,10 +214,7 @@ fn a_master_too_fast_is_followed_on_the_curve_and_caught_up_with() {
         jerk: 1e4,
         snap: 3e5,
     };
-    let fast = Limits {
-        velocity: 600.0,
-        ..L1
-    };
+    let fast = L1.with_velocity(600.0);
     let mut rig = Rig::new(config(fast, 0.0, None), config(narrow, 0.0, None));
     let cam = rig.select(&up_and_back(), RELATIVE);
     let cam_in = rig.cam_in(cam);
@@ -291,10 +279,7 @@ fn a_master_too_fast_is_followed_on_the_curve_and_caught_up_with() {
 fn with_on_limit_error_it_stops_before_a_limit() {
     let mut slave = config(WIDE, 0.0, None);
     slave.following.on_limit = OnLimit::Error;
-    let fast = Limits {
-        velocity: 800.0,
-        ..L1
-    };
+    let fast = L1.with_velocity(800.0);
     let mut rig = Rig::new(config(fast, 0.0, None), slave);
     let cam = rig.select(&up_and_back(), RELATIVE);
     let cam_in = rig.cam_in(cam);

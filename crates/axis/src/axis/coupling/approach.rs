@@ -180,10 +180,9 @@ impl<P: Planner> Axis<P> {
         let mut limits = self.limits_of_approach(owner);
         let before = self.limits_before(&limits);
         if self.gets_too_fast(&limits, &before) {
-            limits = Limits {
-                velocity: limits.velocity,
-                ..self.slowed(&self.parameters.limits)
-            };
+            limits = self
+                .slowed(&self.parameters.limits)
+                .with_velocity(limits.velocity);
         }
         let velocity = stretch.map_or(law.velocity, |stretch| stretch.velocity);
         // If the master's motion is not known, the slave may have to make up lost distance.
@@ -371,19 +370,13 @@ impl<P: Planner> Axis<P> {
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
         let (law, _) = coupling.law(&anchor, &view.seen());
         let target = (law.turns.wrapping_sub(here.turns)) as f64 * length + law.position;
-        let start = Setpoint {
-            position: here.position,
-            ..*self.mover.setpoint()
-        };
+        let start = self.mover.setpoint().moved_to(here.position);
         let (plan, limits) = self.moved_inside(&start, target, *limits, before).ok()?;
         let lock = u64::from(plan.scans());
         Some(Way {
             motion: Motion::closing(plan),
             rung: Rung::BesideLine {
-                start: Place {
-                    position: 0.0,
-                    ..here
-                },
+                start: here.moved_to(0.0),
                 velocity: 0.0,
                 begin: 0,
             },
@@ -472,10 +465,7 @@ impl<P: Planner> Axis<P> {
     /// A motion at this constant `velocity` (u/s) from 0.
     fn line(&self, velocity: f64) -> Option<P::Plan> {
         let axis = &self.slowed(&self.config.limits);
-        let steady = Setpoint {
-            velocity,
-            ..Setpoint::at_rest(0.0)
-        };
+        let steady = Setpoint::at_velocity(0.0, velocity);
         self.planner.ramp_to(&steady, velocity, axis, axis).ok()
     }
 
@@ -528,10 +518,7 @@ impl<P: Planner> Axis<P> {
                 ..*limits
             }
         };
-        let from = Setpoint {
-            position: 0.0,
-            ..*start
-        };
+        let from = start.at_origin();
         let axis = &self.slowed(&self.config.limits);
         let line = [
             Some(Lead {

@@ -188,10 +188,7 @@ impl Curve<'_> {
     /// The inverse: a place of the master at `x` (u), as seen from `near`.
     fn place_of(&self, x: f64, near: Place) -> Place {
         let further = (x - self.unwound(near)) * self.law.master_scaling;
-        Place {
-            position: near.position + further,
-            ..near
-        }
+        near.moved_to(near.position + further)
     }
 
     /// The bounds of its derivatives over the whole cam.

@@ -239,10 +239,7 @@ impl<P: Planner> Axis<P> {
             anchor.slave.phase = coupling.lead + added.position;
         }
         let (place, law) = coupling.law(&anchor, &view.seen());
-        let next = added.map_or(law, |added| Setpoint {
-            position: law.position,
-            ..law.plus(&added)
-        });
+        let next = added.map_or(law, |added| law.plus(&added).moved_to(law.position));
         // A motion added to a law at rest was checked against the limits before.
         let is_held = added.is_some() && self.law_stands(view);
         let rough = self.rough(view).filter(|_| !is_held);
@@ -339,25 +336,17 @@ impl<P: Planner> Axis<P> {
                 velocity,
                 begin,
             } => {
-                let line = Setpoint {
-                    velocity,
-                    ..Setpoint::at_rest(start.position + velocity * (elapsed as f64 * cycle))
-                };
+                let line =
+                    Setpoint::at_velocity(start.position + velocity * (elapsed as f64 * cycle), velocity);
                 let is_even = law.acceleration == 0.0 && law.jerk == 0.0;
                 (start, line, is_over && is_even && elapsed >= begin)
             }
             _ => (law_place, law, is_over),
         };
-        let end = Setpoint {
-            position: frame.position + goal,
-            ..frame
-        };
+        let end = frame.moved_to(frame.position + goal);
         let next = frame.plus(&beside);
         if let Rung::BesideMeasured { anchor, room } = rung {
-            let place = Place {
-                position: next.position,
-                ..frame_place
-            };
+            let place = frame_place.moved_to(next.position);
             let in_force = self.mover.in_force();
             let law = |seen| coupling.law(&anchor, seen).1;
             let ends = [law(&coupling.was), law(&view.seen())];
@@ -413,10 +402,7 @@ impl<P: Planner> Axis<P> {
             return false;
         };
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
-        let place = Place {
-            position: frame.position,
-            ..frame_place
-        };
+        let place = frame_place.moved_to(frame.position);
         let resolved = self.resolved_of(coupling, law_place);
         let is_on = off(place, law_place, length).abs() <= resolved && self.law_is_near(frame, law);
         if let (false, Some(coupling)) = (is_on, &mut self.follower.coupling) {

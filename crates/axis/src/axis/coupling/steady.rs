@@ -293,11 +293,7 @@ impl<P: Planner> Axis<P> {
         }
         (_, known.elapsed) = plan;
         self.follower.steady.source = Source::Gear;
-        let place = Place {
-            turns,
-            position,
-            ..Place::default()
-        };
+        let place = Place::new(turns, position);
         self.publish_steadily(place, next, scope);
         true
     }

@@ -151,10 +151,7 @@ impl Awaited {
             return None;
         }
         let offset = camming.master_offset - before.master_offset;
-        let place = Place {
-            position: place.position + offset,
-            ..place
-        };
+        let place = place.moved_to(place.position + offset);
         Some((place, cams.cam(camming.cam)?.head.begin))
     }
 
@@ -591,14 +588,9 @@ impl<P: Planner> Axis<P> {
         if coupling.rung == Rung::Lost {
             return;
         }
-        let place = |turns, position| Place {
-            turns,
-            position,
-            ..Place::default()
-        };
         let mut anchor = Anchor {
-            master: place(master_turn(&sync, &coupling.was[0], view), sync.master),
-            slave: place(0, sync.slave),
+            master: Place::new(master_turn(&sync, &coupling.was[0], view), sync.master),
+            slave: Place::new(0, sync.slave),
             ..Anchor::default()
         };
         if let Some(length) = self.modulo.as_ref().map(|modulo| modulo.length) {

@@ -335,10 +335,7 @@ impl<P: Planner> Axis<P> {
     #[inline(always)]
     pub(crate) fn place(&self) -> Place {
         match &self.modulo {
-            None => Place {
-                position: self.mover.setpoint().position,
-                ..Place::default()
-            },
+            None => Place::new(0, self.mover.setpoint().position),
             Some(modulo) => self.place_round(modulo),
         }
     }
@@ -352,11 +349,7 @@ impl<P: Planner> Axis<P> {
         } else {
             further + 0.5
         };
-        Place {
-            turns: modulo.turns().saturating_add(nearest as i64),
-            position: shown,
-            ..Place::default()
-        }
+        Place::new(modulo.turns().saturating_add(nearest as i64), shown)
     }
 
     /// Before its step in this scan: the place that its slaves remember.
@@ -364,10 +357,7 @@ impl<P: Planner> Axis<P> {
         let place = self.place();
         Seen {
             place,
-            at: Setpoint {
-                position: place.position,
-                ..*self.mover.setpoint()
-            },
+            at: self.mover.setpoint().moved_to(place.position),
             moved: self.coordinates_moved(scan),
             ..Seen::default()
         }

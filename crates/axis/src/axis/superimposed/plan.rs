@@ -61,10 +61,7 @@ pub(super) fn limits_of(index: usize, asked: &Limits, room: &Room) -> Option<Lim
     let free = &room.limits;
     match index {
         0 => Some(*asked),
-        1 => Some(Limits {
-            velocity: room.of(asked.velocity, free.velocity, LEAST)?,
-            ..*asked
-        }),
+        1 => Some(asked.with_velocity(room.of(asked.velocity, free.velocity, LEAST)?)),
         2 => Some(Limits {
             velocity: room.of(asked.velocity, free.velocity, LEAST)?,
             acceleration: room.of(asked.acceleration, free.acceleration, LEAST_2)?,
@@ -84,10 +81,7 @@ impl<P: Planner> Axis<P> {
         scope: &mut Scope<'_>,
     ) -> Result<Limits, ErrorId> {
         let velocity = self.positive_velocity("VelocityDiff", dynamics.velocity, scope)?;
-        Ok(Limits {
-            velocity,
-            ..self.resolve(dynamics, scope)?
-        })
+        Ok(self.resolve(dynamics, scope)?.with_velocity(velocity))
     }
 
     /// The software limits in the sum of the plans' own positions.
@@ -404,10 +398,7 @@ impl<P: Planner> Axis<P> {
         mut layer: Layer<P::Plan>,
         entry: &mut Entry,
     ) -> Result<Option<Motion<P::Plan>>, ErrorId> {
-        let start = Setpoint {
-            position: self.mover.setpoint().position,
-            ..layer.base
-        };
+        let start = layer.base.moved_to(self.mover.setpoint().position);
         let in_force = if matches!(self.mover.motion(), Motion::Run { .. } | Motion::Geared) {
             *self.mover.in_force()
         } else {

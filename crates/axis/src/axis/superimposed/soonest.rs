@@ -321,10 +321,7 @@ impl<P: Planner> Trials<'_, P> {
     fn free(&mut self, room: &Room, layer: &Layer<P::Plan>) {
         let velocity = room.limits.velocity;
         if velocity > 0.0 && velocity < self.asked.velocity {
-            let limits = Limits {
-                velocity,
-                ..*self.asked
-            };
+            let limits = self.asked.with_velocity(velocity);
             self.take(&limits, AFTER_FREE);
         }
         if let (false, Some(limits)) = (layer.moves(), limits_of(2, self.asked, room)) {
@@ -336,10 +333,9 @@ impl<P: Planner> Trials<'_, P> {
     fn simple(&mut self) {
         let asked = *self.asked;
         let longer = PACES.into_iter().map(|rate| slower(&asked, rate));
-        let gentler = VELOCITIES.into_iter().map(|rate| Limits {
-            velocity: asked.velocity * rate,
-            ..asked
-        });
+        let gentler = VELOCITIES
+            .into_iter()
+            .map(|rate| asked.with_velocity(asked.velocity * rate));
         for limits in longer.chain(gentler) {
             if self.may_end_sooner(&limits) {
                 self.take(&limits, 0);

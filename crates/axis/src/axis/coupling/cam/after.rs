@@ -312,10 +312,7 @@ impl<P: Planner> Axis<P> {
                 ..ended.slave
             };
         }
-        let mut slave = Place {
-            position: camming.slave_offset,
-            ..Place::default()
-        };
+        let mut slave = Place::new(0, camming.slave_offset);
         if let Some(modulo) = &self.modulo {
             // The nearest of the turns for the same position.
             let away = off(ended.slave, at(&camming.law, slave), modulo.length) / modulo.length;
@@ -372,10 +369,7 @@ impl Curve<'_> {
     /// slave.
     fn ended(&self, x: f64, forwards: bool, now: &Shadow) -> Ended {
         let over = (self.unwound(now.place) - x) * self.law.master_scaling;
-        let master = Place {
-            position: now.place.position - over,
-            ..now.place
-        };
+        let master = now.place.moved_to(now.place.position - over);
         Ended {
             master,
             over,

@@ -31,10 +31,7 @@ impl<Q: Plan> Path<'_, Q> {
     /// lead.
     fn at(&self, scan: u64) -> Setpoint {
         let at = self.lead.plan.at(scan).times(self.lead.factor);
-        Setpoint {
-            position: at.position - self.from,
-            ..at
-        }
+        at.moved_to(at.position - self.from)
     }
 }
 
@@ -59,10 +56,7 @@ impl<P: Planner> Axis<P> {
         let curve = on_cam.curve(cams.cam(on_cam.camming.cam)?)?;
         let lead = self.lead_of_master(view)?;
         let way = way_left(view, &[Some(lead), None])?;
-        let place = Place {
-            position: view.now.place.position + way,
-            ..view.now.place
-        };
+        let place = view.now.place.moved_to(view.now.place.position + way);
         let at = curve.at(place, &Setpoint::default(), on_cam.at.piece);
         Some(at.place.position)
     }
@@ -196,10 +190,7 @@ impl Curve<'_> {
             };
             self.law.bounds_between(&self.cam, low, high)
         };
-        let even = Setpoint {
-            velocity: from.velocity,
-            ..Setpoint::default()
-        };
+        let even = Setpoint::at_velocity(0.0, from.velocity);
         Some((bounds, even))
     }
 }

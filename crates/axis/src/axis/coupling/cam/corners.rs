@@ -287,10 +287,7 @@ impl<P: Planner> Axis<P> {
 
     /// A way along the curve to rest at the corner, or before it.
     fn way_to_corner(&self, curve: &Curve<'_>, shadow: &Shadow, corner: Corner) -> Option<Way<P::Plan>> {
-        let start = Setpoint {
-            position: 0.0,
-            ..shadow.at
-        };
+        let start = shadow.at.at_origin();
         let distance = curve.place_of(corner.x, shadow.place).position - shadow.place.position;
         let numbers = (corner.x * curve.law.master_scaling).abs() + shadow.place.position.abs();
         let resolved = RESOLVED * 4.0 * (distance.abs() + numbers);

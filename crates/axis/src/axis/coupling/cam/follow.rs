@@ -258,10 +258,7 @@ impl<P: Planner> Axis<P> {
         };
         let rough = rough.filter(|_| held.is_none() && !is_held);
         if let Some(added) = &added {
-            at.state = Setpoint {
-                position: at.state.position,
-                ..at.state.plus(added)
-            };
+            at.state = at.state.plus(added).moved_to(at.state.position);
         }
         let corner = self.corner_in_sync(view, scope).filter(|_| held.is_none());
         let reason = corner.map(|corner| corner.asks(&limits));
@@ -317,10 +314,8 @@ impl<P: Planner> Axis<P> {
                 velocity,
                 begin,
             }) => {
-                let line = Setpoint {
-                    velocity,
-                    ..Setpoint::at_rest(start.position + velocity * (elapsed as f64 * cycle))
-                };
+                let line =
+                    Setpoint::at_velocity(start.position + velocity * (elapsed as f64 * cycle), velocity);
                 let is_even = now.at.acceleration == 0.0 && now.at.jerk == 0.0;
                 (start, line, is_over && is_even && elapsed >= begin)
             }
@@ -329,10 +324,7 @@ impl<P: Planner> Axis<P> {
         };
         let next = frame.plus(&beside);
         let shadow = Shadow {
-            place: Place {
-                position: next.position,
-                ..frame_place
-            },
+            place: frame_place.moved_to(next.position),
             at: next,
         };
         if let Some(Rung::BesideMeasured { room }) = self.cam_rung()
@@ -416,11 +408,7 @@ impl<P: Planner> Axis<P> {
             return;
         };
         let (next, is_over) = (step.beside, step.is_over());
-        let place = Place {
-            turns,
-            position: next.position,
-            ..Place::default()
-        };
+        let place = Place::new(turns, next.position);
         self.publish_behind(place, next, scope);
         if !is_over || !self.is_on_cam() || self.is_paused() {
             return;

@@ -35,10 +35,7 @@ impl CamLaid {
     /// turn.
     pub fn slave_at(&self, cam: &Cam<'_>, part: f64) -> f64 {
         let from = self.first_row(cam);
-        let place = Place {
-            position: from.position + part * self.length(cam),
-            ..from
-        };
+        let place = from.moved_to(from.position + part * self.length(cam));
         let law = CamLaw {
             slave_turn: None,
             ..self.law

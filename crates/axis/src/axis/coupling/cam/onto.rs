@@ -147,11 +147,7 @@ impl<P: Planner> Axis<P> {
         let camming = &on_cam.camming;
         let was = on_cam.was.place;
         let law = camming.law;
-        let offset = Place {
-            turns: 0,
-            position: camming.slave_offset,
-            ..Place::default()
-        };
+        let offset = Place::new(0, camming.slave_offset);
         let mut anchor = Anchor {
             master,
             slave: offset,
@@ -242,10 +238,7 @@ impl<P: Planner> Axis<P> {
             return;
         };
         let Some(shadow) = &mut on_cam.shadow else { return };
-        shadow.place = curve.told_near(Place {
-            position: shadow.place.position + by,
-            ..shadow.place
-        });
+        shadow.place = curve.told_near(shadow.place.moved_to(shadow.place.position + by));
         // The start of its way is moved, too, if it stays on that way.
         if let Rung::BesideLine { start, .. } | Rung::Corner { start } = &mut on_cam.rung {
             start.position += by;
@@ -313,10 +306,7 @@ impl<P: Planner> Axis<P> {
         let cycle = self.planner.cycle();
         let turn = on_cam.camming.law.master_turn.unwrap_or(0.0);
         let step = apart(now.place, was.place, turn);
-        let at = |further: f64| Place {
-            position: was.place.position + further,
-            ..was.place
-        };
+        let at = |further: f64| was.place.moved_to(was.place.position + further);
         if view.future.kind() == Kind::Still {
             return Stretch {
                 begin: 0,
@@ -516,10 +506,7 @@ impl<P: Planner> Axis<P> {
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
         let target = off(at.place, here, length) + here.position;
         self.allowed(target)?;
-        let start = Setpoint {
-            position: here.position,
-            ..*self.mover.setpoint()
-        };
+        let start = self.mover.setpoint().moved_to(here.position);
         let limits = self.limits_of_approach(owner);
         let before = self.limits_before(&limits);
         let (plan, _) = self
@@ -610,10 +597,7 @@ impl<P: Planner> Axis<P> {
     /// scans.
     fn braking(&self, left: u64) -> Option<Way<P::Plan>> {
         let here = self.place();
-        let start = Setpoint {
-            position: here.position,
-            ..*self.mover.setpoint()
-        };
+        let start = self.mover.setpoint().moved_to(here.position);
         let limits = self.slowed(&self.parameters.limits);
         let before = self.limits_before(&limits);
         let plan = self.planner.ramp_to(&start, 0.0, &limits, &before).ok()?;

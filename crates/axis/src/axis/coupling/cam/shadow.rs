@@ -10,7 +10,7 @@ use super::super::view::{UNKNOWN, View};
 use super::onto::{Choice, LEAST, Stretch, Way};
 use super::{Curve, Rung, Shadow};
 use crate::Approach;
-use standstill_planner::{DirectedLimits, Excess, Lead, Limits, MoveProfile, Place, Plan, Planner, Setpoint};
+use standstill_planner::{DirectedLimits, Excess, Lead, Limits, MoveProfile, Plan, Planner, Setpoint};
 
 /// Velocities of a shadow that are tried.
 const SPEEDS: usize = 4;
@@ -167,10 +167,7 @@ impl<P: Planner> Axis<P> {
         let limits = self.slowed(&self.parameters.limits);
         let speed = shadow.at.velocity.abs();
         let goal = 0.5 * FASTEST * curve.bounds().highest_velocity(&limits).min(1e12);
-        let start = Setpoint {
-            position: 0.0,
-            ..shadow.at
-        };
+        let start = shadow.at.at_origin();
         let x = curve.unwound(shadow.place);
         let mut found: Option<Way<P::Plan>> = None;
         for scans in AHEAD {
@@ -183,10 +180,7 @@ impl<P: Planner> Axis<P> {
             let goal = goal.copysign(shadow.at.velocity);
             let within = |speed: f64| {
                 let most = speed.max(goal.abs());
-                let own = Limits {
-                    velocity: most,
-                    ..bounded(&bounds.shadow(&limits, most, speed)?)
-                };
+                let own = bounded(&bounds.shadow(&limits, most, speed)?).with_velocity(most);
                 let plan = self.planner.ramp_to(&start, goal, &own, &own).ok()?;
                 Some((plan, own))
             };
@@ -203,10 +197,7 @@ impl<P: Planner> Axis<P> {
             }
             let scans = u64::from(plan.scans());
             let is_inside = plan.at(scans).position.abs() <= reach.abs();
-            let fastest = Setpoint {
-                velocity: own.velocity,
-                ..Setpoint::default()
-            };
+            let fastest = Setpoint::at_velocity(0.0, own.velocity);
             let is_slow = bounds.most(&fastest).velocity <= limits.velocity;
             let stays = is_inside && is_slow && !plan.excess().is_some_and(|excess| leaves(&excess, &own));
             let exceeds = !stays && {
@@ -417,10 +408,7 @@ impl<P: Planner> Axis<P> {
             ahead: stretch.is_ahead && scans < stretch.begin,
             motion: Motion::closing(plan),
             rung: Rung::BesideLine {
-                start: curve.told_near(Place {
-                    position: shadow.place.position + laps,
-                    ..shadow.place
-                }),
+                start: curve.told_near(shadow.place.moved_to(shadow.place.position + laps)),
                 velocity: stretch.velocity,
                 begin: stretch.begin,
             },
@@ -436,10 +424,7 @@ impl<P: Planner> Axis<P> {
 
     /// Whether a motion from `now` by this plan beside a line of this `velocity` (u/s) keeps the limits.
     fn keeps_beside_line(&self, now: &Setpoint, velocity: f64, plan: &P::Plan, limits: &Limits) -> bool {
-        let steady = Setpoint {
-            velocity,
-            ..Setpoint::default()
-        };
+        let steady = Setpoint::at_velocity(0.0, velocity);
         let Ok(line) = self.planner.ramp_to(&steady, velocity, limits, limits) else {
             return false;
         };
@@ -460,10 +445,7 @@ impl<P: Planner> Axis<P> {
         stretch: &Stretch,
         limits: &Limits,
     ) -> Option<Way<P::Plan>> {
-        let start = Setpoint {
-            position: 0.0,
-            ..shadow.at
-        };
+        let start = shadow.at.at_origin();
         let goal = limits.velocity.copysign(stretch.velocity);
         let plan = self.planner.ramp_to(&start, goal, limits, limits).ok()?;
         let left = match self.lead_of_master(view) {

@@ -4,7 +4,7 @@ use super::super::super::Axis;
 use super::super::view::{Kind, Source};
 use super::{OnCam, Shadow};
 use crate::{Scope, ValueSource};
-use standstill_planner::{Limits, Planner, Setpoint};
+use standstill_planner::{Limits, Planner};
 
 impl OnCam {
     /// Whether the cam permits a next step in which nothing is new. The slave is in sync with the set-point of its
@@ -44,10 +44,7 @@ impl<P: Planner> Axis<P> {
             return false;
         }
         let place = master.place();
-        let moving = Setpoint {
-            position: place.position,
-            ..*master.mover.setpoint()
-        };
+        let moving = master.mover.setpoint().moved_to(place.position);
         let law = &on_cam.camming.law;
         let at = law.at(&cam, anchor, place, &moving, on_cam.at.piece);
         let mut ends = on_cam.ends;
