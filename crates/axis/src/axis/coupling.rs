@@ -309,6 +309,18 @@ impl Coupling {
 }
 
 impl<P: Planner> Axis<P> {
+    /// How the owner follows its masters in a gear.
+    #[inline]
+    fn coupling(&self) -> Option<&Coupling> {
+        self.follower.coupling.as_ref()
+    }
+
+    /// How the owner follows its master on a cam.
+    #[inline]
+    fn on_cam(&self) -> Option<&OnCam> {
+        self.follower.on_cam.as_ref()
+    }
+
     /// Whether the owner follows a master.
     #[inline]
     pub(super) fn is_coupled(&self) -> bool {
@@ -319,14 +331,14 @@ impl<P: Planner> Axis<P> {
     #[inline]
     pub fn is_in_gear(&self) -> bool {
         let is_locked = |coupling: &Coupling| coupling.rung.is_locked();
-        let is_locked = self.follower.coupling.as_ref().is_some_and(is_locked);
+        let is_locked = self.coupling().is_some_and(is_locked);
         (is_locked || self.is_in_sync_on_cam()) && !self.is_paused()
     }
 
     /// How the owner follows its master; `None` while it follows none.
     pub fn coupled(&self) -> Option<Coupled> {
         let on_cam = self.coupled_on_cam();
-        let gear = self.follower.coupling.as_ref().map(|coupling| Coupled {
+        let gear = self.coupling().map(|coupling| Coupled {
             master: coupling.gearing.first.master,
             deviation: coupling.deviation,
             phase: self.phases()[0],
@@ -347,7 +359,7 @@ impl<P: Planner> Axis<P> {
 
     /// The masters the owner follows.
     pub fn followed(&self) -> [Option<AxisId>; 2] {
-        let coupling = self.follower.coupling.as_ref();
+        let coupling = self.coupling();
         coupling.map_or([self.master_on_cam(), None], |coupling| {
             coupling.gearing.masters()
         })
@@ -355,7 +367,7 @@ impl<P: Planner> Axis<P> {
 
     /// The masters the owner follows, and which values of each.
     pub(crate) fn followed_values(&self) -> [Option<Values>; 2] {
-        let coupling = self.follower.coupling.as_ref();
+        let coupling = self.coupling();
         let on_cam = [self.values_on_cam(), None];
         coupling.map_or(on_cam, |coupling| coupling.gearing.values())
     }
@@ -387,17 +399,14 @@ impl<P: Planner> Axis<P> {
 
     /// Whether it is on the way to the given sync point.
     pub fn is_syncing(&self) -> bool {
-        self.follower.coupling.as_ref().is_some_and(Coupling::is_syncing)
+        self.coupling().is_some_and(Coupling::is_syncing)
     }
 
     /// The distance of a slave from the law of its gear (u). It is 0 in gear, before it was in gear
     /// without a sync point, and for any other axis.
     pub fn deviation(&self) -> f64 {
         let on_cam = self.deviation_on_cam();
-        self.follower
-            .coupling
-            .as_ref()
-            .map_or(on_cam, |coupling| coupling.deviation)
+        self.coupling().map_or(on_cam, |coupling| coupling.deviation)
     }
 
     /// Checks the pins of MC_GearIn and MC_GearInPos that define the law.
@@ -468,7 +477,7 @@ impl<P: Planner> Axis<P> {
             }
             None => return refuse(pins.source, number, 2.0, ErrorId::SourceInvalid),
         };
-        let turn = self.modulo.as_ref().map(|modulo| modulo.length);
+        let turn = self.config.modulo;
         let Some(gear) = Gear::new(numerator, positive, master.turn, turn) else {
             let [up, down] = Gear::largest_ratio(master.turn.unwrap_or_default(), turn.unwrap_or_default());
             let (numerator, denominator) = (f64::from(numerator), f64::from(positive));
@@ -595,7 +604,7 @@ impl<P: Planner> Axis<P> {
         }
         let Work::Gear(gearing) = entry.work else { return };
         self.links.set_bound(true);
-        let known = self.follower.coupling.as_ref().map(|coupling| coupling.gearing);
+        let known = self.coupling().map(|coupling| coupling.gearing);
         if known != Some(gearing) {
             for leg in gearing.legs().into_iter().flatten() {
                 let (numerator, denominator) = leg.gear.ratio();

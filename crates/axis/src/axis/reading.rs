@@ -64,7 +64,7 @@ impl<P: Planner> Axis<P> {
     /// a number; if not, nothing is taken.
     pub(super) fn latch_and_mend(&mut self, position: f64) -> bool {
         let before = self.feedback;
-        let length = self.modulo.as_ref().map(|modulo| modulo.length);
+        let length = self.config.modulo;
         self.feedback.latch_and_mend(position, length);
         let is_number = self.latched_velocity().is_finite();
         if !is_number {

@@ -138,7 +138,7 @@ impl<P: Planner> Axis<P> {
 
     /// The smallest difference (u) from the law, which is at `law` now, that rounding does not hide.
     pub(super) fn resolved_of(&self, coupling: &Coupling, law: Place) -> f64 {
-        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let length = self.config.modulo.unwrap_or(0.0);
         let masters = coupling.size_of_masters(&coupling.was);
         RESOLVED * 4.0 * (self.place().position.abs() + law.position.abs() + masters + length)
     }
@@ -146,7 +146,7 @@ impl<P: Planner> Axis<P> {
     /// The difference of the slave from the law through `anchor` at the end of the last scan.
     pub(super) fn difference(&self, coupling: &Coupling, anchor: &Anchor) -> Setpoint {
         let (place, law) = coupling.law(anchor, &coupling.was);
-        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let length = self.config.modulo.unwrap_or(0.0);
         Setpoint {
             position: off(self.place(), place, length),
             velocity: self.mover.setpoint().velocity - law.velocity,
@@ -172,7 +172,7 @@ impl<P: Planner> Axis<P> {
             return Err(ErrorId::PlanRefused);
         };
         let here = self.place();
-        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let length = self.config.modulo.unwrap_or(0.0);
         let (place, law) = coupling.law(&anchor, &coupling.was);
         let (place_now, law_now) = coupling.law(&anchor, &view.seen());
         let step = off(place_now, place, length);
@@ -240,7 +240,7 @@ impl<P: Planner> Axis<P> {
         let (asked, axis) = (&owner.limits, &self.slowed(&self.parameters.limits));
         // The Velocity of MC_GearInPos applies until its sync point.
         let is_synced = |coupling: &Coupling| coupling.gearing.sync.is_some() && coupling.was_in_gear;
-        let velocity = if self.follower.coupling.as_ref().is_some_and(is_synced) {
+        let velocity = if self.coupling().is_some_and(is_synced) {
             axis.velocity
         } else {
             asked.velocity.min(axis.velocity)
@@ -257,7 +257,7 @@ impl<P: Planner> Axis<P> {
     /// The stretch of the law that the slave is led onto. The law was at `on_law` (u), in the slave's
     /// turn, and has moved by `step` (u) in this scan.
     fn next_stretch(&self, view: &View<'_, P::Plan>, on_law: f64, step: f64) -> Option<Stretch> {
-        let coupling = self.follower.coupling.as_ref()?;
+        let coupling = self.coupling()?;
         let cycle = self.planner.cycle();
         if coupling.stands(&view.future) || view.future.kind() == Kind::Still {
             return Some(Stretch {
@@ -364,10 +364,10 @@ impl<P: Planner> Axis<P> {
 
     /// Onto a law at rest, planned like MC_MoveAbsolute to the place of the law.
     fn onto_rest(&self, view: &View<'_, P::Plan>, limits: &Limits, before: &Limits) -> Option<Way<P::Plan>> {
-        let coupling = self.follower.coupling.as_ref()?;
+        let coupling = self.coupling()?;
         let anchor = coupling.anchor?;
         let here = self.place();
-        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let length = self.config.modulo.unwrap_or(0.0);
         let (law, _) = coupling.law(&anchor, &view.seen());
         let target = (law.turns.wrapping_sub(here.turns)) as f64 * length + law.position;
         let start = self.mover.setpoint().moved_to(here.position);
@@ -400,7 +400,7 @@ impl<P: Planner> Axis<P> {
         if stretch.velocity.abs() > limits.velocity {
             return None;
         }
-        let coupling = self.follower.coupling.as_ref()?;
+        let coupling = self.coupling()?;
         let is_syncing = coupling.is_syncing();
         if is_syncing && view.future.kind() == Kind::Still {
             return self.onto_rest(view, limits, before);
@@ -580,7 +580,7 @@ impl<P: Planner> Axis<P> {
         if view.future.unforeseen().is_some() {
             return self.beside_measured(view, anchor, difference, line, limits);
         }
-        let coupling = self.follower.coupling.as_ref()?;
+        let coupling = self.coupling()?;
         // The step of a plan that ended in this scan can no longer be checked.
         let leads = coupling.leads(&view.future).filter(|_| !view.future.is_late())?;
         let to_place = coupling.anchor.is_some();
@@ -641,7 +641,7 @@ impl<P: Planner> Axis<P> {
         line: f64,
         limits: &Limits,
     ) -> Option<Way<P::Plan>> {
-        let coupling = self.follower.coupling.as_ref()?;
+        let coupling = self.coupling()?;
         if matches!(coupling.rung, Rung::BesideMeasured { .. }) || !self.is_told_finely(view) {
             return None;
         }
@@ -673,7 +673,7 @@ impl<P: Planner> Axis<P> {
         difference: &Setpoint,
         may_follow: bool,
     ) -> Option<Way<P::Plan>> {
-        let coupling = self.follower.coupling.as_ref()?;
+        let coupling = self.coupling()?;
         if coupling.anchor.is_none() || coupling.is_syncing() || view.future.kind() != Kind::Plan {
             return None;
         }
@@ -750,7 +750,7 @@ impl<P: Planner> Axis<P> {
 
     /// Half of the limits that the law leaves of `limits` in this scan; none if it leaves nothing.
     pub(in crate::axis) fn room_now(&self, view: &View<'_, P::Plan>, limits: &Limits) -> Option<Limits> {
-        let coupling = self.follower.coupling.as_ref()?;
+        let coupling = self.coupling()?;
         let (_, law) = coupling.law(&coupling.anchor.unwrap_or_default(), &view.seen());
         half_left(&law, limits)
     }
@@ -822,7 +822,7 @@ impl<P: Planner> Axis<P> {
     ) -> Result<Way<P::Plan>, ErrorId> {
         let goal = if velocity < 0.0 { -most } else { most };
         let way = self.to_pace(owner, goal)?;
-        let coupling = self.follower.coupling.as_ref();
+        let coupling = self.coupling();
         let left = match coupling.and_then(|coupling| coupling.leads(&view.future)) {
             Some(leads) => {
                 let late = u64::from(view.future.is_late());
@@ -954,7 +954,7 @@ impl<P: Planner> Axis<P> {
         view: &View<'_, P::Plan>,
         beside: &Setpoint,
     ) -> Option<Beyond> {
-        let coupling = self.follower.coupling.as_ref()?;
+        let coupling = self.coupling()?;
         let mut peaks = Setpoint::default();
         for lead in coupling.leads(&view.future)?.iter().flatten() {
             let own = self.planner.peaks((lead.plan, lead.elapsed))?;

@@ -141,11 +141,7 @@ impl<P: Planner> Axis<P> {
 
     /// Whether its master keeps its limits.
     pub(super) fn slows_master(&self) -> bool {
-        self.follower
-            .coupling
-            .as_ref()
-            .is_some_and(|coupling| coupling.slows)
-            || self.bound_on_cam().is_some()
+        self.coupling().is_some_and(|coupling| coupling.slows) || self.bound_on_cam().is_some()
     }
 
     /// Whether its motion was planned within the limits that its slaves leave. It was not if it was planned before
@@ -160,7 +156,7 @@ impl<P: Planner> Axis<P> {
     /// The limits that it leaves to each of its masters: its own limits and what its own slaves leave,
     /// converted by the gear. Each of two masters gets half. A moving shift takes its part of them.
     pub(crate) fn bounds_of_masters(&self) -> impl Iterator<Item = (AxisId, Limits)> + use<P> {
-        let coupling = self.follower.coupling.as_ref().filter(|coupling| coupling.slows);
+        let coupling = self.coupling().filter(|coupling| coupling.slows);
         let bounds = coupling.map_or([None; 2], |coupling| {
             let gearing = &coupling.gearing;
             let part = if gearing.second.is_some() { 0.5 } else { 1.0 };

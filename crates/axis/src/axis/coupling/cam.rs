@@ -269,11 +269,7 @@ impl<P: Planner> Axis<P> {
     /// Whether the owner is on this cam, or a waiting command uses it.
     pub fn uses_cam(&self, id: CamId) -> bool {
         let is_of = |entry: &Entry| matches!(entry.work, super::super::commands::Work::Cam(camming) if camming.cam == id);
-        let runs = self
-            .follower
-            .on_cam
-            .as_ref()
-            .is_some_and(|on_cam| on_cam.camming.cam == id);
+        let runs = self.on_cam().is_some_and(|on_cam| on_cam.camming.cam == id);
         let awaits = self
             .follower
             .awaited
@@ -403,36 +399,30 @@ impl<P: Planner> Axis<P> {
     }
 
     pub(in crate::axis) fn master_on_cam(&self) -> Option<AxisId> {
-        self.follower.on_cam.as_ref().map(|on_cam| on_cam.camming.master)
+        self.on_cam().map(|on_cam| on_cam.camming.master)
     }
 
     pub(super) fn values_on_cam(&self) -> Option<Values> {
-        let on_cam = self.follower.on_cam.as_ref()?;
+        let on_cam = self.on_cam()?;
         Some((on_cam.camming.master, on_cam.camming.source))
     }
 
     pub(super) fn has_lost_master_on_cam(&self) -> bool {
-        self.follower
-            .on_cam
-            .as_ref()
-            .is_some_and(|on_cam| on_cam.rung == Rung::Lost)
+        self.on_cam().is_some_and(|on_cam| on_cam.rung == Rung::Lost)
     }
 
     pub(super) fn deviation_on_cam(&self) -> f64 {
-        self.follower
-            .on_cam
-            .as_ref()
-            .map_or(0.0, |on_cam| on_cam.deviation)
+        self.on_cam().map_or(0.0, |on_cam| on_cam.deviation)
     }
 
     /// Whether it is in sync and the cam has begun.
     pub(super) fn is_in_sync_on_cam(&self) -> bool {
         let is_in_sync = |on_cam: &OnCam| on_cam.rung.is_locked() && on_cam.ends.has_begun();
-        self.follower.on_cam.as_ref().is_some_and(is_in_sync)
+        self.on_cam().is_some_and(is_in_sync)
     }
 
     pub(super) fn coupled_on_cam(&self) -> Option<Coupled> {
-        let on_cam = self.follower.on_cam.as_ref()?;
+        let on_cam = self.on_cam()?;
         let place = on_cam.shadow.map(|shadow| shadow.place);
         let turn = on_cam.camming.law.master_turn;
         let shadow = place.map(|place| match turn {
@@ -453,14 +443,12 @@ impl<P: Planner> Axis<P> {
 
     /// The master of its cam at the end of the last scan.
     pub(super) fn master_of_cam_was(&self) -> Option<&Seen> {
-        self.follower.on_cam.as_ref().map(|on_cam| &on_cam.was)
+        self.on_cam().map(|on_cam| &on_cam.was)
     }
 
     /// The largest position of its master with which the cam is evaluated (u of the slave).
     pub(super) fn size_of_master_on_cam(&self) -> f64 {
-        self.follower
-            .on_cam
-            .as_ref()
+        self.on_cam()
             .map_or(0.0, |on_cam| on_cam.camming.steepest * on_cam.was.size())
     }
 
@@ -552,7 +540,7 @@ impl<P: Planner> Axis<P> {
                 return Err(self.refuse("MasterSyncPosition", cam.sync_position, limit, error, scope));
             }
         }
-        let slave_turn = self.modulo.as_ref().map(|modulo| modulo.length);
+        let slave_turn = self.config.modulo;
         Ok(Camming {
             master: cam.master.axis,
             source,
@@ -582,7 +570,7 @@ impl<P: Planner> Axis<P> {
     /// `entry` moves onto a cam from the next motion step on, or has new values for it.
     pub(super) fn await_master_on_cam(&mut self, camming: Camming, entry: &Entry, scope: &mut Scope<'_>) {
         self.links.set_bound(true);
-        let known = self.follower.on_cam.as_ref().map(|on_cam| on_cam.camming);
+        let known = self.on_cam().map(|on_cam| on_cam.camming);
         if known != Some(camming) {
             let event = Event::OnCam {
                 master: camming.master,

@@ -145,14 +145,11 @@ impl<P: Planner> Axis<P> {
 
     /// Whether its coupling is in gear, whether or not the motion follows it now.
     fn is_locked(&self) -> bool {
-        self.follower
-            .coupling
-            .as_ref()
-            .is_some_and(|coupling| coupling.rung.is_locked())
+        self.coupling().is_some_and(|coupling| coupling.rung.is_locked())
     }
 
     pub(super) fn rung(&self) -> Option<Rung> {
-        self.follower.coupling.as_ref().map(|coupling| coupling.rung)
+        self.coupling().map(|coupling| coupling.rung)
     }
 
     /// Coordinates of master or slave were shifted: the law is shifted with them, and nothing else changes.
@@ -296,7 +293,7 @@ impl<P: Planner> Axis<P> {
         if self.is_on_cam() {
             return self.lead_of_master(view).map(|lead| [Some(lead), None]);
         }
-        let leads = self.follower.coupling.as_ref()?.leads(&view.future)?;
+        let leads = self.coupling()?.leads(&view.future)?;
         leads.iter().any(Option::is_some).then_some(leads)
     }
 
@@ -305,7 +302,7 @@ impl<P: Planner> Axis<P> {
         &self,
         view: &View<'_, P::Plan>,
     ) -> Option<(Setpoint, Setpoint)> {
-        let coupling = self.follower.coupling.as_ref()?;
+        let coupling = self.coupling()?;
         let anchor = coupling.anchor?;
         let law = |seen| coupling.law(&anchor, seen).1;
         Some((law(&coupling.was), law(&view.seen())))
@@ -401,7 +398,7 @@ impl<P: Planner> Axis<P> {
         let Some(coupling) = &self.follower.coupling else {
             return false;
         };
-        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let length = self.config.modulo.unwrap_or(0.0);
         let place = frame_place.moved_to(frame.position);
         let resolved = self.resolved_of(coupling, law_place);
         let is_on = off(place, law_place, length).abs() <= resolved && self.law_is_near(frame, law);
@@ -475,11 +472,7 @@ impl<P: Planner> Axis<P> {
         view: &View<'_, P::Plan>,
         limits: &Limits,
     ) -> Option<Beyond> {
-        let coupling = self
-            .follower
-            .coupling
-            .as_ref()
-            .filter(|_| self.follows_actual())?;
+        let coupling = self.coupling().filter(|_| self.follows_actual())?;
         let (_, from) = coupling.law(anchor, &coupling.was);
         let (_, to) = coupling.law(anchor, &view.seen());
         let peaks = Piece::between(&from, &to, self.planner.cycle()).peaks();
@@ -508,7 +501,7 @@ impl<P: Planner> Axis<P> {
     /// Whether measured places are fine enough that rounding causes no step of the slave. Only jumps lead to places
     /// that are too coarse.
     pub(super) fn is_told_finely(&self, view: &View<'_, P::Plan>) -> bool {
-        let Some(coupling) = self.follower.coupling.as_ref().filter(|_| self.follows_actual()) else {
+        let Some(coupling) = self.coupling().filter(|_| self.follows_actual()) else {
             return true;
         };
         let numbers = coupling.size_of_masters(&view.seen()) + self.mover.setpoint().position.abs();
@@ -518,7 +511,7 @@ impl<P: Planner> Axis<P> {
 
     /// The limit that the law exceeds in this scan, if the motion ahead is not known.
     pub(super) fn beyond_now(&self, view: &View<'_, P::Plan>) -> Option<Beyond> {
-        let coupling = self.follower.coupling.as_ref()?;
+        let coupling = self.coupling()?;
         let anchor = coupling.anchor.unwrap_or_default();
         let (place, law) = coupling.law(&anchor, &view.seen());
         let place = coupling.anchor.map(|_| place);
@@ -530,7 +523,7 @@ impl<P: Planner> Axis<P> {
     /// a plan of one scan. `Some(TRUE)` if the master's motion is less smooth than the slave needs. A shift is as
     /// smooth as the slave.
     fn rough(&self, view: &View<'_, P::Plan>) -> Option<bool> {
-        let gearing = &self.follower.coupling.as_ref()?.gearing;
+        let gearing = &self.coupling()?.gearing;
         let degree = self.slowed(&self.parameters.limits).order().degree();
         let own = view.seen().map(|seen| seen.own_rates()[1]);
         let is_rough = view.degree() < degree && gearing.derivative(own) != 0.0;
@@ -587,8 +580,8 @@ impl<P: Planner> Axis<P> {
         let Some(is_rough) = rough.filter(|_| found.is_none()) else {
             return found;
         };
-        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
-        let geared = self.follower.coupling.as_ref();
+        let length = self.config.modulo.unwrap_or(0.0);
+        let geared = self.coupling();
         let masters = geared.map_or_else(
             || self.size_of_master_on_cam(),
             |coupling| coupling.size_of_masters(&coupling.was),
@@ -703,7 +696,7 @@ impl<P: Planner> Axis<P> {
     /// Computes its present distance from the law, and whether that is too large.
     fn measure(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let here = self.place();
-        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let length = self.config.modulo.unwrap_or(0.0);
         let Some(coupling) = &mut self.follower.coupling else {
             return;
         };

@@ -491,7 +491,7 @@ impl<P: Planner> Axis<P> {
         if self.is_on_cam() {
             return self.room_for_shift_on_cam(asked, view, cams);
         }
-        let coupling = self.follower.coupling.as_ref()?;
+        let coupling = self.coupling()?;
         if !coupling.rung.is_locked() || self.adds_motion() {
             return None;
         }

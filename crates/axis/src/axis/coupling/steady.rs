@@ -130,8 +130,8 @@ impl<P: Planner> Axis<P> {
     /// does not move beside the law, waits for nothing, and does not check each of its steps.
     fn may_go_on(&self) -> bool {
         let (limits, moves) = (self.slowed(&self.parameters.limits), self.frame.moves());
-        let in_gear = self.follower.coupling.as_ref();
-        let on_cam = self.follower.on_cam.as_ref();
+        let in_gear = self.coupling();
+        let on_cam = self.on_cam();
         let is_locked = in_gear.is_some_and(|coupling| coupling.may_go_on(&limits, moves))
             || on_cam.is_some_and(|on_cam| on_cam.may_go_on(&limits, moves));
         is_locked
@@ -152,7 +152,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn note_steady(&mut self) {
         self.follower.steady.is_settled = self.may_go_on();
         if self.follower.steady.is_settled {
-            let is_straight = self.follower.coupling.as_ref().is_some_and(Coupling::is_straight);
+            let is_straight = self.coupling().is_some_and(Coupling::is_straight);
             let (limits, widest) = (self.mover.in_force(), &self.config.limits);
             self.follower.steady.room = Some(Room::new(limits, widest, self.planner.cycle(), is_straight));
         }
@@ -219,7 +219,7 @@ impl<P: Planner> Axis<P> {
         if !self.follower.steady.is_settled {
             return None;
         }
-        let coupling = self.follower.coupling.as_ref();
+        let coupling = self.coupling();
         coupling.map_or_else(
             || self.master_on_cam(),
             |coupling| Some(coupling.gearing.first.master),
@@ -233,11 +233,7 @@ impl<P: Planner> Axis<P> {
         match self.mover.motion() {
             // If something was new for it or one of its masters, its slaves check the step completely.
             Motion::Geared if self.follower.steady.has_gone_on => {
-                let coupling = self
-                    .follower
-                    .coupling
-                    .as_ref()
-                    .filter(|_| self.follower.steady.is_settled)?;
+                let coupling = self.coupling().filter(|_| self.follower.steady.is_settled)?;
                 let known = &coupling.known[0];
                 Some((known.root, known.elapsed))
             }

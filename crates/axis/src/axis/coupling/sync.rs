@@ -208,7 +208,7 @@ impl<P: Planner> Axis<P> {
         turn: Option<f64>,
         scope: &mut Scope<'_>,
     ) -> Result<Sync, ErrorId> {
-        let own_turn = self.modulo.as_ref().map(|modulo| modulo.length);
+        let own_turn = self.config.modulo;
         let places = [
             ("MasterSyncPosition", point.master, turn),
             ("SlaveSyncPosition", point.slave, own_turn),
@@ -544,7 +544,7 @@ impl<P: Planner> Axis<P> {
             Some((plan, from, late)) => {
                 let to = from.saturating_add(scans.saturating_sub(late));
                 let way = view.future.parts[0].factor * (plan.at(to).position - plan.at(from).position);
-                let first = self.follower.coupling.as_ref().map_or(0.0, |coupling| {
+                let first = self.coupling().map_or(0.0, |coupling| {
                     let turns = view.now.place.turns.wrapping_sub(coupling.was[0].place.turns) as f64;
                     turns * view.turn.unwrap_or(0.0)
                         + (view.now.place.position - coupling.was[0].place.position)
@@ -593,7 +593,7 @@ impl<P: Planner> Axis<P> {
             slave: Place::new(0, sync.slave),
             ..Anchor::default()
         };
-        if let Some(length) = self.modulo.as_ref().map(|modulo| modulo.length) {
+        if let Some(length) = self.config.modulo {
             anchor.slave.turns = self.slave_turn(&sync, &anchor, length, view);
         }
         if let Some(coupling) = &mut self.follower.coupling {

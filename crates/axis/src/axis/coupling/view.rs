@@ -429,11 +429,7 @@ impl<P: Planner> Axis<P> {
 
     /// In gear, the factor from the derivatives of its master's plan to its own.
     pub(crate) fn factor_in_gear(&self) -> Option<f64> {
-        let coupling = self
-            .follower
-            .coupling
-            .as_ref()
-            .filter(|_| !self.follows_actual())?;
+        let coupling = self.coupling().filter(|_| !self.follows_actual())?;
         let follows_one = coupling.gearing.second.is_none() && !self.is_phasing() && !self.adds_motion();
         (coupling.rung.is_locked() && matches!(self.mover.motion(), Motion::Geared) && follows_one)
             .then(|| coupling.gearing.first.gear.derivative(1.0))

@@ -134,7 +134,7 @@ impl<P: Planner> Axis<P> {
     /// Whether the owner has just got a cam.
     fn is_now_due(&self) -> bool {
         let is_new = |on_cam: &OnCam| on_cam.rung == Rung::Due && on_cam.anchor.is_none();
-        self.follower.on_cam.as_ref().is_some_and(is_new)
+        self.on_cam().is_some_and(is_new)
     }
 
     /// The next cam begins where the last one ended, and the slave gets onto it.
@@ -246,7 +246,7 @@ impl<P: Planner> Axis<P> {
     /// Whether the motion may change from one state to the other: the place is the same, and so is each derivative
     /// that the limits do not let jump.
     fn goes_on_at(&self, last: &(Place, Setpoint), next: &(Place, Setpoint)) -> bool {
-        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let length = self.config.modulo.unwrap_or(0.0);
         let numbers = last.0.position.abs() + next.0.position.abs() + length;
         let limits = self.slowed(&self.parameters.limits);
         let is_there = off(last.0, next.0, length).abs() <= RESOLVED * 4.0 * numbers;

@@ -48,11 +48,7 @@ impl<P: Planner> Axis<P> {
         view: &View<'_, P::Plan>,
         cams: &Cams<'_>,
     ) -> Option<f64> {
-        let on_cam = self
-            .follower
-            .on_cam
-            .as_ref()
-            .filter(|on_cam| !on_cam.ends.is_over())?;
+        let on_cam = self.on_cam().filter(|on_cam| !on_cam.ends.is_over())?;
         let curve = on_cam.curve(cams.cam(on_cam.camming.cam)?)?;
         let lead = self.lead_of_master(view)?;
         let way = way_left(view, &[Some(lead), None])?;

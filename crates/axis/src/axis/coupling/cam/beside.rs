@@ -31,7 +31,7 @@ impl<P: Planner> Axis<P> {
 
     /// The limits left to its master, if the master keeps the limits of the slave.
     pub(in crate::axis::coupling) fn bound_on_cam(&self) -> Option<Limits> {
-        self.follower.on_cam.as_ref()?.bound
+        self.on_cam()?.bound
     }
 
     /// In sync: from now on its master keeps the limits of the slave, if the axis is configured for that.
@@ -66,7 +66,7 @@ impl<P: Planner> Axis<P> {
         view: &View<'_, P::Plan>,
         cams: &Cams<'_>,
     ) -> Option<Limits> {
-        let on_cam = self.follower.on_cam.as_ref()?;
+        let on_cam = self.on_cam()?;
         let is_free = on_cam.rung.is_locked() && !self.adds_motion();
         if !is_free || (self.slows_master() && (view.future.is_new || view.future.is_late())) {
             return None;
@@ -129,7 +129,7 @@ impl<P: Planner> Axis<P> {
     /// The largest magnitudes of the derivatives that the cam needs along the master's future motion, and whether
     /// that is endless.
     fn used_on_cam(&self, view: &View<'_, P::Plan>, cams: &Cams<'_>) -> Option<(Setpoint, bool)> {
-        let on_cam = self.follower.on_cam.as_ref()?;
+        let on_cam = self.on_cam()?;
         let curve = on_cam.curve(cams.cam(on_cam.camming.cam)?)?;
         let lead = self.lead_of_master(view)?;
         // A derivative that jumps leaves nothing, even to a smooth motion beside it.

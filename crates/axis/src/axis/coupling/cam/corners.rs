@@ -74,7 +74,7 @@ impl<P: Planner> Axis<P> {
 
     /// The cam at its place, if it has corners for this slave and is not over.
     fn curve_with_corners<'a>(&self, scope: &'a Scope<'_>) -> Option<Curve<'a>> {
-        let on_cam = self.follower.on_cam.as_ref()?;
+        let on_cam = self.on_cam()?;
         if !on_cam.has_corners() || on_cam.ends.is_over() {
             return None;
         }
@@ -118,7 +118,7 @@ impl<P: Planner> Axis<P> {
 
     /// The corner that the master has passed at `now`, or moves across.
     fn corner_passed(&self, curve: &Curve<'_>, now: &Shadow) -> Option<Corner> {
-        let on_cam = self.follower.on_cam.as_ref()?;
+        let on_cam = self.on_cam()?;
         let (was, here) = (curve.unwound(on_cam.was.place), curve.unwound(now.place));
         let resolved = RESOLVED * (was.abs() + here.abs());
         let corner = self.corner_from(curve, was, here > was, (here - was).abs() + resolved)?;
@@ -137,7 +137,7 @@ impl<P: Planner> Axis<P> {
         let at = &next.at;
         let x = curve.unwound(next.place);
         // The step of this scan may cross a corner, too.
-        let was = self.follower.on_cam.as_ref().and_then(|on_cam| on_cam.shadow);
+        let was = self.on_cam().and_then(|on_cam| on_cam.shadow);
         let from = was.map_or(x, |was| curve.unwound(was.place));
         let ahead = heading(at).unwrap_or_default() * curve.law.master_scaling;
         let forwards = if ahead == 0.0 { x > from } else { ahead > 0.0 };
@@ -195,7 +195,7 @@ impl<P: Planner> Axis<P> {
         let speed = at.velocity.abs();
         let left = (highest - speed).max(0.0);
         let others = SHARES.map(|share| self.limits_of_shadow(curve, at, speed + share * left));
-        let known = self.follower.on_cam.as_ref().and_then(|on_cam| on_cam.brakes);
+        let known = self.on_cam().and_then(|on_cam| on_cam.brakes);
         let known = known.filter(|(_, own)| *own == limits).map(|(known, _)| known);
         let all = [known, self.shadow_limits_now()].into_iter().chain(others);
         all.flatten()
@@ -248,11 +248,7 @@ impl<P: Planner> Axis<P> {
 
     /// The same, and its limits have not changed since that plan was made.
     pub(super) fn is_bound_for_corner(&self) -> bool {
-        let brakes = self
-            .follower
-            .on_cam
-            .as_ref()
-            .map(|on_cam| (on_cam.brakes, on_cam.limits));
+        let brakes = self.on_cam().map(|on_cam| (on_cam.brakes, on_cam.limits));
         let is_known = matches!(brakes, Some((Some((_, own)), limits)) if own == limits);
         is_known && self.is_coming_to_corner()
     }
@@ -266,7 +262,7 @@ impl<P: Planner> Axis<P> {
         scope: &mut Scope<'_>,
     ) {
         let way = {
-            let shadow = self.follower.on_cam.as_ref().and_then(|on_cam| on_cam.shadow);
+            let shadow = self.on_cam().and_then(|on_cam| on_cam.shadow);
             let curve = self.curve_with_corners(scope);
             curve
                 .zip(shadow)

@@ -47,7 +47,7 @@ impl<P: Planner> Axis<P> {
         if is_new && self.slows_master() {
             self.bound_master_on_cam(&scope.cams);
         }
-        let shadow = self.follower.on_cam.as_ref().and_then(|on_cam| on_cam.shadow);
+        let shadow = self.on_cam().and_then(|on_cam| on_cam.shadow);
         if self.is_on_cam() {
             self.step_on_cam(view, scope);
         }
@@ -60,14 +60,11 @@ impl<P: Planner> Axis<P> {
     }
 
     pub(in crate::axis::coupling) fn is_locked_on_cam(&self) -> bool {
-        self.follower
-            .on_cam
-            .as_ref()
-            .is_some_and(|on_cam| on_cam.rung.is_locked())
+        self.on_cam().is_some_and(|on_cam| on_cam.rung.is_locked())
     }
 
     pub(super) fn cam_rung(&self) -> Option<Rung> {
-        self.follower.on_cam.as_ref().map(|on_cam| on_cam.rung)
+        self.on_cam().map(|on_cam| on_cam.rung)
     }
 
     /// Coordinates of master or slave were shifted: the cam is shifted with them, and nothing else changes.
@@ -183,7 +180,7 @@ impl<P: Planner> Axis<P> {
 
     /// The limit that the cam exceeds in this scan, if the future motion is not known.
     fn beyond_on_cam_now(&self, curve: &Curve<'_>, view: &View<'_, P::Plan>) -> Option<Beyond> {
-        let on_cam = self.follower.on_cam.as_ref()?;
+        let on_cam = self.on_cam()?;
         let at = curve.at(view.now.place, &view.now.at, on_cam.at.piece);
         let is_rough = self.is_rough_on_cam(view, &at);
         self.beyond(Some(at.place), &at.state, &on_cam.limits, Some(is_rough))
@@ -193,11 +190,7 @@ impl<P: Planner> Axis<P> {
     /// the slave.
     fn is_rough_on_cam(&self, view: &View<'_, P::Plan>, at: &CamAt) -> bool {
         let degree = self.slowed(&self.parameters.limits).order().degree();
-        let was = self
-            .follower
-            .on_cam
-            .as_ref()
-            .map_or(0.0, |on_cam| on_cam.was.own_rates()[0]);
+        let was = self.on_cam().map_or(0.0, |on_cam| on_cam.was.own_rates()[0]);
         let [velocity, acceleration] = view.now.own_rates();
         let accelerates = acceleration != 0.0 || velocity != was;
         view.degree() < degree && accelerates && at.state.velocity != 0.0
@@ -224,7 +217,7 @@ impl<P: Planner> Axis<P> {
 
     /// The place of the slave on the curve for a master at `place`.
     fn on_curve(&self, place: Place, moving: &Setpoint, scope: &Scope<'_>) -> Option<CamAt> {
-        let on_cam = self.follower.on_cam.as_ref()?;
+        let on_cam = self.on_cam()?;
         let curve = on_cam.curve(scope.cams.cam(on_cam.camming.cam)?)?;
         Some(curve.at(place, moving, on_cam.at.piece))
     }
@@ -237,7 +230,7 @@ impl<P: Planner> Axis<P> {
         let added = self.next_added();
         // A motion added to a law at rest was checked against the limits before.
         let is_held = added.is_some() && self.law_stands(view);
-        let before = self.follower.on_cam.as_ref().and_then(|on_cam| on_cam.anchor);
+        let before = self.on_cam().and_then(|on_cam| on_cam.anchor);
         let held = self.held_end(added.as_ref());
         if let (Some(added), Some(on_cam)) = (&added, &mut self.follower.on_cam)
             && let Some(anchor) = &mut on_cam.anchor
@@ -437,11 +430,7 @@ impl<P: Planner> Axis<P> {
 
     /// In sync from now on.
     pub(super) fn lock_on_cam(&mut self, scope: &mut Scope<'_>) {
-        let was_in_sync = self
-            .follower
-            .on_cam
-            .as_ref()
-            .is_some_and(|on_cam| on_cam.was_in_sync);
+        let was_in_sync = self.on_cam().is_some_and(|on_cam| on_cam.was_in_sync);
         if let Some(on_cam) = &mut self.follower.on_cam {
             on_cam.rung = Rung::Locked;
             on_cam.left = u64::MAX;
@@ -491,7 +480,7 @@ impl<P: Planner> Axis<P> {
     /// Computes its present distance from the cam at its master's place, and whether that is too large.
     fn measure_on_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let here = self.place();
-        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let length = self.config.modulo.unwrap_or(0.0);
         let is_off = !self.is_locked_on_cam();
         let at = is_off
             .then(|| self.on_curve(view.now.place, &view.now.at, scope))
@@ -509,11 +498,7 @@ impl<P: Planner> Axis<P> {
 
     /// The end of a cam without periods where the slave holds, moved by the `added` distance.
     pub(super) fn held_end(&self, added: Option<&Setpoint>) -> Option<CamAt> {
-        let on_cam = self
-            .follower
-            .on_cam
-            .as_ref()
-            .filter(|_| self.holds_end_of_cam())?;
+        let on_cam = self.on_cam().filter(|_| self.holds_end_of_cam())?;
         let mut at = on_cam.at;
         if let (Some(added), Some(anchor)) = (added, &on_cam.anchor) {
             at.place.position += on_cam.lead + added.position - anchor.slave.phase;
@@ -524,9 +509,6 @@ impl<P: Planner> Axis<P> {
 
     /// Whether a cam without periods is over and the slave holds its last place.
     pub(in crate::axis) fn holds_end_of_cam(&self) -> bool {
-        self.follower
-            .on_cam
-            .as_ref()
-            .is_some_and(|on_cam| on_cam.ends.is_over())
+        self.on_cam().is_some_and(|on_cam| on_cam.ends.is_over())
     }
 }

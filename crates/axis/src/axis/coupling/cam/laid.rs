@@ -60,7 +60,7 @@ impl CamLaid {
 impl<P: Planner> Axis<P> {
     /// The cam of the owner, once it has a place.
     pub fn cam_laid(&self) -> Option<CamLaid> {
-        let on_cam = self.follower.on_cam.as_ref()?;
+        let on_cam = self.on_cam()?;
         Some(CamLaid {
             cam: on_cam.camming.cam,
             law: on_cam.camming.law,

@@ -186,7 +186,7 @@ impl<P: Planner> Axis<P> {
     /// Checks whether a slave that is not known to be on the curve is on it, at its master's place.
     pub(super) fn find_shadow(&mut self, curve: &Curve<'_>) {
         let here = self.place();
-        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let length = self.config.modulo.unwrap_or(0.0);
         let limits = self.slowed(&self.parameters.limits);
         let last = *self.mover.setpoint();
         let Some(on_cam) = &mut self.follower.on_cam else {
@@ -500,10 +500,10 @@ impl<P: Planner> Axis<P> {
     /// # Errors
     /// The reason why the slave may not move there.
     fn move_onto(&self, curve: &Curve<'_>, owner: &Entry, to: Place) -> Result<Way<P::Plan>, ErrorId> {
-        let near = self.follower.on_cam.as_ref().map_or(0, |on_cam| on_cam.at.piece);
+        let near = self.on_cam().map_or(0, |on_cam| on_cam.at.piece);
         let at = curve.at(to, &Setpoint::default(), near);
         let here = self.place();
-        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let length = self.config.modulo.unwrap_or(0.0);
         let target = off(at.place, here, length) + here.position;
         self.allowed(target)?;
         let start = self.mover.setpoint().moved_to(here.position);

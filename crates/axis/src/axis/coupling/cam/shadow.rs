@@ -238,7 +238,7 @@ impl<P: Planner> Axis<P> {
 
     /// The limits of the shadow in motion, which it keeps.
     pub(super) fn shadow_limits_now(&self) -> Option<Limits> {
-        let on_cam = self.follower.on_cam.as_ref()?;
+        let on_cam = self.on_cam()?;
         match on_cam.rung {
             Rung::BesideLine { .. }
             | Rung::BesideMaster
@@ -256,7 +256,7 @@ impl<P: Planner> Axis<P> {
     fn is_slowing_down(&self) -> bool {
         let is_under_way =
             matches!(self.mover.motion(), Motion::Closing { elapsed, scans, .. } if elapsed < scans);
-        is_under_way && self.follower.on_cam.as_ref().is_some_and(|on_cam| on_cam.slows)
+        is_under_way && self.on_cam().is_some_and(|on_cam| on_cam.slows)
     }
 
     /// A way beside the master that takes the difference to 0. None if it is not known to keep the limits, or moves
@@ -273,7 +273,7 @@ impl<P: Planner> Axis<P> {
             return None;
         }
         let lead = self.lead_of_master(view)?;
-        let on_cam = self.follower.on_cam.as_ref()?;
+        let on_cam = self.on_cam()?;
         let now = Setpoint {
             position: difference.position,
             velocity: difference.velocity + on_cam.was.at.velocity,

@@ -72,7 +72,7 @@ impl<P: Planner> Axis<P> {
         let not_at_all = |error| ("Master", f64::from(master), f64::NAN, error);
         self.gear_motion(entry, self.mover.setpoint())
             .map_err(not_at_all)?;
-        let cam = self.follower.on_cam.as_ref().map(|on_cam| on_cam.camming.cam);
+        let cam = self.on_cam().map(|on_cam| on_cam.camming.cam);
         let cam = cam.and_then(|id| scope.cams.cam(id));
         let Some(curve) = cam.and_then(|cam| self.lay_cam(cam)) else {
             return Err(("CamTableID", 0.0, f64::NAN, ErrorId::CamUnknown));
