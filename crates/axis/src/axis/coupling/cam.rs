@@ -116,6 +116,24 @@ struct Shadow {
     at: Setpoint,
 }
 
+impl Shadow {
+    /// The master itself.
+    fn of(master: &Seen) -> Self {
+        Self {
+            place: master.place,
+            at: master.at,
+        }
+    }
+
+    /// At rest at this place.
+    fn at_rest(place: Place) -> Self {
+        Self {
+            place,
+            at: Setpoint::at_rest(place.position),
+        }
+    }
+}
+
 /// How the owner follows a cam.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::axis) struct OnCam {

@@ -114,10 +114,7 @@ impl<P: Planner> Axis<P> {
             return self.fail(ErrorId::DeviationTooLarge, scope);
         }
         if let Some(on_cam) = &mut self.follower.on_cam {
-            on_cam.shadow = Some(Shadow {
-                place: view.now.place,
-                at: view.now.at,
-            });
+            on_cam.shadow = Some(Shadow::of(&view.now));
         }
         self.lock_on_cam(scope);
     }
@@ -165,10 +162,7 @@ impl<P: Planner> Axis<P> {
         let Some((next, passed)) = self.next_cam_met(view, scope) else {
             return false;
         };
-        let shadow = Shadow {
-            place: view.now.place,
-            at: view.now.at,
-        };
+        let shadow = Shadow::of(&view.now);
         let before = self.values_on_cam();
         self.hand_over(self.mover.setpoint().position, scope);
         if !(before == self.values_on_cam() && self.is_now_due()) {
@@ -204,10 +198,7 @@ impl<P: Planner> Axis<P> {
         }
         let curve = own.curve(scope.cams.cam(own.camming.cam)?)?;
         let cam = scope.cams.cam(camming.cam)?;
-        let now = Shadow {
-            place: view.now.place,
-            at: view.now.at,
-        };
+        let now = Shadow::of(&view.now);
         let (before, here) = (curve.unwound(own.was.place), curve.unwound(now.place));
         let mut ends = own.ends;
         let passed = ends.note(&curve.cam, &curve.at(now.place, &now.at, own.at.piece));

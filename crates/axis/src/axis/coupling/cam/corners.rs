@@ -85,10 +85,7 @@ impl<P: Planner> Axis<P> {
     /// this scan. For a slave that must not lag: the corner that it would have passed.
     pub(super) fn corner_in_sync(&mut self, view: &View<'_, P::Plan>, scope: &Scope<'_>) -> Option<Corner> {
         let curve = self.curve_with_corners(scope)?;
-        let now = Shadow {
-            place: view.now.place,
-            at: view.now.at,
-        };
+        let now = Shadow::of(&view.now);
         if self.config.following.on_limit == OnLimit::Error {
             return self.corner_passed(&curve, &now);
         }
@@ -318,19 +315,10 @@ impl<P: Planner> Axis<P> {
         let speeds = [shadow.at.velocity.abs(), limits.velocity];
         let there = speeds.into_iter().filter_map(move_there).find(goes_straight);
         let plan = there.filter(is_near).unwrap_or(stop.plan);
-        let scans = u64::from(plan.scans());
+        let rung = Rung::Corner { start: shadow.place };
         Some(Way {
-            exceeds: false,
-            ahead: false,
-            motion: Motion::closing(plan),
-            rung: Rung::Corner { start: shadow.place },
-            lock: u64::MAX,
-            left: scans.saturating_sub(1),
-            name: Approach::Corner,
-            velocity: corner.x,
-            shadow: limits,
-            slows: false,
-            laps: 0.0,
+            left: u64::from(plan.scans()).saturating_sub(1),
+            ..Way::by(plan, rung, Approach::Corner, corner.x, limits)
         })
     }
 

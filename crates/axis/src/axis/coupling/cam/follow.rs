@@ -274,10 +274,7 @@ impl<P: Planner> Axis<P> {
             return;
         }
         self.mover.keep_only(limits);
-        let shadow = Shadow {
-            place: view.now.place,
-            at: view.now.at,
-        };
+        let shadow = Shadow::of(&view.now);
         self.publish_on_cam(&at, shadow, scope);
         if let (true, Some(added)) = (self.is_on_law(), added) {
             self.note_added(added);
@@ -378,10 +375,7 @@ impl<P: Planner> Axis<P> {
             return false;
         }
         let at = curve.at(view.now.place, &view.now.at, on_cam.at.piece);
-        let shadow = Shadow {
-            place: view.now.place,
-            at: view.now.at,
-        };
+        let shadow = Shadow::of(&view.now);
         self.publish_on_cam(&at, shadow, scope);
         if self.is_on_cam() && !self.is_paused() {
             self.lock_on_cam(scope);
@@ -410,10 +404,7 @@ impl<P: Planner> Axis<P> {
             self.mover.hold();
             return self.leave_cam();
         };
-        let shadow = Shadow {
-            place: to,
-            at: Setpoint::at_rest(to.position),
-        };
+        let shadow = Shadow::at_rest(to);
         let at = self.on_curve(to, &shadow.at, scope);
         let mut is_there = view.now.at.is_at_rest() && view.future.kind() == Kind::Still;
         if let (Some(on_cam), Some(at)) = (&mut self.follower.on_cam, at) {

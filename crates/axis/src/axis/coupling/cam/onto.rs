@@ -68,6 +68,25 @@ pub(super) struct Way<Q> {
     pub ahead: bool,
 }
 
+impl<Q: Plan> Way<Q> {
+    /// By `plan`, which leads to no place in sync. The shadow has these limits at every place of the cam.
+    pub fn by(plan: Q, rung: Rung, name: Approach, velocity: f64, shadow: Limits) -> Self {
+        Self {
+            motion: Motion::closing(plan),
+            rung,
+            lock: u64::MAX,
+            left: u64::MAX,
+            name,
+            velocity,
+            shadow,
+            slows: false,
+            laps: 0.0,
+            exceeds: false,
+            ahead: false,
+        }
+    }
+}
+
 /// The decision.
 pub(super) enum Choice<Q> {
     Lock,
@@ -202,15 +221,9 @@ impl<P: Planner> Axis<P> {
             return;
         }
         if goes_on(&last, &at.state, &limits) {
-            on_cam.shadow = Some(Shadow {
-                place: on_cam.was.place,
-                at: on_cam.was.at,
-            });
+            on_cam.shadow = Some(Shadow::of(&on_cam.was));
         } else if last.is_at_rest() {
-            on_cam.shadow = Some(Shadow {
-                place: on_cam.was.place,
-                at: Setpoint::at_rest(on_cam.was.place.position),
-            });
+            on_cam.shadow = Some(Shadow::at_rest(on_cam.was.place));
         }
     }
 
@@ -519,22 +532,13 @@ impl<P: Planner> Axis<P> {
                 return Err(error);
             }
         }
-        let lock = u64::from(plan.scans());
+        let rung = Rung::Moving {
+            turns: here.turns,
+            to: Some(to),
+        };
         Ok(Way {
-            exceeds: false,
-            ahead: false,
-            motion: Motion::closing(plan),
-            rung: Rung::Moving {
-                turns: here.turns,
-                to: Some(to),
-            },
-            lock,
-            left: u64::MAX,
-            name: Approach::Move,
-            velocity: target,
-            shadow: Limits::NONE,
-            slows: false,
-            laps: 0.0,
+            lock: plan.scans().into(),
+            ..Way::by(plan, rung, Approach::Move, target, Limits::NONE)
         })
     }
 
@@ -601,21 +605,13 @@ impl<P: Planner> Axis<P> {
         let limits = self.slowed(&self.parameters.limits);
         let before = self.limits_before(&limits);
         let plan = self.planner.ramp_to(&start, 0.0, &limits, &before).ok()?;
+        let rung = Rung::Moving {
+            turns: here.turns,
+            to: None,
+        };
         Some(Way {
-            exceeds: false,
-            ahead: false,
-            motion: Motion::closing(plan),
-            rung: Rung::Moving {
-                turns: here.turns,
-                to: None,
-            },
-            lock: u64::MAX,
             left,
-            name: Approach::Pace,
-            velocity: 0.0,
-            shadow: Limits::NONE,
-            slows: false,
-            laps: 0.0,
+            ..Way::by(plan, rung, Approach::Pace, 0.0, Limits::NONE)
         })
     }
 

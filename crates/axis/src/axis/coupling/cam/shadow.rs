@@ -214,20 +214,9 @@ impl<P: Planner> Axis<P> {
             }
             found = Some(Way {
                 exceeds,
-                ahead: false,
-                motion: Motion::closing(plan),
-                rung: Rung::BesideLine {
-                    start: shadow.place,
-                    velocity: 0.0,
-                    begin: u64::MAX,
-                },
-                lock: u64::MAX,
                 left: scans,
-                name: Approach::Pace,
-                velocity: goal,
-                shadow: own,
                 slows: true,
-                laps: 0.0,
+                ..Way::by(plan, shadow.alone(), Approach::Pace, goal, own)
             });
             if !exceeds {
                 break;
@@ -403,22 +392,18 @@ impl<P: Planner> Axis<P> {
         // nevertheless keep its limits.
         let exceeds = plan.excess().is_some_and(|excess| leaves(&excess, limits))
             && !self.keeps_beside_line(&shadow.at, stretch.velocity, &plan, limits);
+        let rung = Rung::BesideLine {
+            start: curve.told_near(shadow.place.moved_to(shadow.place.position + laps)),
+            velocity: stretch.velocity,
+            begin: stretch.begin,
+        };
         Some(Way {
             exceeds,
             ahead: stretch.is_ahead && scans < stretch.begin,
-            motion: Motion::closing(plan),
-            rung: Rung::BesideLine {
-                start: curve.told_near(shadow.place.moved_to(shadow.place.position + laps)),
-                velocity: stretch.velocity,
-                begin: stretch.begin,
-            },
             lock: if is_in_time { arrives } else { u64::MAX },
             left: stretch.end,
-            name: Approach::Stretch,
-            velocity: stretch.velocity,
-            shadow: *limits,
-            slows: false,
             laps,
+            ..Way::by(plan, rung, Approach::Stretch, stretch.velocity, *limits)
         })
     }
 
@@ -458,20 +443,8 @@ impl<P: Planner> Axis<P> {
         };
         Some(Way {
             exceeds: plan.excess().is_some_and(|excess| leaves(&excess, limits)),
-            ahead: false,
-            motion: Motion::closing(plan),
-            rung: Rung::BesideLine {
-                start: shadow.place,
-                velocity: 0.0,
-                begin: u64::MAX,
-            },
-            lock: u64::MAX,
             left,
-            name: Approach::Pace,
-            velocity: goal,
-            shadow: *limits,
-            slows: false,
-            laps: 0.0,
+            ..Way::by(plan, shadow.alone(), Approach::Pace, goal, *limits)
         })
     }
 }
@@ -479,17 +452,19 @@ impl<P: Planner> Axis<P> {
 /// The way by a `plan` that takes the `difference` to 0, within these `limits` of the shadow.
 fn beside<Q: Plan>(plan: Q, rung: Rung, difference: &Setpoint, limits: &Limits) -> Way<Q> {
     Way {
-        exceeds: false,
-        ahead: false,
-        lock: u64::from(plan.scans()),
-        motion: Motion::closing(plan),
-        rung,
-        left: u64::MAX,
-        name: Approach::Difference,
-        velocity: difference.velocity,
-        shadow: *limits,
-        slows: false,
-        laps: 0.0,
+        lock: plan.scans().into(),
+        ..Way::by(plan, rung, Approach::Difference, difference.velocity, *limits)
+    }
+}
+
+impl Shadow {
+    /// On a way of its own from here, which does not lead to its master.
+    fn alone(&self) -> Rung {
+        Rung::BesideLine {
+            start: self.place,
+            velocity: 0.0,
+            begin: u64::MAX,
+        }
     }
 }
 
