@@ -36,6 +36,17 @@ pub struct Lead<'a, Plan> {
     pub factor: f64,
 }
 
+impl<'a, Plan> Lead<'a, Plan> {
+    /// A whole plan, as it is.
+    pub const fn whole(plan: &'a Plan) -> Self {
+        Self {
+            plan,
+            elapsed: 0,
+            factor: 1.0,
+        }
+    }
+}
+
 impl<Plan> Clone for Lead<'_, Plan> {
     fn clone(&self) -> Self {
         *self

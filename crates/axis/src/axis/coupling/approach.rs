@@ -22,7 +22,8 @@ use super::view::{Kind, UNKNOWN, View, anchor_at, way_to_rest};
 use super::{Coupling, Rung};
 use crate::{Approach, ErrorId, Event, Fate, Scope};
 use standstill_planner::{
-    Anchor, DirectedLimits, Excess, Lead, Leads, Limits, MoveProfile, Place, Plan, Planner, Setpoint,
+    Anchor, CamBounds, DirectedLimits, Excess, Lead, Leads, Limits, MoveProfile, Place, Plan, Planner,
+    Setpoint,
 };
 
 /// The room for a velocity relative to a line must be more than this share of the limit.
@@ -520,14 +521,7 @@ impl<P: Planner> Axis<P> {
         };
         let from = start.at_origin();
         let axis = &self.slowed(&self.config.limits);
-        let line = [
-            Some(Lead {
-                plan: line,
-                elapsed: 0,
-                factor: 1.0,
-            }),
-            None,
-        ];
+        let line = [Some(Lead::whole(line)), None];
         [*limits]
             .into_iter()
             .chain(self.higher(limits, before, axis))
@@ -536,16 +530,7 @@ impl<P: Planner> Axis<P> {
                 let wider = before.or_larger(&limits);
                 let wider = beside(&wider, wider.velocity + velocity.abs()).into();
                 let plan = |against| {
-                    let (positive, negative) = if velocity < 0.0 {
-                        (against, along)
-                    } else {
-                        (along, against)
-                    };
-                    let own = DirectedLimits {
-                        positive,
-                        negative,
-                        limits: beside(&limits, limits.velocity),
-                    };
+                    let own = directed(velocity, (along, against), beside(&limits, limits.velocity));
                     self.planner
                         .move_by_direction(&from, -start.position, &own, &wider)
                         .ok()
@@ -601,13 +586,7 @@ impl<P: Planner> Axis<P> {
             against > start.max(0.0) + ROUNDING * limits.velocity
         };
         let attempt = |own: &Limits| {
-            let planned = if to_place {
-                self.planner
-                    .move_to(MoveProfile::Online, difference, 0.0, own, own)
-            } else {
-                self.planner.ramp_to(difference, 0.0, own, own)
-            };
-            let planned = planned.ok().filter(|beside| {
+            let planned = self.closing(difference, own, to_place).filter(|beside| {
                 let beside = Some((beside, 0));
                 self.planner
                     .fits_behind(&leads, self.mover.setpoint(), beside, limits)
@@ -737,15 +716,21 @@ impl<P: Planner> Axis<P> {
         room: &Limits,
         to_place: bool,
     ) -> Option<P::Plan> {
-        let planned = if to_place {
-            self.planner
-                .move_to(MoveProfile::Online, difference, 0.0, room, room)
-        } else {
-            self.planner.ramp_to(difference, 0.0, room, room)
-        };
         // Outside the room its motion between two scans would be unknown.
         let leaves = |excess: Excess| excess.acceleration > 0.0 || excess.jerk > 0.0;
-        planned.ok().filter(|plan| !plan.excess().is_some_and(leaves))
+        self.closing(difference, room, to_place)
+            .filter(|plan| !plan.excess().is_some_and(leaves))
+    }
+
+    /// A plan within `limits` that takes a difference to 0, or only its velocity.
+    pub(super) fn closing(&self, difference: &Setpoint, limits: &Limits, to_place: bool) -> Option<P::Plan> {
+        let planned = if to_place {
+            let profile = MoveProfile::Online;
+            self.planner.move_to(profile, difference, 0.0, limits, limits)
+        } else {
+            self.planner.ramp_to(difference, 0.0, limits, limits)
+        };
+        planned.ok()
     }
 
     /// Half of the limits that the law leaves of `limits` in this scan; none if it leaves nothing.
@@ -826,16 +811,21 @@ impl<P: Planner> Axis<P> {
         let left = match coupling.and_then(|coupling| coupling.leads(&view.future)) {
             Some(leads) => {
                 let late = u64::from(view.future.is_late());
-                let next = leads.iter().flatten().filter_map(|lead| {
-                    let switch = self.planner.next_switch((lead.plan, lead.elapsed));
-                    let scans = switch.saturating_sub(lead.elapsed);
-                    (scans > 0).then_some(scans.saturating_add(late))
-                });
-                next.min().unwrap_or(u64::MAX)
+                let switch = self.scans_to_switch(&leads);
+                switch.map_or(u64::MAX, |scans| scans.saturating_add(late))
             }
             None => UNKNOWN,
         };
         Ok(Way { left, ..way })
+    }
+
+    /// Scans until one of these plans next changes its highest derivative, if any does.
+    pub(in crate::axis) fn scans_to_switch(&self, leads: &Leads<'_, P::Plan>) -> Option<u64> {
+        let scans = leads.iter().flatten().map(|lead| {
+            let switch = self.planner.next_switch((lead.plan, lead.elapsed));
+            switch.saturating_sub(lead.elapsed)
+        });
+        scans.filter(|scans| *scans > 0).min()
     }
 
     /// A ramp in the slave's own coordinates, planned like that of MC_MoveVelocity, and its limits.
@@ -862,17 +852,30 @@ impl<P: Planner> Axis<P> {
         Ok((motion, limits))
     }
 
-    /// Starts `way`; the motion before was within `before`.
-    fn take_way(&mut self, way: Way<P::Plan>, before: Limits, scope: &mut Scope<'_>) {
-        let scans = way.motion.scans();
+    /// Starts the `motion` of a way within `limits`; the motion before was within `before`. With `from` the way ends
+    /// at rest, and its positions count from there (u).
+    pub(super) fn start_way(
+        &mut self,
+        motion: Motion<P::Plan>,
+        limits: Limits,
+        before: Limits,
+        from: Option<f64>,
+    ) {
         self.mover.take_over_from(before);
-        let limits = way.limits;
-        self.mover.start(way.motion, limits);
+        self.mover.start(motion, limits);
         self.arrival = Arrival::default();
         self.replan_due = false;
         if self.modulo.is_some() {
             self.start_of_plan();
         }
+        let may_leave = self.may_leave_on_way(from);
+        self.mover.watch(may_leave);
+        self.stir();
+    }
+
+    /// Starts `way`; the motion before was within `before`.
+    fn take_way(&mut self, way: Way<P::Plan>, before: Limits, scope: &mut Scope<'_>) {
+        let (scans, limits) = (way.motion.scans(), way.limits);
         // Beside a line at rest it ends at rest.
         let from = match way.rung {
             Rung::BesideLine {
@@ -880,8 +883,7 @@ impl<P: Planner> Axis<P> {
             } => Some(start.position),
             _ => None,
         };
-        let may_leave = self.may_leave_on_way(from);
-        self.mover.watch(may_leave);
+        self.start_way(way.motion, limits, before, from);
         let told = Some((way.name, way.velocity));
         let mut is_told = false;
         if let Some(coupling) = &mut self.follower.coupling {
@@ -890,7 +892,6 @@ impl<P: Planner> Axis<P> {
             is_told = coupling.told == told;
             coupling.told = told;
         }
-        self.stir();
         // The same way found again is not recorded.
         if !is_told {
             let event = Event::Approaching {
@@ -931,13 +932,18 @@ impl<P: Planner> Axis<P> {
     fn give_up(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let Some(owner) = self.owner else { return };
         let (velocity, speed) = (self.limits_of_approach(&owner).velocity, self.law_speed(view));
-        let scope = &mut self.owner_scope(scope);
-        self.refuse("Velocity", velocity, speed, ErrorId::MasterTooFast, scope);
-        self.end_owner(Fate::Failed(ErrorId::MasterTooFast));
+        let (error, scope) = (ErrorId::MasterTooFast, &mut self.owner_scope(scope));
+        self.refuse("Velocity", velocity, speed, error, scope);
+        self.halt_failed(&owner, error, scope);
+    }
+
+    /// The `owner` fails in its motion step with `error`, which was recorded, and the slave comes to rest.
+    pub(super) fn halt_failed(&mut self, owner: &Entry, error: ErrorId, scope: &mut Scope<'_>) {
+        self.end_owner(Fate::Failed(error));
         self.lose_heir(owner.id, scope);
         let stopped = Entry {
             limits: self.stop_limits(),
-            ..owner
+            ..*owner
         };
         self.halt_after(&stopped, scope);
         self.advance(scope);
@@ -960,22 +966,7 @@ impl<P: Planner> Axis<P> {
             let own = self.planner.peaks((lead.plan, lead.elapsed))?;
             peaks = peaks.plus(&own.times(lead.factor.abs()));
         }
-        let limits = &coupling.limits;
-        let acceleration = limits.lower_acceleration();
-        let told = [
-            ("velocity", peaks.velocity, beside.velocity, limits.velocity),
-            (
-                "acceleration",
-                peaks.acceleration,
-                beside.acceleration,
-                acceleration,
-            ),
-            ("jerk", peaks.jerk, beside.jerk, limits.jerk),
-            ("snap", peaks.snap, beside.snap, limits.snap),
-        ];
-        let told = told.map(|(what, peak, beside, limit)| (what, peak + beside, limit));
-        told.into_iter()
-            .find(|(_, value, limit)| *value > limit * (1.0 + ROUNDING))
+        CamBounds::beyond(&peaks.plus(beside), &coupling.limits)
     }
 }
 
@@ -986,6 +977,20 @@ fn heading<Q: Plan>(leads: &Leads<'_, Q>, line: f64) -> f64 {
         way_to_rest(leads, 0).unwrap_or(0.0)
     } else {
         line
+    }
+}
+
+/// `limits` with these velocities along a line of this `velocity` (u/s), and against it.
+pub(super) fn directed(velocity: f64, (along, against): (f64, f64), limits: Limits) -> DirectedLimits {
+    let (positive, negative) = if velocity < 0.0 {
+        (against, along)
+    } else {
+        (along, against)
+    };
+    DirectedLimits {
+        positive,
+        negative,
+        limits,
     }
 }
 

@@ -40,7 +40,8 @@ use super::super::commands::{Camming, Entry};
 use super::view::{Known, Seen};
 use super::{Coupled, FURTHEST, Values};
 use crate::{
-    Approach, AxisId, CamId, CamIn, CamSelection, ErrorId, Event, OnLimit, Scope, StartMode, ValueSource,
+    Approach, AxisId, CamId, CamIn, CamSelection, Cams, ErrorId, Event, OnLimit, Scope, StartMode,
+    ValueSource,
 };
 use ends::Ends;
 pub use laid::CamLaid;
@@ -269,6 +270,11 @@ impl OnCam {
             law: self.camming.law,
             anchor: self.anchor?,
         })
+    }
+
+    /// The same, if the store has the cam.
+    fn stored_curve<'a>(&self, cams: &'a Cams<'_>) -> Option<Curve<'a>> {
+        self.curve(cams.cam(self.camming.cam)?)
     }
 }
 

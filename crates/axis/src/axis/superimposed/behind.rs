@@ -241,13 +241,8 @@ impl<P: Planner> Axis<P> {
     /// counted from the start of the first plan.
     fn next_switch_of_law(&self, view: &View<'_, P::Plan>) -> Option<(u64, u64)> {
         let now = self.first_lead(view)?.elapsed;
-        let leads = self.leads_of_law(view)?;
-        let next = leads.iter().flatten().filter_map(|lead| {
-            let switch = self.planner.next_switch((lead.plan, lead.elapsed));
-            let scans = switch.saturating_sub(lead.elapsed);
-            (scans > 0).then_some(scans)
-        });
-        Some((now.saturating_add(next.min().unwrap_or(0)), now))
+        let next = self.scans_to_switch(&self.leads_of_law(view)?);
+        Some((now.saturating_add(next.unwrap_or(0)), now))
     }
 
     /// The part of the slave's limits that the law always leaves.

@@ -44,10 +44,10 @@ impl<P: Planner> Axis<P> {
         let Some(on_cam) = self.follower.on_cam.as_mut().filter(|_| !is_paused) else {
             return;
         };
-        let (Some(cam), Some(shadow)) = (scope.cams.cam(on_cam.camming.cam), on_cam.shadow) else {
+        let (Some(curve), Some(shadow)) = (on_cam.stored_curve(&scope.cams), on_cam.shadow) else {
             return;
         };
-        let Some(curve) = on_cam.curve(cam) else { return };
+        let cam = curve.cam;
         if !on_cam.rung.is_locked() && curve.is_ahead_past_end(shadow.place, view.now.place) {
             return;
         }
@@ -78,11 +78,7 @@ impl<P: Planner> Axis<P> {
             _ => None,
         };
         if let Some(passed) = passed {
-            self.follower.cam_ends = self.follower.cam_ends.wrapping_add(1);
-            if passed.ends > 1 {
-                let periods = passed.ends;
-                self.record(Event::CamPassed { periods }, &mut self.owner_scope(scope));
-            }
+            self.count_end(&passed, scope);
         }
         if self.queue.is_empty() && is_over {
             return self.stay_at_end(view, scope);
@@ -100,6 +96,15 @@ impl<P: Planner> Axis<P> {
                 on_cam.known = known;
             }
             self.go_on_behind(&ended, &shadow, scope);
+        }
+    }
+
+    /// Counts an end that was reached, and records that there were several in this scan.
+    fn count_end(&mut self, passed: &Passed, scope: &mut Scope<'_>) {
+        self.follower.cam_ends = self.follower.cam_ends.wrapping_add(1);
+        if passed.ends > 1 {
+            let periods = passed.ends;
+            self.record(Event::CamPassed { periods }, &mut self.owner_scope(scope));
         }
     }
 
@@ -169,11 +174,7 @@ impl<P: Planner> Axis<P> {
             return false;
         }
         if let Some(passed) = passed {
-            self.follower.cam_ends = self.follower.cam_ends.wrapping_add(1);
-            if passed.ends > 1 {
-                let periods = passed.ends;
-                self.record(Event::CamPassed { periods }, &mut self.owner_scope(scope));
-            }
+            self.count_end(&passed, scope);
         }
         self.follower.on_cam = Some(next);
         self.lock_on_cam(scope);
@@ -196,7 +197,7 @@ impl<P: Planner> Axis<P> {
         if !is_same_master || self.mover.layer().is_some() || own.ends.is_over() {
             return None;
         }
-        let curve = own.curve(scope.cams.cam(own.camming.cam)?)?;
+        let curve = own.stored_curve(&scope.cams)?;
         let cam = scope.cams.cam(camming.cam)?;
         let now = Shadow::of(&view.now);
         let (before, here) = (curve.unwound(own.was.place), curve.unwound(now.place));

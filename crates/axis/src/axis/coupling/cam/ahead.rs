@@ -49,7 +49,7 @@ impl<P: Planner> Axis<P> {
         cams: &Cams<'_>,
     ) -> Option<f64> {
         let on_cam = self.on_cam().filter(|on_cam| !on_cam.ends.is_over())?;
-        let curve = on_cam.curve(cams.cam(on_cam.camming.cam)?)?;
+        let curve = on_cam.stored_curve(cams)?;
         let lead = self.lead_of_master(view)?;
         let way = way_left(view, &[Some(lead), None])?;
         let place = view.now.place.moved_to(view.now.place.position + way);

@@ -42,8 +42,7 @@ impl<P: Planner> Axis<P> {
         let Some(on_cam) = &self.follower.on_cam else {
             return;
         };
-        let cam = cams.cam(on_cam.camming.cam);
-        let Some(curve) = cam.and_then(|cam| on_cam.curve(cam)) else {
+        let Some(curve) = on_cam.stored_curve(cams) else {
             return;
         };
         let limits = self.slowed(&self.parameters.limits);
@@ -71,7 +70,7 @@ impl<P: Planner> Axis<P> {
         if !is_free || (self.slows_master() && (view.future.is_new || view.future.is_late())) {
             return None;
         }
-        let curve = on_cam.curve(cams.cam(on_cam.camming.cam)?)?;
+        let curve = on_cam.stored_curve(cams)?;
         let bounds = curve.bounds();
         let limits = self.slowed(&self.parameters.limits);
         if bounds.is_level() {
@@ -130,7 +129,7 @@ impl<P: Planner> Axis<P> {
     /// that is endless.
     fn used_on_cam(&self, view: &View<'_, P::Plan>, cams: &Cams<'_>) -> Option<(Setpoint, bool)> {
         let on_cam = self.on_cam()?;
-        let curve = on_cam.curve(cams.cam(on_cam.camming.cam)?)?;
+        let curve = on_cam.stored_curve(cams)?;
         let lead = self.lead_of_master(view)?;
         // A derivative that jumps leaves nothing, even to a smooth motion beside it.
         let is_rough = view.degree() < on_cam.limits.order().degree();

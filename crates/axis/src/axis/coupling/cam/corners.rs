@@ -78,7 +78,7 @@ impl<P: Planner> Axis<P> {
         if !on_cam.has_corners() || on_cam.ends.is_over() {
             return None;
         }
-        on_cam.curve(scope.cams.cam(on_cam.camming.cam)?)
+        on_cam.stored_curve(&scope.cams)
     }
 
     /// In sync: the next corner, if the slave could no longer come to rest at it from its place in sync at the end of

@@ -218,7 +218,7 @@ impl<P: Planner> Axis<P> {
     /// The place of the slave on the curve for a master at `place`.
     fn on_curve(&self, place: Place, moving: &Setpoint, scope: &Scope<'_>) -> Option<CamAt> {
         let on_cam = self.on_cam()?;
-        let curve = on_cam.curve(scope.cams.cam(on_cam.camming.cam)?)?;
+        let curve = on_cam.stored_curve(&scope.cams)?;
         Some(curve.at(place, moving, on_cam.at.piece))
     }
 
@@ -363,8 +363,7 @@ impl<P: Planner> Axis<P> {
         let is_there = meet(shadow.place, view.now.place, turn);
         let speed = on_cam.shadow_limits.velocity.min(f64::MAX);
         let is_even = (shadow.at.velocity - view.now.at.velocity).abs() <= ROUNDING * speed;
-        let cam = scope.cams.cam(on_cam.camming.cam);
-        let curve = cam.and_then(|cam| on_cam.curve(cam));
+        let curve = on_cam.stored_curve(&scope.cams);
         let Some(curve) = curve.filter(|_| is_there && is_even) else {
             if let Some(on_cam) = &mut self.follower.on_cam {
                 on_cam.left = 0;

@@ -51,8 +51,7 @@ impl<P: Planner> Axis<P> {
         let Some(on_cam) = self.follower.on_cam else {
             return;
         };
-        let cam = scope.cams.cam(on_cam.camming.cam);
-        let (Some(mut shadow), Some(curve)) = (on_cam.shadow, cam.and_then(|cam| on_cam.curve(cam))) else {
+        let (Some(mut shadow), Some(curve)) = (on_cam.shadow, on_cam.stored_curve(&scope.cams)) else {
             return;
         };
         let Rung::BesideLine {

@@ -15,7 +15,7 @@ use super::super::follow::{apart, meet, off};
 use super::super::needs::RESOLVED;
 use super::super::view::{Kind, UNKNOWN, View};
 use super::{Curve, OnCam, Rung, Shadow};
-use crate::{Approach, ErrorId, Event, Fate, Scope};
+use crate::{Approach, ErrorId, Event, Scope};
 use standstill_planner::{Anchor, Cam, CamLaw, Limits, Place, Plan, Planner, Setpoint};
 
 /// The room for a velocity relative to a line must be more than this share of the limit.
@@ -547,8 +547,7 @@ impl<P: Planner> Axis<P> {
         let Some(on_cam) = self.follower.on_cam else {
             return;
         };
-        let cam = scope.cams.cam(on_cam.camming.cam);
-        if let Some(curve) = cam.and_then(|cam| on_cam.curve(cam)) {
+        if let Some(curve) = on_cam.stored_curve(&scope.cams) {
             self.move_shadow(&curve, by);
         }
     }
@@ -556,15 +555,11 @@ impl<P: Planner> Axis<P> {
     /// Starts `way`.
     pub(super) fn take_way_on_cam(&mut self, way: Way<P::Plan>, scope: &mut Scope<'_>) {
         let limits = self.slowed(&self.parameters.limits);
-        self.mover.take_over_from(self.limits_before(&limits));
+        let before = self.limits_before(&limits);
         let scans = way.motion.scans();
-        self.mover.start(way.motion, limits);
-        self.arrival = Default::default();
-        self.replan_due = false;
         // A move of its own ends at rest.
         let from = matches!(way.rung, Rung::Moving { .. }).then_some(0.0);
-        let may_leave = self.may_leave_on_way(from);
-        self.mover.watch(may_leave);
+        self.start_way(way.motion, limits, before, from);
         let mut is_told = false;
         if let Some(on_cam) = &mut self.follower.on_cam {
             // If the master's motion is not known, the same way along the curve is found many times.
@@ -586,7 +581,6 @@ impl<P: Planner> Axis<P> {
                 on_cam.shadow = None;
             }
         }
-        self.stir();
         if !is_told {
             let event = Event::OntoCam {
                 way: way.name,
@@ -646,14 +640,7 @@ impl<P: Planner> Axis<P> {
         let Some(owner) = self.owner else { return };
         let scope = &mut self.owner_scope(scope);
         self.refuse_plan(&owner, error, scope);
-        self.end_owner(Fate::Failed(error));
-        self.lose_heir(owner.id, scope);
-        let stopped = Entry {
-            limits: self.stop_limits(),
-            ..owner
-        };
-        self.halt_after(&stopped, scope);
-        self.advance(scope);
+        self.halt_failed(&owner, error, scope);
     }
 }
 

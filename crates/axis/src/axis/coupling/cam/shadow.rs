@@ -3,14 +3,14 @@
 
 use super::super::super::commands::ROUNDING;
 use super::super::super::{Axis, Motion};
-use super::super::approach::half_left;
+use super::super::approach::{directed, half_left};
 use super::super::follow::apart;
 use super::super::needs::RESOLVED;
 use super::super::view::{UNKNOWN, View};
 use super::onto::{Choice, LEAST, Stretch, Way};
 use super::{Curve, Rung, Shadow};
 use crate::Approach;
-use standstill_planner::{DirectedLimits, Excess, Lead, Limits, MoveProfile, Plan, Planner, Setpoint};
+use standstill_planner::{Excess, Lead, Limits, Plan, Planner, Setpoint};
 
 /// Velocities of a shadow that are tried.
 const SPEEDS: usize = 4;
@@ -201,11 +201,7 @@ impl<P: Planner> Axis<P> {
             let is_slow = bounds.most(&fastest).velocity <= limits.velocity;
             let stays = is_inside && is_slow && !plan.excess().is_some_and(|excess| leaves(&excess, &own));
             let exceeds = !stays && {
-                let lead = Lead {
-                    plan: &plan,
-                    elapsed: 0,
-                    factor: 1.0,
-                };
+                let lead = Lead::whole(&plan);
                 let lead = (&lead, limits.order().degree());
                 self.beyond_on_cam(curve, lead, shadow.place, &limits).is_some()
             };
@@ -279,10 +275,7 @@ impl<P: Planner> Axis<P> {
             })
         };
         let attempt = |own: &Limits| {
-            let plan = self
-                .planner
-                .move_to(MoveProfile::Online, difference, 0.0, own, own)
-                .ok()?;
+            let plan = self.closing(difference, own, true)?;
             let fits = self.planner.fits_behind(&leads, &now, Some((&plan, 0)), limits);
             (fits && !turns(&plan)).then_some(plan)
         };
@@ -363,28 +356,10 @@ impl<P: Planner> Axis<P> {
         } else {
             limits.velocity + speed
         };
-        let own = |limits: &Limits, along: f64, against: f64| {
-            let (positive, negative) = if stretch.velocity < 0.0 {
-                (against, along)
-            } else {
-                (along, against)
-            };
-            DirectedLimits {
-                positive,
-                negative,
-                limits: *limits,
-            }
-        };
         let wider = limits.velocity + speed;
-        let plan = self
-            .planner
-            .move_by_direction(
-                &start,
-                way,
-                &own(limits, along, against),
-                &own(limits, wider, wider),
-            )
-            .ok()?;
+        let own = directed(stretch.velocity, (along, against), *limits);
+        let before = directed(stretch.velocity, (wider, wider), *limits);
+        let plan = self.planner.move_by_direction(&start, way, &own, &before).ok()?;
         let scans = u64::from(plan.scans());
         let arrives = scans.max(stretch.begin);
         let is_in_time = stretch.is_guess || arrives <= stretch.end;
@@ -413,11 +388,7 @@ impl<P: Planner> Axis<P> {
         let Ok(line) = self.planner.ramp_to(&steady, velocity, limits, limits) else {
             return false;
         };
-        let line = Lead {
-            plan: &line,
-            elapsed: 0,
-            factor: 1.0,
-        };
+        let line = Lead::whole(&line);
         self.planner
             .fits_behind(&[Some(line), None], now, Some((plan, 0)), limits)
     }
@@ -434,11 +405,7 @@ impl<P: Planner> Axis<P> {
         let goal = limits.velocity.copysign(stretch.velocity);
         let plan = self.planner.ramp_to(&start, goal, limits, limits).ok()?;
         let left = match self.lead_of_master(view) {
-            Some(lead) => {
-                let switch = self.planner.next_switch((lead.plan, lead.elapsed));
-                let scans = switch.saturating_sub(lead.elapsed);
-                if scans > 0 { scans } else { u64::MAX }
-            }
+            Some(lead) => self.scans_to_switch(&[Some(lead), None]).unwrap_or(u64::MAX),
             None => UNKNOWN,
         };
         Some(Way {
