@@ -269,8 +269,7 @@ impl<P: Planner> Axis<P> {
             Command::Stop { ref dynamics } => Ok((Work::Stop, self.resolve_stop(dynamics, scope)?)),
             Command::Home { position } => {
                 let position = self.finite("Position", position, scope)?;
-                self.in_first_turn(position)
-                    .map_err(|(length, error)| self.refuse("Position", position, length, error, scope))?;
+                self.in_first_turn("Position", position, scope)?;
                 if !self.is_resolved(position) {
                     return Err(self.refuse("Position", position, f64::NAN, ErrorId::PositionInvalid, scope));
                 }
@@ -316,13 +315,9 @@ impl<P: Planner> Axis<P> {
         direction: Raw<Direction>,
         scope: &mut Scope<'_>,
     ) -> Result<f64, ErrorId> {
-        if direction.get().is_none() {
-            let number = f64::from(direction.number());
-            return Err(self.refuse("Direction", number, 4.0, ErrorId::DirectionInvalid, scope));
-        }
+        self.element("Direction", direction, ErrorId::DirectionInvalid, scope)?;
         let position = self.target(self.finite("Position", position, scope)?);
-        self.in_first_turn(position)
-            .map_err(|(length, error)| self.refuse("Position", position, length, error, scope))?;
+        self.in_first_turn("Position", position, scope)?;
         self.inside("Position", position, scope)?;
         if self.config.needs_homed && !self.homed {
             return Err(self.refuse("Position", position, f64::NAN, ErrorId::NotHomed, scope));

@@ -37,17 +37,14 @@ impl<P: Planner> Axis<P> {
         let queued = self.is_queued(mode, scope)?;
         self.finite("Position", position, scope)?;
         if !relative {
-            self.in_first_turn(position)
-                .map_err(|(length, error)| self.refuse("Position", position, length, error, scope))?;
+            self.in_first_turn("Position", position, scope)?;
         }
         if queued {
             return self.enqueue(Work::SetPosition { position, relative }, scope);
         }
         self.move_coordinates(position, relative, scope)
             .map_err(|error| self.refuse("Position", position, f64::NAN, error, scope))?;
-        let id = self.new_id();
-        self.decide(id, Fate::Done);
-        Ok(id)
+        Ok(self.done_at_once())
     }
 
     /// Whether the next command in the buffer shifts the coordinates. It takes effect at the next latch, so that this

@@ -437,13 +437,9 @@ impl<P: Planner> Axis<P> {
     ) -> Result<Gearing, ErrorId> {
         let first = self.check_leg(&masters[0], &COMBINED_PINS[0], scope)?;
         let mut second = self.check_leg(&masters[1], &COMBINED_PINS[1], scope)?;
-        match mode.get() {
-            Some(CombineMode::Add) => {}
-            Some(CombineMode::Subtract) => second.gear = second.gear.reversed(),
-            None => {
-                let number = f64::from(mode.number());
-                return Err(self.refuse("CombineMode", number, 1.0, ErrorId::SyncModeInvalid, scope));
-            }
+        match self.element("CombineMode", mode, ErrorId::SyncModeInvalid, scope)? {
+            CombineMode::Add => {}
+            CombineMode::Subtract => second.gear = second.gear.reversed(),
         }
         Ok(Gearing {
             first,
@@ -460,23 +456,12 @@ impl<P: Planner> Axis<P> {
             denominator,
             source,
         } = *followed;
-        let mut refuse = |pin, value: f64, limit, error| Err(self.refuse(pin, value, limit, error, scope));
-        if master.axis == self.id {
-            let number = f64::from(master.axis.number());
-            return refuse(pins.master, number, f64::NAN, ErrorId::CouplingRing);
-        }
+        self.check_master(pins.master, master.axis, scope)?;
         let Some(positive) = u16::try_from(denominator).ok().filter(|value| *value > 0) else {
             let denominator = f64::from(denominator);
-            return refuse(pins.denominator, denominator, 1.0, ErrorId::RatioInvalid);
+            return Err(self.refuse(pins.denominator, denominator, 1.0, ErrorId::RatioInvalid, scope));
         };
-        let number = f64::from(source.number());
-        let source = match source.get() {
-            Some(source @ (ValueSource::Set | ValueSource::Actual)) => source,
-            Some(ValueSource::Commanded) => {
-                return refuse(pins.source, number, 1.0, ErrorId::MasterSourceInvalid);
-            }
-            None => return refuse(pins.source, number, 2.0, ErrorId::SourceInvalid),
-        };
+        let source = self.check_source(pins.source, source, scope)?;
         let turn = self.config.modulo;
         let Some(gear) = Gear::new(numerator, positive, master.turn, turn) else {
             let [up, down] = Gear::largest_ratio(master.turn.unwrap_or_default(), turn.unwrap_or_default());
@@ -486,13 +471,37 @@ impl<P: Planner> Axis<P> {
             } else {
                 (pins.denominator, denominator, down)
             };
-            return refuse(pin, value, limit, ErrorId::CouplingRatioTooFine);
+            return Err(self.refuse(pin, value, limit, ErrorId::CouplingRatioTooFine, scope));
         };
         Ok(Leg {
             master: master.axis,
             source,
             gear,
         })
+    }
+
+    /// Checks that a master is another axis.
+    fn check_master(&self, pin: &'static str, master: AxisId, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
+        if master != self.id {
+            return Ok(());
+        }
+        let number = f64::from(master.number());
+        Err(self.refuse(pin, number, f64::NAN, ErrorId::CouplingRing, scope))
+    }
+
+    /// Checks which values of a master are followed.
+    fn check_source(
+        &self,
+        pin: &'static str,
+        source: Raw<ValueSource>,
+        scope: &mut Scope<'_>,
+    ) -> Result<ValueSource, ErrorId> {
+        let (most, error) = match source.get() {
+            Some(source @ (ValueSource::Set | ValueSource::Actual)) => return Ok(source),
+            Some(ValueSource::Commanded) => (1.0, ErrorId::MasterSourceInvalid),
+            None => (2.0, ErrorId::SourceInvalid),
+        };
+        Err(self.refuse(pin, f64::from(source.number()), most, error, scope))
     }
 
     /// MC_GearOut: continues at the velocity that is left once acceleration and jerk are 0.

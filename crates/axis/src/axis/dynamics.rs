@@ -5,7 +5,7 @@
 //! error. Values above the limit are clamped and recorded, or refused (V2).
 
 use super::Axis;
-use crate::{AboveLimit, Defaults, Dynamics, ErrorId, Event, Scope, StopLimits};
+use crate::{AboveLimit, Defaults, Dynamics, ErrorId, Event, IecEnum, Raw, Scope, StopLimits};
 use standstill_planner::{Limits, Planner};
 
 /// The largest number of scans that a rate may take from 0 to its limit. A lower rate is useless, and its
@@ -238,6 +238,19 @@ impl<P: Planner> Axis<P> {
             }
             AboveLimit::Error => Err(self.refuse(pin, value, limit, above, scope)),
         }
+    }
+
+    /// The element at an enum pin. An undefined number is refused; the last element has the largest one.
+    pub(super) fn element<E: IecEnum>(
+        &self,
+        pin: &'static str,
+        raw: Raw<E>,
+        error: ErrorId,
+        scope: &mut Scope<'_>,
+    ) -> Result<E, ErrorId> {
+        let last = E::ELEMENTS.last().map_or(0, |(_, number)| *number);
+        raw.get()
+            .ok_or_else(|| self.refuse(pin, f64::from(raw.number()), f64::from(last), error, scope))
     }
 
     /// Records that a block which only reads the axis refuses the value at `pin`.

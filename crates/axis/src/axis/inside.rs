@@ -227,18 +227,23 @@ impl<P: Planner> Axis<P> {
 
     /// Records which limits of a command were raised.
     pub(super) fn record_raised(&self, asked: &Limits, used: &Limits, scope: &mut Scope<'_>) {
-        let pins = [
-            ("Acceleration", asked.acceleration, used.acceleration),
-            ("Deceleration", asked.deceleration, used.deceleration),
-            ("Jerk", asked.jerk, used.jerk),
-            ("Snap", asked.snap, used.snap),
-        ];
-        for (pin, value, limit) in pins {
+        for (pin, value, limit) in pins("", asked, used).into_iter().skip(1) {
             if limit > value {
                 self.record(Event::Raised { pin, value, limit }, scope);
             }
         }
     }
+}
+
+/// The pins of dynamic values, with those of `asked` and `used`; `velocity` is the name of the first.
+pub(super) fn pins(velocity: &'static str, asked: &Limits, used: &Limits) -> [(&'static str, f64, f64); 5] {
+    [
+        (velocity, asked.velocity, used.velocity),
+        ("Acceleration", asked.acceleration, used.acceleration),
+        ("Deceleration", asked.deceleration, used.deceleration),
+        ("Jerk", asked.jerk, used.jerk),
+        ("Snap", asked.snap, used.snap),
+    ]
 }
 
 /// Whether `left` is clearly less than `excess`: in velocity, otherwise in acceleration, otherwise in jerk.

@@ -635,6 +635,13 @@ impl<P: Planner> Axis<P> {
         self.fates.new_id()
     }
 
+    /// The number of a command that is done in its call.
+    fn done_at_once(&mut self) -> CommandId {
+        let id = self.new_id();
+        self.decide(id, Fate::Done);
+        id
+    }
+
     /// Ends the owner, the superimposed motion and all waiting commands.
     fn end_all(&mut self, owner: Fate, waiting: Fate) {
         self.end_superimposed(owner);

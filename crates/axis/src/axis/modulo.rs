@@ -9,7 +9,7 @@
 
 use super::Axis;
 use super::commands::{Entry, Place, REST, Run, Work};
-use crate::{AxisConfig, Direction, DrivePosition, ErrorId, ModuloTargets, Scaling, Turn};
+use crate::{AxisConfig, Direction, DrivePosition, ErrorId, ModuloTargets, Scaling, Scope, Turn};
 use standstill_planner::turns::{split, two_product};
 use standstill_planner::{Passage, Plan, Planner, Setpoint};
 
@@ -149,12 +149,16 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether a program may use `position` (u): in the first turn, or any on a linear axis. If not, returns the
-    /// length of a turn and the error.
-    pub(super) fn in_first_turn(&self, position: f64) -> Result<(), (f64, ErrorId)> {
+    /// Refuses a position (u) of a program outside the first turn; on a linear axis none.
+    pub(super) fn in_first_turn(
+        &self,
+        pin: &'static str,
+        position: f64,
+        scope: &mut Scope<'_>,
+    ) -> Result<(), ErrorId> {
         match &self.modulo {
             Some(Modulo { length, .. }) if !(position >= 0.0 && position < *length) => {
-                Err((*length, ErrorId::PositionOutsideModulo))
+                Err(self.refuse(pin, position, *length, ErrorId::PositionOutsideModulo, scope))
             }
             _ => Ok(()),
         }

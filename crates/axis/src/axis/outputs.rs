@@ -4,7 +4,7 @@
 
 use super::Axis;
 use super::commands::{Work, Write};
-use crate::{CommandId, DIGITAL, ErrorId, ExecutionMode, Fate, Raw, Scope};
+use crate::{CommandId, DIGITAL, ErrorId, ExecutionMode, Raw, Scope};
 use standstill_planner::Planner;
 
 /// The state of an output that follows positions (MC_DigitalCamSwitch). It is kept with the output, because only one
@@ -78,9 +78,7 @@ impl<P: Planner> Axis<P> {
             return self.enqueue(Work::Write(Write::Output { bit, value }), scope);
         }
         self.set_output(bit, value);
-        let id = self.new_id();
-        self.decide(id, Fate::Done);
-        Ok(id)
+        Ok(self.done_at_once())
     }
 
     /// Sets the outputs of `mask` to the levels of `on` at the end of this scan.

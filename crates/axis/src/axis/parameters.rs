@@ -10,7 +10,7 @@
 use super::Axis;
 use super::commands::{Work, Write};
 use super::supervision::Lag;
-use crate::{AxisConfig, CommandId, ErrorId, ExecutionMode, Fate, Parameter, ParameterValue, Raw, Scope};
+use crate::{AxisConfig, CommandId, ErrorId, ExecutionMode, Parameter, ParameterValue, Raw, Scope};
 use standstill_planner::shaper::MODES;
 use standstill_planner::{Limits, PlanError, Planner, ShaperKind, Shapers, VibrationMode};
 
@@ -258,9 +258,7 @@ impl<P: Planner> Axis<P> {
             return self.enqueue(Work::Write(write), scope);
         }
         self.write_now(parameter, value, scope)?;
-        let id = self.new_id();
-        self.decide(id, Fate::Done);
-        Ok(id)
+        Ok(self.done_at_once())
     }
 
     /// Writes `value` to `parameter`. It was given in this scan or before.

@@ -11,16 +11,11 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_Power; V9.
 
-use super::commands::{Entry, Place};
+use super::commands::{Entry, Place, ROUNDING};
+use super::run::RESOLUTION;
 use super::{Axis, Motion};
 use crate::{AxisEvent, AxisState, ErrorId, Event, Fate, Scope};
 use standstill_planner::{Limits, Plan, Planner};
-
-/// The rounding of the comparison with a stop, relative to the travel.
-const ROUNDING: f64 = 1e-9;
-
-/// Rounding of a position, relative to it.
-const RESOLUTION: f64 = 64.0 * f64::EPSILON;
 
 /// The directions in which an axis may move: EnablePositive and EnableNegative of MC_Power.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -80,7 +75,7 @@ impl<P: Planner> Axis<P> {
     #[inline]
     pub(super) fn permitted(&self, entry: &Entry, plan: &P::Plan, before: &Limits) -> Result<(), ErrorId> {
         let brakes = entry.halted && !entry.paused;
-        if self.permission() == Permission::BOTH || brakes || !entry.work.manner().barred {
+        if !self.bars_any() || brakes || !entry.work.manner().barred {
             return Ok(());
         }
         let limits = if entry.paused {
@@ -94,7 +89,7 @@ impl<P: Planner> Axis<P> {
     /// The reason why the rest of a plan is barred. Cost: one ramp.
     #[inline(never)]
     pub(super) fn barred(&self, rest: (&P::Plan, u64), limits: &Limits, before: &Limits) -> Option<ErrorId> {
-        if self.permission() == Permission::BOTH {
+        if !self.bars_any() {
             return None;
         }
         let (plan, elapsed) = rest;

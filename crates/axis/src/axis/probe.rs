@@ -106,9 +106,7 @@ impl<P: Planner> Axis<P> {
         if let Some(waiting) = self.end_probing(probe) {
             self.decide(waiting.id, Fate::Aborted);
         }
-        let id = self.new_id();
-        self.decide(id, Fate::Done);
-        Ok(id)
+        Ok(self.done_at_once())
     }
 
     /// The position that command `id` recorded (u), in the coordinates of that time; each probe remembers
@@ -196,17 +194,14 @@ impl<P: Planner> Axis<P> {
     }
 
     fn trigger(&self, trigger: Raw<Trigger>, scope: &mut Scope<'_>) -> Result<(usize, Edge), ErrorId> {
-        trigger.get().map(Trigger::source).ok_or_else(|| {
-            let (number, error) = (f64::from(trigger.number()), ErrorId::TriggerInvalid);
-            self.refuse("TriggerInput", number, 3.0, error, scope)
-        })
+        let trigger = self.element("TriggerInput", trigger, ErrorId::TriggerInvalid, scope)?;
+        Ok(trigger.source())
     }
 
     fn check_window(&self, (first, last): (f64, f64), scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         for (pin, position) in [("FirstPosition", first), ("LastPosition", last)] {
             self.finite(pin, position, scope)?;
-            self.in_first_turn(position)
-                .map_err(|(length, error)| self.refuse(pin, position, length, error, scope))?;
+            self.in_first_turn(pin, position, scope)?;
         }
         // Only on a modulo axis may a window cross the end of the turn.
         if first > last && self.modulo.is_none() {

@@ -16,7 +16,7 @@ use super::commands::{Ending, Entry, Start, Work};
 use super::power::Reaction;
 use super::{Axis, Motion};
 use crate::{
-    AxisEvent, AxisState, BufferMode, Command, CommandId, Dynamics, ErrorId, Event, Fate, Raw, Request, Scope,
+    AxisEvent, AxisState, BufferMode, Command, CommandId, Dynamics, ErrorId, Fate, Raw, Request, Scope,
 };
 use standstill_planner::{
     PROFILE_POINTS, Plan, Planner, ProfileCause, ProfileFault, ProfileKind, ProfilePoint,
@@ -444,14 +444,6 @@ impl<P: Planner> Axis<P> {
         if fault.point == 0 {
             return self.refuse(what, fault.value, fault.limit, error, scope);
         }
-        let refused = Event::PointRefused {
-            point: u16::try_from(fault.point + passed).unwrap_or(u16::MAX),
-            what,
-            value: fault.value,
-            limit: fault.limit,
-            error,
-        };
-        self.record(refused, scope);
-        error
+        self.refuse_row(fault.point + passed, what, fault.value, fault.limit, error, scope)
     }
 }

@@ -15,14 +15,8 @@ impl<P: Planner> Axis<P> {
     /// # Errors
     /// [`ErrorId::ExecutionModeInvalid`] if the number is undefined.
     pub(super) fn is_queued(&self, mode: Raw<ExecutionMode>, scope: &mut Scope<'_>) -> Result<bool, ErrorId> {
-        match mode.get() {
-            Some(mode) => Ok(mode == ExecutionMode::Queued && self.is_owned()),
-            None => {
-                let number = f64::from(mode.number());
-                let error = ErrorId::ExecutionModeInvalid;
-                Err(self.refuse("ExecutionMode", number, 1.0, error, scope))
-            }
-        }
+        let mode = self.element("ExecutionMode", mode, ErrorId::ExecutionModeInvalid, scope)?;
+        Ok(mode == ExecutionMode::Queued && self.is_owned())
     }
 
     /// `work` waits behind all waiting commands.

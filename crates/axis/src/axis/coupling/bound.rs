@@ -8,6 +8,7 @@
 //! another ratio.
 
 use super::super::commands::{Entry, Leg, REST, Work};
+use super::super::inside::pins;
 use super::super::{Axis, Motion};
 use super::Rung;
 use crate::{AxisId, Event, OnLimit, Scope};
@@ -86,15 +87,9 @@ impl<P: Planner> Axis<P> {
         scope: &mut Scope<'_>,
     ) {
         let used = self.slowed(asked);
-        let speeds_up = !velocity.is_empty();
-        let pins = [
-            (velocity, asked.velocity, used.velocity, speeds_up),
-            ("Acceleration", asked.acceleration, used.acceleration, speeds_up),
-            ("Deceleration", asked.deceleration, used.deceleration, true),
-            ("Jerk", asked.jerk, used.jerk, true),
-            ("Snap", asked.snap, used.snap, true),
-        ];
-        for (pin, value, limit, counts) in pins {
+        let only_brakes = velocity.is_empty();
+        for (pin, value, limit) in pins(velocity, asked, &used) {
+            let counts = !only_brakes || !matches!(pin, "" | "Acceleration");
             if counts && value > limit {
                 self.record(Event::Slowed { pin, value, limit }, scope);
             }

@@ -39,10 +39,7 @@ use super::super::Axis;
 use super::super::commands::{Camming, Entry};
 use super::view::{Known, Seen};
 use super::{Coupled, FURTHEST, Values};
-use crate::{
-    Approach, AxisId, CamId, CamIn, CamSelection, Cams, ErrorId, Event, OnLimit, Scope, StartMode,
-    ValueSource,
-};
+use crate::{Approach, AxisId, CamId, CamIn, CamSelection, Cams, ErrorId, Event, OnLimit, Scope, StartMode};
 use ends::Ends;
 pub use laid::CamLaid;
 use standstill_planner::{
@@ -497,23 +494,10 @@ impl<P: Planner> Axis<P> {
         cam: &CamIn,
         scope: &mut Scope<'_>,
     ) -> Result<Camming, ErrorId> {
+        self.check_master("Master", cam.master.axis, scope)?;
+        let source = self.check_source("MasterValueSource", cam.source, scope)?;
+        let mode = self.element("StartMode", cam.start_mode, ErrorId::SyncModeInvalid, scope)?;
         let mut refuse = |pin, value: f64, limit, error| Err(self.refuse(pin, value, limit, error, scope));
-        if cam.master.axis == self.id {
-            let number = f64::from(cam.master.axis.number());
-            return refuse("Master", number, f64::NAN, ErrorId::CouplingRing);
-        }
-        let number = f64::from(cam.source.number());
-        let source = match cam.source.get() {
-            Some(source @ (ValueSource::Set | ValueSource::Actual)) => source,
-            Some(ValueSource::Commanded) => {
-                return refuse("MasterValueSource", number, 1.0, ErrorId::MasterSourceInvalid);
-            }
-            None => return refuse("MasterValueSource", number, 2.0, ErrorId::SourceInvalid),
-        };
-        let Some(mode) = cam.start_mode.get() else {
-            let number = f64::from(cam.start_mode.number());
-            return refuse("StartMode", number, 2.0, ErrorId::SyncModeInvalid);
-        };
         for (pin, value) in [
             ("MasterScaling", cam.master_scaling),
             ("SlaveScaling", cam.slave_scaling),

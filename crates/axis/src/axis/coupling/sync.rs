@@ -227,10 +227,7 @@ impl<P: Planner> Axis<P> {
             let error = ErrorId::SyncPositionInvalid;
             return Err(self.refuse("MasterStartDistance", distance, limit, error, scope));
         }
-        let Some(mode) = point.mode.get() else {
-            let number = f64::from(point.mode.number());
-            return Err(self.refuse("SyncMode", number, 2.0, ErrorId::SyncModeInvalid, scope));
-        };
+        let mode = self.element("SyncMode", point.mode, ErrorId::SyncModeInvalid, scope)?;
         Ok(Sync {
             master: point.master,
             slave: point.slave,

@@ -3,8 +3,10 @@
 use super::soonest::{Below, Search};
 use super::{Added, Adds, Layer, Progress};
 use crate::axis::commands::{Entry, Work, refusal};
+use crate::axis::inside::pins;
 use crate::axis::{Axis, Motion};
 use crate::{AxisState, Dynamics, ErrorId, Event, Fate, Scope};
+use standstill_planner::math::min;
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
 /// Motions tried, one after the other, until one fits.
@@ -19,10 +21,6 @@ pub(super) struct Proposal<Plan> {
     pub limits: Limits,
     /// It differs from the commanded one.
     pub lowered: bool,
-}
-
-fn min(a: f64, b: f64) -> f64 {
-    if b < a { b } else { a }
 }
 
 /// The room that the owner's motion leaves at any time.
@@ -270,15 +268,7 @@ impl<P: Planner> Axis<P> {
 
     /// Records the pins whose values exceed the room.
     fn record_lowered(&self, command: &Added, used: &Limits, scope: &mut Scope<'_>) {
-        let asked = &command.limits;
-        let pins = [
-            ("VelocityDiff", asked.velocity, used.velocity),
-            ("Acceleration", asked.acceleration, used.acceleration),
-            ("Deceleration", asked.deceleration, used.deceleration),
-            ("Jerk", asked.jerk, used.jerk),
-            ("Snap", asked.snap, used.snap),
-        ];
-        for (pin, value, limit) in pins {
+        for (pin, value, limit) in pins("VelocityDiff", &command.limits, used) {
             let rests = command.halting || command.adds == Adds::Halt;
             if limit < value && (pin != "VelocityDiff" || !rests) {
                 self.record_as(command, Event::Clamped { pin, value, limit }, scope);
