@@ -104,7 +104,7 @@ impl Rig {
                     check_excess(&excess, &self.limits).expect("a stop that turns back, and nothing else");
                 }
                 (Event::Planned { .. }, Some((plan, _))) => {
-                    let end = plan.at(u64::from(plan.scans()));
+                    let end = plan.end();
                     self.track.leads(plan.at(0).position, end.position, plan.scans());
                 }
                 _ => {}

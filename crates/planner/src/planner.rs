@@ -266,6 +266,12 @@ pub trait Plan: Copy + core::fmt::Debug {
     /// velocity kept for ever.
     fn at(&self, scan: u64) -> Setpoint;
 
+    /// The set-point at its goal.
+    #[inline]
+    fn end(&self) -> Setpoint {
+        self.at(self.scans().into())
+    }
+
     /// The same as [`Plan::at`], for the motion in progress, in rising scans. A plan may store its present phase.
     #[inline]
     fn next(&mut self, scan: u64) -> Setpoint {

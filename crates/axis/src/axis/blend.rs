@@ -49,7 +49,7 @@ impl<P: Planner> Axis<P> {
     /// its own end too fast for the next command.
     fn splits_too_fast(&self, owner: &Entry, plan: &P::Plan) -> bool {
         let is_split = owner.run.count == 0 && self.owner.is_some_and(|was| was.run.count > 0);
-        let speed = plan.at(u64::from(plan.scans())).velocity.abs();
+        let speed = plan.end().velocity.abs();
         is_split && speed > owner.passage.most * (1.0 + ROUNDING)
     }
 
@@ -145,7 +145,7 @@ impl<P: Planner> Axis<P> {
         let passing = planned
             .filter(|plan| passage.wanted <= 0.0 || self.beyond_bound(plan).is_none())
             .filter(|plan| {
-                let end = plan.at(u64::from(plan.scans())).velocity.abs();
+                let end = plan.end().velocity.abs();
                 let most = self.fastest() * (1.0 + ROUNDING);
                 end <= if passage.wanted > 0.0 { most } else { 0.0 }
             });
@@ -170,7 +170,7 @@ impl<P: Planner> Axis<P> {
         before: &Limits,
         passing: &P::Plan,
     ) -> bool {
-        let last = passing.at(u64::from(passing.scans()));
+        let last = passing.end();
         let is_wanted = last.velocity.abs() >= passage.wanted * (1.0 - ROUNDING);
         if is_wanted && !is_braking(start) {
             return true;
@@ -532,7 +532,7 @@ impl<P: Planner> Axis<P> {
     /// passes that end at its velocity, `shift` (u) beside it, while a distance `left` (u) is still superimposed with
     /// a speed of `added` (u/s).
     pub(super) fn stops_beside(&self, (rest, _): (&P::Plan, u64), shift: f64, left: f64, added: f64) -> bool {
-        let mut end = rest.at(u64::from(rest.scans()));
+        let mut end = rest.end();
         end.position += shift;
         let Some((min, max)) = self.parameters.software_limits.filter(|_| end.velocity != 0.0) else {
             return true;
@@ -550,6 +550,6 @@ impl<P: Planner> Axis<P> {
 
 /// `limits` with the velocity at the end of `plan` if that is higher (B3).
 fn raised<P: Plan>(limits: &Limits, plan: &P) -> Limits {
-    let end = plan.at(u64::from(plan.scans())).velocity.abs();
+    let end = plan.end().velocity.abs();
     limits.with_velocity(limits.velocity.max(end))
 }

@@ -51,8 +51,8 @@ use steady::Steady;
 use sync::Awaited;
 pub(super) use view::Kind;
 use view::SeenBoth;
+pub(super) use view::way_to_rest;
 pub(crate) use view::{Future, Part, Seen, View};
-pub(super) use view::{end_of, way_to_rest};
 
 /// A master, and which of its values are followed.
 pub(crate) type Values = (AxisId, ValueSource);

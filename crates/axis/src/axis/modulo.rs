@@ -336,7 +336,7 @@ impl<P: Planner> Axis<P> {
         } else {
             let most = passage.most * (1.0 + ROUNDING);
             let blended = self.planner.blend(here, target, passage, &entry.limits, &before);
-            let is_slow = |plan: &P::Plan| plan.at(u64::from(plan.scans())).velocity.abs() <= most;
+            let is_slow = |plan: &P::Plan| plan.end().velocity.abs() <= most;
             blended.ok().flatten().filter(is_slow)
         };
         planned.is_some_and(|plan| !self.turns(&plan, velocity > 0.0))
@@ -388,7 +388,7 @@ impl<P: Planner> Axis<P> {
                 .limits
                 .with_velocity(entry.limits.velocity.max(velocity.abs()));
             let ramp = self.planner.ramp_to(start, velocity, &limits, &before).ok()?;
-            let way = ramp.at(u64::from(ramp.scans())).position - start.position;
+            let way = ramp.end().position - start.position;
             let missing = if forward { way - to_target } else { to_target - way };
             Some(missing - ROUNDING * way.abs())
         };

@@ -121,9 +121,8 @@ impl<P: Plan> Mover<P> {
 
     /// The position at the end of the plan in progress (u).
     pub fn end_of_plan(&self) -> f64 {
-        self.plan().map_or(self.setpoint.position, |(plan, _)| {
-            plan.at(u64::from(plan.scans())).position
-        })
+        self.plan()
+            .map_or(self.setpoint.position, |(plan, _)| plan.end().position)
     }
 
     /// The next set-point is not the last of the plan.

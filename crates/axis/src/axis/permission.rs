@@ -93,7 +93,7 @@ impl<P: Planner> Axis<P> {
             return None;
         }
         let (plan, elapsed) = rest;
-        let (start, goal) = (plan.at(elapsed), plan.at(u64::from(plan.scans())).velocity);
+        let (start, goal) = (plan.at(elapsed), plan.end().velocity);
         let (up, down) = self.planner.ways(rest);
         // A stop is never barred, in any direction.
         let axis = &self.slowed(&self.hardest_limits());

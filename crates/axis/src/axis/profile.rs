@@ -428,8 +428,7 @@ impl<P: Planner> Axis<P> {
             .map_err(|fault| self.refuse_profile(profile, &fault, points.passed, scope))?;
         self.permitted(entry, &plan, &entry.limits)
             .map_err(|error| self.refuse(profile.table_pin(), f64::NAN, f64::NAN, error, scope))?;
-        entry.end =
-            (profile.kind == ProfileKind::Position).then(|| plan.at(u64::from(plan.scans())).position);
+        entry.end = (profile.kind == ProfileKind::Position).then(|| plan.end().position);
         Ok(Motion::along(plan))
     }
 

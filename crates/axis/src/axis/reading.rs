@@ -153,10 +153,10 @@ impl<P: Planner> Axis<P> {
         let owner = self.owner.as_ref().map(|owner| &owner.work);
         let left = match (self.mover.motion(), owner) {
             (Motion::Run { plan, .. }, Some(Work::Velocity { .. })) => {
-                return Way::of(plan.at(u64::from(plan.scans())).velocity);
+                return Way::of(plan.end().velocity);
             }
             (Motion::Run { plan, .. }, Some(Work::Through { .. })) if self.goal_reached() => {
-                return Way::of(plan.at(u64::from(plan.scans())).velocity);
+                return Way::of(plan.end().velocity);
             }
             (Motion::Run { plan, scans, .. }, Some(work)) if work.manner().place.is_some() => {
                 plan.at(*scans).position - self.mover.base().position

@@ -111,7 +111,7 @@ impl<P: Planner> Axis<P> {
         let motion = self.plan_from(owner, layer.base(), before)?;
         let mut motion = self.kept_inside(owner, motion, layer.base(), before)?;
         if let (Motion::Run { plan, .. }, false) = (&motion, owner.is_endless() || owner.halted) {
-            self.allowed(layer.end_above(plan.at(u64::from(plan.scans())).position))?;
+            self.allowed(layer.end_above(plan.end().position))?;
         }
         if !self.fits_under(&motion, &layer) {
             let sum = self.mover.setpoint().moved_to(layer.base().position);

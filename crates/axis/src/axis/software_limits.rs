@@ -75,7 +75,7 @@ impl<P: Planner> Axis<P> {
         };
         let base = self.mover.plan().unwrap_or((&base, 0));
         let added = layer.motion().plan().unwrap_or((&added, 0));
-        let end = |(plan, _): (&P::Plan, u64)| plan.at(u64::from(plan.scans())).position;
+        let end = |(plan, _): (&P::Plan, u64)| plan.end().position;
         let (taken, rest) = (layer.taken(), end(base) + end(added) - layer.taken());
         let within = RESOLUTION * (end(base).abs() + end(added).abs());
         let range = Some((min + taken, max + taken));
@@ -175,7 +175,7 @@ impl<P: Planner> Axis<P> {
         let Some((min, max)) = self.parameters.software_limits else {
             return ramp;
         };
-        let (start, end) = (ramp.at(0).position, ramp.at(u64::from(ramp.scans())).position);
+        let (start, end) = (ramp.at(0).position, ramp.end().position);
         let beyond = end - min.max(end.min(max));
         if beyond != 0.0 && beyond.abs() <= RESOLUTION * (start.abs() + end.abs()) {
             ramp.shift(-beyond);
@@ -187,7 +187,7 @@ impl<P: Planner> Axis<P> {
     fn rest(&self, state: &Setpoint, limits: &Limits) -> f64 {
         let (before, axis) = (self.mover.in_force(), &self.hardest_limits());
         match self.stopped_inside(state, &mut { *limits }, before, axis) {
-            Ok(ramp) => ramp.at(u64::from(ramp.scans())).position,
+            Ok(ramp) => ramp.end().position,
             Err(_) => state.position,
         }
     }

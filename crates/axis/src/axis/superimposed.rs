@@ -206,7 +206,7 @@ impl<P: Plan> Layer<P> {
                 }),
                 _,
             ) => *target,
-            (_, Motion::Run { plan, .. }) => plan.at(u64::from(plan.scans())).position,
+            (_, Motion::Run { plan, .. }) => plan.end().position,
             (_, _) => self.added.position,
         };
         end - self.added.position
@@ -481,7 +481,7 @@ impl<P: Planner> Axis<P> {
                 .unwrap_or(f64::NAN),
             // A slave has no end of its own.
             _ if self.follows() => f64::NAN,
-            (Motion::Run { plan, .. }, _) => plan.at(u64::from(plan.scans())).position,
+            (Motion::Run { plan, .. }, _) => plan.end().position,
             (_, _) => layer.base.position,
         }
     }

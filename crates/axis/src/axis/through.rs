@@ -48,9 +48,7 @@ impl<P: Planner> Axis<P> {
         before: &Limits,
         passing: Option<P::Plan>,
     ) -> Option<P::Plan> {
-        let speed = passing
-            .as_ref()
-            .map_or(0.0, |plan| plan.at(u64::from(plan.scans())).velocity.abs());
+        let speed = passing.as_ref().map_or(0.0, |plan| plan.end().velocity.abs());
         let is_wanted = speed >= passage.wanted * (1.0 - ROUNDING);
         let is_faster = speed > passage.wanted * (1.0 + ROUNDING);
         let ramps = if is_wanted && !is_faster {
@@ -312,7 +310,7 @@ impl<P: Planner> Axis<P> {
             .with_velocity(speed.max(behind.next.limits.velocity));
         let ramp = self.planner.ramp_to(&begin, behind.exit.wanted, &limits, &limits);
         let ramp = ramp.ok()?;
-        let there = ramp.at(u64::from(ramp.scans())).position - way;
+        let there = ramp.end().position - way;
         if there <= 0.0 {
             return Some(0.0);
         }

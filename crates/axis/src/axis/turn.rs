@@ -52,7 +52,7 @@ impl<P: Planner> Axis<P> {
         // From the turn on a stop travels further than from before it.
         let stop = self.planner.ramp_to(&at_turn, 0.0, &limits, &limits);
         stop.is_ok_and(|stop| {
-            let furthest = end + stop.at(u64::from(stop.scans())).position;
+            let furthest = end + stop.end().position;
             turn <= limits.lower_acceleration() && min <= furthest && furthest <= max
         })
     }
@@ -65,7 +65,7 @@ impl<P: Planner> Axis<P> {
         let limits = self.stop_limits();
         let stop = self.planner.ramp_to(state, 0.0, &limits, &limits);
         stop.is_ok_and(|stop| {
-            let furthest = stop.at(u64::from(stop.scans())).position;
+            let furthest = stop.end().position;
             keeps_rates(&stop) && min <= furthest && furthest <= max
         })
     }

@@ -85,7 +85,7 @@ impl Case {
                 match (record.event, self.axis.plan()) {
                     (Event::Unavoidable(_), _) => self.unavoidable = true,
                     (Event::Planned { .. }, Some((plan, _))) => {
-                        let end = plan.at(u64::from(plan.scans()));
+                        let end = plan.end();
                         self.track.leads(plan.at(0).position, end.position, plan.scans());
                     }
                     _ => {}

@@ -328,7 +328,7 @@ impl<P: Planner> Axis<P> {
             ..*limits
         };
         let stop = self.planner.ramp_to(start, 0.0, &widest, &widest).ok()?;
-        Some(1.0_f64.copysign(velocity) * stop.at(u64::from(stop.scans())).position)
+        Some(1.0_f64.copysign(velocity) * stop.end().position)
     }
 
     /// Checks that the slave can get onto a stretch within the velocity of `limits`.

@@ -149,7 +149,7 @@ impl<'a, P: Plan> Part<'a, P> {
             // mistaken for another.
             Course::Plan(_, elapsed) if elapsed > 1 => (Kind::Plan, elapsed, known.end),
             Course::Plan(plan, elapsed) => {
-                let end = plan.at(u64::from(plan.scans()));
+                let end = plan.end();
                 (Kind::Plan, elapsed, (end.position, end.velocity))
             }
             Course::Unknown => (Kind::Unknown, 0, (0.0, 0.0)),
@@ -174,16 +174,11 @@ impl<'a, P: Plan> Part<'a, P> {
     }
 }
 
-/// The end of a master's plan.
-pub(in crate::axis) fn end_of<Q: Plan>(lead: &Lead<'_, Q>) -> Setpoint {
-    lead.plan.at(u64::from(lead.plan.scans()))
-}
-
 /// The distance (u of the slave) that the masters still lead it, from this number of `scans` after the leads begin.
 /// `None` if one of them does not come to rest.
 pub(in crate::axis) fn way_to_rest<Q: Plan>(leads: &Leads<'_, Q>, scans: u64) -> Option<f64> {
     leads.iter().flatten().try_fold(0.0, |way, lead| {
-        let end = end_of(lead);
+        let end = lead.plan.end();
         let here = lead.plan.at(lead.elapsed.saturating_add(scans)).position;
         (end.velocity == 0.0).then_some(way + lead.factor * (end.position - here))
     })

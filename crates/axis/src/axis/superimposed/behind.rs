@@ -10,7 +10,7 @@
 
 use super::plan::{Proposal, Room};
 use super::{Added, Adds, Layer, Progress};
-use crate::axis::coupling::{Kind, View, end_of, way_to_rest};
+use crate::axis::coupling::{Kind, View, way_to_rest};
 use crate::axis::{Axis, Motion};
 use crate::{Cams, ErrorId, Event, Fate, Scope};
 use standstill_planner::{CamBounds, Lead, Limits, Plan, Planner, Setpoint};
@@ -262,7 +262,7 @@ impl<P: Planner> Axis<P> {
         match self.leads_of_law(view) {
             Some(leads) => Room {
                 limits: self.room_beside(&leads, limits).unwrap_or(none),
-                endless: leads.iter().flatten().any(|lead| end_of(lead).velocity != 0.0),
+                endless: leads.iter().flatten().any(|lead| lead.plan.end().velocity != 0.0),
             },
             None if view.future.kind() == Kind::Measured => Room {
                 limits: self.room_now(view, limits).unwrap_or(none),

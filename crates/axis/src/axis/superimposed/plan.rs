@@ -104,7 +104,7 @@ impl<P: Planner> Axis<P> {
         let base = self.mover.plan();
         let room = || Room {
             limits: base.map_or(*axis, |rest| self.planner.room(rest, axis)),
-            endless: base.is_some_and(|(plan, _)| plan.at(u64::from(plan.scans())).velocity != 0.0),
+            endless: base.is_some_and(|(plan, _)| plan.end().velocity != 0.0),
         };
         let range = self.range(layer.taken);
         let is_distance = matches!(command.adds, Adds::Distance { .. }) && !command.halting;
@@ -399,7 +399,7 @@ impl<P: Planner> Axis<P> {
         // A stop is never refused. It is watched if it may leave the limits.
         let leads_somewhere = !entry.is_endless() && entry.end.is_some();
         if let (Motion::Run { plan, .. }, true) = (&motion, leads_somewhere) {
-            self.allowed(plan.at(u64::from(plan.scans())).position + layer.left())?;
+            self.allowed(plan.end().position + layer.left())?;
         }
         layer.base = start;
         layer.taken = layer.added.position;

@@ -141,7 +141,7 @@ impl<P: Planner> Axis<P> {
         } else {
             on_cam.was.place
         };
-        let end = lead.plan.at(u64::from(lead.plan.scans()));
+        let end = lead.plan.end();
         Some((self.peaks_on_cam(&curve, &lead, place), end.velocity != 0.0))
     }
 

@@ -324,7 +324,7 @@ impl<P: Planner> Axis<P> {
     fn goes(&self, lead: &Lead<'_, P::Plan>, side: f64) -> bool {
         let (up, down) = self.planner.ways((lead.plan, lead.elapsed));
         let side = side * lead.factor;
-        let end = lead.plan.at(u64::from(lead.plan.scans())).velocity;
+        let end = lead.plan.end().velocity;
         (if side > 0.0 { up } else { down }) > 0.0 || side * end > 0.0
     }
 
