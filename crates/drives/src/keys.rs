@@ -21,50 +21,19 @@ fn short(scans: u64) -> u32 {
     u32::try_from(scans).unwrap_or(u32::MAX)
 }
 
-/// A key for a number.
-macro_rules! number {
-    ($path:literal, $bounds:expr, $absent:expr, $doc:literal, $get:expr, $set:expr) => {
-        Key {
-            path: $path,
-            doc: $doc,
-            absent: $absent,
-            null: None,
-            holds: Holds::Number {
-                bounds: $bounds,
-                get: $get,
-                set: $set,
-            },
-        }
-    };
-}
-
-/// A key with keys of its own.
-macro_rules! object {
-    ($path:literal, $what:literal, $keys:expr, $absent:literal, $doc:literal) => {
-        Key {
-            path: $path,
-            doc: $doc,
-            absent: Some($absent),
-            null: None,
-            holds: Holds::Object(Object::new($what, $keys)),
-        }
-    };
-}
-
 /// How long positions take.
 macro_rules! delay {
     () => {
-        Key {
-            path: "delay",
-            doc: "scans by which the actual position follows its command, 0 to 64",
-            absent: Some("0"),
-            null: None,
-            holds: Holds::Scans {
+        Key::new(
+            "delay",
+            Some("0"),
+            "scans by which the actual position follows its command, 0 to 64",
+            Holds::Scans {
                 range: (0, DELAY_MAX as u64),
                 get: |setup| Some(setup.delay as u64),
                 set: |setup, scans| setup.delay = usize::try_from(scans).unwrap_or(usize::MAX),
             },
-        }
+        )
     };
 }
 
@@ -72,18 +41,20 @@ macro_rules! delay {
 macro_rules! power_on {
     () => {
         Key {
-            path: "power_on",
-            doc: "scans until the drive confirms its power; null: never",
-            absent: Some("0"),
             null: Some(Null {
                 is: |setup| setup.power_on.is_none(),
                 set: |setup| setup.power_on = None,
             }),
-            holds: Holds::Scans {
-                range: SCANS,
-                get: |setup| setup.power_on.map(u64::from),
-                set: |setup, scans| setup.power_on = Some(short(scans)),
-            },
+            ..Key::new(
+                "power_on",
+                Some("0"),
+                "scans until the drive confirms its power; null: never",
+                Holds::Scans {
+                    range: SCANS,
+                    get: |setup| setup.power_on.map(u64::from),
+                    set: |setup, scans| setup.power_on = Some(short(scans)),
+                },
+            )
         }
     };
 }
@@ -91,29 +62,29 @@ macro_rules! power_on {
 /// Switches and markers along the travel of any drive.
 macro_rules! limit_switches {
     () => {
-        object!(
+        Key::object(
             "limit_switches",
             "`limit_switches`",
             &[
-                number!(
+                Key::number(
                     "limit_switches.negative",
                     Bounds::FINITE,
                     None,
                     "the one in negative direction is active up to here (u)",
                     |setup| setup.switches.limits.map(|(end, _)| end),
-                    |setup, end| setup.switches.limits.get_or_insert(NOWHERE).0 = end
+                    |setup, end| setup.switches.limits.get_or_insert(NOWHERE).0 = end,
                 ),
-                number!(
+                Key::number(
                     "limit_switches.positive",
                     Bounds::FINITE,
                     None,
                     "the other one from here on (u), not below",
                     |setup| setup.switches.limits.map(|(_, end)| end),
-                    |setup, end| setup.switches.limits.get_or_insert(NOWHERE).1 = end
+                    |setup, end| setup.switches.limits.get_or_insert(NOWHERE).1 = end,
                 ),
             ],
-            "none",
-            "switches at the ends of the travel"
+            Some("none"),
+            "switches at the ends of the travel",
         )
     };
 }
@@ -121,29 +92,29 @@ macro_rules! limit_switches {
 /// The switches and pulses along the travel of any drive.
 macro_rules! home_switch {
     () => {
-        object!(
+        Key::object(
             "home_switch",
             "`home_switch`",
             &[
-                number!(
+                Key::number(
                     "home_switch.from",
                     Bounds::FINITE,
                     None,
                     "it is active from here (u) ..",
                     |setup| setup.switches.home.map(|(end, _)| end),
-                    |setup, end| setup.switches.home.get_or_insert(NOWHERE).0 = end
+                    |setup, end| setup.switches.home.get_or_insert(NOWHERE).0 = end,
                 ),
-                number!(
+                Key::number(
                     "home_switch.to",
                     Bounds::FINITE,
                     None,
                     ".. to here (u), not below",
                     |setup| setup.switches.home.map(|(_, end)| end),
-                    |setup, end| setup.switches.home.get_or_insert(NOWHERE).1 = end
+                    |setup, end| setup.switches.home.get_or_insert(NOWHERE).1 = end,
                 ),
             ],
-            "none",
-            "the home switch"
+            Some("none"),
+            "the home switch",
         )
     };
 }
@@ -153,29 +124,29 @@ const NO_MARKER: Marker = Marker { at: 0.0, every: None };
 /// The switches and pulses along the travel of any drive.
 macro_rules! marker {
     () => {
-        object!(
+        Key::object(
             "marker",
             "`marker`",
             &[
-                number!(
+                Key::number(
                     "marker.at",
                     Bounds::FINITE,
                     None,
                     "a reference pulse is here (u), which the drive latches between scans",
                     |setup| setup.switches.marker.map(|marker| marker.at),
-                    |setup, at| setup.switches.marker.get_or_insert(NO_MARKER).at = at
+                    |setup, at| setup.switches.marker.get_or_insert(NO_MARKER).at = at,
                 ),
-                number!(
+                Key::number(
                     "marker.every",
                     Bounds::POSITIVE,
                     Some("there is one"),
                     "the distance from one pulse to the next (u), above 0",
                     |setup| setup.switches.marker.and_then(|marker| marker.every),
-                    |setup, every| setup.switches.marker.get_or_insert(NO_MARKER).every = Some(every)
+                    |setup, every| setup.switches.marker.get_or_insert(NO_MARKER).every = Some(every),
                 ),
             ],
-            "none",
-            "reference pulses of the encoder"
+            Some("none"),
+            "reference pulses of the encoder",
         )
     };
 }
@@ -198,12 +169,11 @@ const REACTIONS: [Reaction; 3] = [Reaction::Coast, Reaction::Ramp, Reaction::Ram
 /// A reaction of a CiA 402 drive.
 macro_rules! reaction {
     ($path:literal, $field:ident, $words:expr, $absent:literal, $doc:literal) => {
-        Key {
-            path: $path,
-            doc: $doc,
-            absent: Some($absent),
-            null: None,
-            holds: Holds::Word {
+        Key::new(
+            $path,
+            Some($absent),
+            $doc,
+            Holds::Word {
                 words: $words,
                 get: |setup: &Cia402Setup| REACTIONS.iter().position(|known| *known == setup.$field),
                 set: |setup, place| {
@@ -212,7 +182,7 @@ macro_rules! reaction {
                     }
                 },
             },
-        }
+        )
     };
 }
 
@@ -222,24 +192,23 @@ pub static CIA402: Object<Cia402Setup> = Object::new(
     &[
         delay!(),
         power_on!(),
-        Key {
-            path: "start_up",
-            doc: "scans of self-test before it can be switched on",
-            absent: Some("0"),
-            null: None,
-            holds: Holds::Scans {
+        Key::new(
+            "start_up",
+            Some("0"),
+            "scans of self-test before it can be switched on",
+            Holds::Scans {
                 range: SCANS,
                 get: |setup| Some(setup.start_up.into()),
                 set: |setup, scans| setup.start_up = short(scans),
             },
-        },
-        number!(
+        ),
+        Key::number(
             "deceleration",
             Bounds::POSITIVE,
             Some("that of the axis limits"),
             "rate of the drive's own ramps (u/s^2)",
             |setup| setup.deceleration,
-            |setup, rate| setup.deceleration = Some(rate)
+            |setup, rate| setup.deceleration = Some(rate),
         ),
         reaction!(
             "quick_stop",
@@ -262,19 +231,19 @@ pub static CIA402: Object<Cia402Setup> = Object::new(
             "`ramp`",
             "605Eh: `coast` or `ramp`"
         ),
-        object!(
+        Key::object(
             "homing",
             "`homing` of a drive",
             NODE_HOMING,
-            "it has no homing mode",
-            "homing mode: it moves to the point at which its home switch goes on; a limit switch on the way is its error (8612h)"
+            Some("it has no homing mode"),
+            "homing mode: it moves to the point at which its home switch goes on; a limit switch on the way is its error (8612h)",
         ),
-        object!(
+        Key::object(
             "motor",
             "the motor of a drive",
             MOTOR,
-            "it has no torque mode and measures no torque",
-            "its load under a torque, in a unit of torque of your choice. In position mode it follows its target with any torque that this needs, and reports the torque"
+            Some("it has no torque mode and measures no torque"),
+            "its load under a torque, in a unit of torque of your choice. In position mode it follows its target with any torque that this needs, and reports the torque",
         ),
         limit_switches!(),
         home_switch!(),
@@ -285,25 +254,24 @@ pub static CIA402: Object<Cia402Setup> = Object::new(
 const NO_HOMING: (bool, f64) = (true, 0.0);
 
 const NODE_HOMING: &[Key<Cia402Setup>] = &[
-    number!(
+    Key::number(
         "homing.velocity",
         Bounds::POSITIVE,
         None,
         "its velocity (u/s)",
         |setup| setup.homing.map(|(_, velocity)| velocity),
-        |setup, velocity| setup.homing.get_or_insert(NO_HOMING).1 = velocity
+        |setup, velocity| setup.homing.get_or_insert(NO_HOMING).1 = velocity,
     ),
-    Key {
-        path: "homing.direction",
-        doc: "`positive`, `negative`",
-        absent: Some("`positive`"),
-        null: None,
-        holds: Holds::Word {
+    Key::new(
+        "homing.direction",
+        Some("`positive`"),
+        "`positive`, `negative`",
+        Holds::Word {
             words: &["positive", "negative"],
             get: |setup| setup.homing.map(|(up, _)| usize::from(!up)),
             set: |setup, place| setup.homing.get_or_insert(NO_HOMING).0 = place == 0,
         },
-    },
+    ),
 ];
 
 /// Default ratio of the largest torque to the rated torque.
@@ -320,19 +288,19 @@ const NO_MOTOR: MotorSetup = MotorSetup {
 /// A number of the motor.
 macro_rules! motor {
     ($path:literal, $field:ident, $bounds:expr, $absent:expr, $doc:literal) => {
-        number!(
+        Key::number(
             $path,
             $bounds,
             $absent,
             $doc,
             |setup| setup.motor.map(|motor| motor.$field),
-            |setup, value| setup.motor.get_or_insert(NO_MOTOR).$field = value
+            |setup, value| setup.motor.get_or_insert(NO_MOTOR).$field = value,
         )
     };
 }
 
 const MOTOR: &[Key<Cia402Setup>] = &[
-    number!(
+    Key::number(
         "motor.rated_torque",
         Bounds::POSITIVE,
         None,
@@ -344,7 +312,7 @@ const MOTOR: &[Key<Cia402Setup>] = &[
             if motor.max_torque == 0.0 {
                 motor.max_torque = MAX_TORQUE * torque;
             }
-        }
+        },
     ),
     motor!(
         "motor.inertia",
@@ -382,58 +350,58 @@ pub static PLANT: Object<PlantSetup> = Object::new(
     "a plant",
     &[
         power_on!(),
-        number!(
+        Key::number(
             "inertia",
             Bounds::POSITIVE,
             None,
             "of the motor: torque for an acceleration (torque s^2/u)",
             |setup| Some(setup.plant.inertia),
-            |setup, value| setup.plant.inertia = value
+            |setup, value| setup.plant.inertia = value,
         ),
-        number!(
+        Key::number(
             "viscous",
             FROM_ZERO,
             Some("0"),
             "friction at the motor that grows with velocity (torque s/u)",
             |setup| Some(setup.plant.viscous),
-            |setup, value| setup.plant.viscous = value
+            |setup, value| setup.plant.viscous = value,
         ),
-        number!(
+        Key::number(
             "coulomb",
             FROM_ZERO,
             Some("0"),
             "friction at the motor that does not (torque)",
             |setup| Some(setup.plant.coulomb),
-            |setup, value| setup.plant.coulomb = value
+            |setup, value| setup.plant.coulomb = value,
         ),
-        object!(
+        Key::object(
             "load",
             "the load of a plant",
             LOAD,
-            "the mechanism is rigid",
-            "load on a spring"
+            Some("the mechanism is rigid"),
+            "load on a spring",
         ),
-        object!(
+        Key::object(
             "gains",
             "the gains of a plant",
             GAINS,
-            "what holds any rigid plant",
-            "of its loops"
+            Some("what holds any rigid plant"),
+            "of its loops",
         ),
-        number!(
+        Key::number(
             "torque",
             Bounds::POSITIVE,
             Some("no limit"),
             "largest torque",
             |setup| Some(setup.gains.torque).filter(|torque| *torque != f64::INFINITY),
-            |setup, value| setup.gains.torque = value
+            |setup, value| setup.gains.torque = value,
         ),
-        object!(
+        Key::object(
             "stops",
             "`stops`",
             STOPS,
-            "the travel has no end",
-            "mechanical stops: springs at the ends of the travel"
+            Some("the travel has no end"),
+            "mechanical stops: springs at the ends of the travel",
         ),
         limit_switches!(),
         home_switch!(),
@@ -450,13 +418,13 @@ const NO_LOAD: Load = Load {
 /// A number of the load.
 macro_rules! load {
     ($path:literal, $field:ident, $bounds:expr, $absent:expr, $doc:literal) => {
-        number!(
+        Key::number(
             $path,
             $bounds,
             $absent,
             $doc,
             |setup| setup.plant.load.map(|load| load.$field),
-            |setup, value| setup.plant.load.get_or_insert(NO_LOAD).$field = value
+            |setup, value| setup.plant.load.get_or_insert(NO_LOAD).$field = value,
         )
     };
 }
@@ -488,13 +456,13 @@ const LOAD: &[Key<PlantSetup>] = &[
 /// A gain.
 macro_rules! gain {
     ($path:literal, $field:ident, $absent:literal, $doc:literal) => {
-        number!(
+        Key::number(
             $path,
             FROM_ZERO,
             Some($absent),
             $doc,
             |setup| Some(setup.gains.$field).filter(|gain| !gain.is_nan()),
-            |setup, value| setup.gains.$field = value
+            |setup, value| setup.gains.$field = value,
         )
     };
 }
@@ -539,36 +507,36 @@ const NO_STOPS: Stops = Stops {
 };
 
 const STOPS: &[Key<PlantSetup>] = &[
-    number!(
+    Key::number(
         "stops.negative",
         Bounds::FINITE,
         None,
         "where the lower one begins (u)",
         |setup| setup.stops.map(|stops| stops.ends.0),
-        |setup, value| setup.stops.get_or_insert(NO_STOPS).ends.0 = value
+        |setup, value| setup.stops.get_or_insert(NO_STOPS).ends.0 = value,
     ),
-    number!(
+    Key::number(
         "stops.positive",
         Bounds::FINITE,
         None,
         "where the upper one begins (u), above the lower one",
         |setup| setup.stops.map(|stops| stops.ends.1),
-        |setup, value| setup.stops.get_or_insert(NO_STOPS).ends.1 = value
+        |setup, value| setup.stops.get_or_insert(NO_STOPS).ends.1 = value,
     ),
-    number!(
+    Key::number(
         "stops.stiffness",
         Bounds::POSITIVE,
         None,
         "of the springs (torque/u)",
         |setup| setup.stops.map(|stops| stops.stiffness),
-        |setup, value| setup.stops.get_or_insert(NO_STOPS).stiffness = value
+        |setup, value| setup.stops.get_or_insert(NO_STOPS).stiffness = value,
     ),
-    number!(
+    Key::number(
         "stops.damping",
         FROM_ZERO,
         Some("0"),
         "of the springs (torque s/u)",
         |setup| setup.stops.map(|stops| stops.damping),
-        |setup, value| setup.stops.get_or_insert(NO_STOPS).damping = value
+        |setup, value| setup.stops.get_or_insert(NO_STOPS).damping = value,
     ),
 ];

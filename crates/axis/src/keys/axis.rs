@@ -16,31 +16,42 @@ macro_rules! place {
     };
 }
 
+/// The names of all values of an enumeration.
+macro_rules! names {
+    ($all:expr) => {{
+        let mut words = [""; $all.len()];
+        let mut index = 0;
+        while index < words.len() {
+            words[index] = $all[index].name();
+            index += 1;
+        }
+        words
+    }};
+}
+
 /// A key that is TRUE or FALSE.
 macro_rules! flag {
     ($path:literal, $($field:ident).+, $absent:literal, $doc:literal) => {
-        Key {
-            path: $path,
-            doc: $doc,
-            absent: Some($absent),
-            null: None,
-            holds: Holds::Bool {
+        Key::new(
+            $path,
+            Some($absent),
+            $doc,
+            Holds::Bool {
                 get: |config| config.$($field).+,
                 set: |config, value| config.$($field).+ = value,
             },
-        }
+        )
     };
 }
 
 /// A key for one of the words of an enumeration.
 macro_rules! word {
     ($path:literal, $($field:ident).+, [$(($word:expr, $value:expr)),+ $(,)?], $absent:expr, $doc:literal) => {
-        Key {
-            path: $path,
-            doc: $doc,
-            absent: $absent,
-            null: None,
-            holds: Holds::Word {
+        Key::new(
+            $path,
+            $absent,
+            $doc,
+            Holds::Word {
                 words: &[$($word),+],
                 get: |config| place!([$($value),+], config.$($field).+),
                 set: |config, place| {
@@ -49,24 +60,21 @@ macro_rules! word {
                     }
                 },
             },
-        }
+        )
     };
 }
 
 /// A key for a number that may be absent.
 macro_rules! optional {
     ($path:literal, $($field:ident).+, $absent:literal, $doc:literal) => {
-        Key {
-            path: $path,
-            doc: $doc,
-            absent: Some($absent),
-            null: None,
-            holds: Holds::Number {
-                bounds: Bounds::POSITIVE,
-                get: |config| config.$($field).+,
-                set: |config, value| config.$($field).+ = Some(value),
-            },
-        }
+        Key::number(
+            $path,
+            Bounds::POSITIVE,
+            Some($absent),
+            $doc,
+            |config| config.$($field).+,
+            |config, value| config.$($field).+ = Some(value),
+        )
     };
 }
 
@@ -74,18 +82,15 @@ macro_rules! optional {
 macro_rules! limit {
     ($path:literal, $field:ident, $absent:literal, $doc:literal) => {
         Key {
-            path: $path,
-            doc: $doc,
-            absent: Some($absent),
-            null: Some(Null {
-                is: |_| false,
-                set: |_| {},
-            }),
-            holds: Holds::Number {
-                bounds: Bounds::POSITIVE,
-                get: |config| Some(config.limits.$field).filter(|limit| *limit != f64::INFINITY),
-                set: |config, value| config.limits.$field = value,
-            },
+            null: Some(Null::ABSENT),
+            ..Key::number(
+                $path,
+                Bounds::POSITIVE,
+                Some($absent),
+                $doc,
+                |config| Some(config.limits.$field).filter(|limit| *limit != f64::INFINITY),
+                |config, value| config.limits.$field = value,
+            )
         }
     };
 }
@@ -97,38 +102,29 @@ const SCANS: u64 = 1 << 53;
 pub static AXIS: Object<AxisConfig> = Object::new(
     "an axis",
     &[
-        Key {
-            path: "limits",
-            doc: "limits of all set-points",
-            absent: None,
-            null: None,
-            holds: Holds::Object(Object::new("`limits`", LIMITS)),
-        },
-        Key {
-            path: "application_limits",
-            doc: "upper limits of commands, each at most that of `limits`; MC_WriteParameter changes them, see parameters.md",
-            absent: Some("`limits`"),
-            null: None,
-            holds: Holds::Object(Object::new("`application_limits`", APPLICATION_LIMITS)),
-        },
-        Key {
-            path: "defaults",
-            doc: "values for a 0 at the pins Acceleration, Deceleration, Jerk, Snap; not above the limits",
-            absent: Some("the limits"),
-            null: None,
-            holds: Holds::Object(Object::new("`defaults`", DEFAULTS)),
-        },
-        Key {
-            path: "position",
-            doc: "position at the start (u); with `modulo` in the first turn",
-            absent: Some("0"),
-            null: None,
-            holds: Holds::Number {
-                bounds: Bounds::FINITE,
-                get: |config| Some(config.position),
-                set: |config, value| config.position = value,
-            },
-        },
+        Key::object("limits", "`limits`", LIMITS, None, "limits of all set-points"),
+        Key::object(
+            "application_limits",
+            "`application_limits`",
+            APPLICATION_LIMITS,
+            Some("`limits`"),
+            "upper limits of commands, each at most that of `limits`; MC_WriteParameter changes them, see parameters.md",
+        ),
+        Key::object(
+            "defaults",
+            "`defaults`",
+            DEFAULTS,
+            Some("the limits"),
+            "values for a 0 at the pins Acceleration, Deceleration, Jerk, Snap; not above the limits",
+        ),
+        Key::number(
+            "position",
+            Bounds::FINITE,
+            Some("0"),
+            "position at the start (u); with `modulo` in the first turn",
+            |config| Some(config.position),
+            |config, value| config.position = value,
+        ),
         word!(
             "state",
             start,
@@ -139,37 +135,33 @@ pub static AXIS: Object<AxisConfig> = Object::new(
             Some("`Disabled`"),
             "`Disabled`, or `Standstill`: powered as if MC_Power had been called"
         ),
-        Key {
-            path: "scaling",
-            doc: "the drive counts increments",
-            absent: Some("the drive uses user units"),
-            null: None,
-            holds: Holds::Object(Object::new("`scaling`", SCALING)),
-        },
-        Key {
-            path: "modulo",
-            doc: "length of a turn (u), above 0: positions wrap and are shown in [0, length), see modulo.md",
-            absent: Some("the axis is linear"),
-            null: None,
-            holds: Holds::Number {
-                bounds: Bounds {
-                    most: MODULO_MAX,
-                    ..Bounds::POSITIVE
-                },
-                get: |config| config.modulo,
-                set: |config, value| config.modulo = Some(value),
+        Key::object(
+            "scaling",
+            "`scaling`",
+            SCALING,
+            Some("the drive uses user units"),
+            "the drive counts increments",
+        ),
+        Key::number(
+            "modulo",
+            Bounds {
+                most: MODULO_MAX,
+                ..Bounds::POSITIVE
             },
-        },
-        Key {
-            path: "software_limits",
-            doc: "range in which moves may end, at least one of its limits; see below",
-            absent: Some("none"),
-            null: None,
-            holds: Holds::Object(Object {
+            Some("the axis is linear"),
+            "length of a turn (u), above 0: positions wrap and are shown in [0, length), see modulo.md",
+            |config| config.modulo,
+            |config, value| config.modulo = Some(value),
+        ),
+        Key::new(
+            "software_limits",
+            Some("none"),
+            "range in which moves may end, at least one of its limits; see below",
+            Holds::Object(Object {
                 needs_one: true,
                 ..Object::new("`software_limits`", SOFTWARE_LIMITS)
             }),
-        },
+        ),
         word!(
             "above_limit",
             above_limit,
@@ -177,12 +169,11 @@ pub static AXIS: Object<AxisConfig> = Object::new(
             Some("`clamp`"),
             "a value above a limit is lowered and recorded: `clamp`; the command is refused: `error`"
         ),
-        Key {
-            path: "profile",
-            doc: "how moves to a position are planned (planner.md, section 13): from rest with every switch at a scan end by `overlapped`, `grid`, `sequential`; with switches anywhere by `online`; `fastest` is the shorter of `overlapped` and `online`, ties to `overlapped`; by a paper's method `s-curve`, `short-path` (no limit on snap) or `trapezoid` (none on jerk either). What the profile cannot serve, such as a move that takes over from a motion, is planned by `online`",
-            absent: Some("`overlapped`"),
-            null: None,
-            holds: Holds::Word {
+        Key::new(
+            "profile",
+            Some("`overlapped`"),
+            "how moves to a position are planned (planner.md, section 13): from rest with every switch at a scan end by `overlapped`, `grid`, `sequential`; with switches anywhere by `online`; `fastest` is the shorter of `overlapped` and `online`, ties to `overlapped`; by a paper's method `s-curve`, `short-path` (no limit on snap) or `trapezoid` (none on jerk either). What the profile cannot serve, such as a move that takes over from a motion, is planned by `online`",
+            Holds::Word {
                 words: &PROFILES,
                 get: |config| place!(MoveProfile::ALL, config.profile),
                 set: |config, place| {
@@ -191,18 +182,17 @@ pub static AXIS: Object<AxisConfig> = Object::new(
                     }
                 },
             },
-        },
-        Key {
-            path: "queue",
-            doc: "commands that can wait behind the active one, 0 to 16",
-            absent: Some("8"),
-            null: None,
-            holds: Holds::Whole {
+        ),
+        Key::new(
+            "queue",
+            Some("8"),
+            "commands that can wait behind the active one, 0 to 16",
+            Holds::Whole {
                 range: (0, QUEUE_MAX as u64),
                 get: |config| Some(config.queue as u64),
                 set: |config, value| config.queue = usize::try_from(value).unwrap_or(usize::MAX),
             },
-        },
+        ),
         optional!(
             "stop_deceleration",
             stop_deceleration,
@@ -215,16 +205,15 @@ pub static AXIS: Object<AxisConfig> = Object::new(
             "the limit",
             "jerk (u/s^3) of the same ramps; not above the limit"
         ),
-        Key {
-            path: "stop",
-            doc: "dynamics of stops only, which may be above `limits`: of MC_Stop (they are its values for 0 at a pin and its upper limits), of ramps without a command, of limit switches, software limits and barred directions; at least one of them, and not beside `stop_deceleration` and `stop_jerk`",
-            absent: Some("MC_Stop has those of a command"),
-            null: None,
-            holds: Holds::Object(Object {
+        Key::new(
+            "stop",
+            Some("MC_Stop has those of a command"),
+            "dynamics of stops only, which may be above `limits`: of MC_Stop (they are its values for 0 at a pin and its upper limits), of ramps without a command, of limit switches, software limits and barred directions; at least one of them, and not beside `stop_deceleration` and `stop_jerk`",
+            Holds::Object(Object {
                 needs_one: true,
                 ..Object::new("`stop`", STOP)
             }),
-        },
+        ),
         word!(
             "on_power_off",
             on_power_off,
@@ -242,61 +231,57 @@ pub static AXIS: Object<AxisConfig> = Object::new(
             "true",
             "the axis stops at the limit switches of its drive (410, 210), see homing.md"
         ),
-        Key {
-            path: "homing",
-            doc: "what MC_Home does, see homing.md",
-            absent: Some("the present position becomes the reference"),
-            null: None,
-            holds: Holds::Object(Object::new("`homing`", HOMING)),
-        },
+        Key::object(
+            "homing",
+            "`homing`",
+            HOMING,
+            Some("the present position becomes the reference"),
+            "what MC_Home does, see homing.md",
+        ),
         flag!(
             "needs_homed",
             needs_homed,
             "false",
             "absolute moves need MC_Home first"
         ),
-        Key {
-            path: "override_max",
-            doc: "the largest factor that MC_SetOverride accepts, from 1; the limits still apply",
-            absent: Some("1"),
-            null: None,
-            holds: Holds::Number {
-                bounds: Bounds::from(1.0),
-                get: |config| Some(config.override_max),
-                set: |config, value| config.override_max = value,
-            },
-        },
-        Key {
-            path: "power_timeout",
-            doc: "time (scans, or TIME, above 0) in which the drive has to confirm the power that MC_Power requests; after it MC_Power shows Error 503, the axis stays Disabled, and a new Enable or MC_Reset requests power again",
-            absent: Some("no time limit"),
-            null: None,
-            holds: Holds::Scans {
+        Key::number(
+            "override_max",
+            Bounds::from(1.0),
+            Some("1"),
+            "the largest factor that MC_SetOverride accepts, from 1; the limits still apply",
+            |config| Some(config.override_max),
+            |config, value| config.override_max = value,
+        ),
+        Key::new(
+            "power_timeout",
+            Some("no time limit"),
+            "time (scans, or TIME, above 0) in which the drive has to confirm the power that MC_Power requests; after it MC_Power shows Error 503, the axis stays Disabled, and a new Enable or MC_Reset requests power again",
+            Holds::Scans {
                 range: (1, SCANS),
                 get: |config| config.power_timeout,
                 set: |config, value| config.power_timeout = Some(value),
             },
-        },
-        Key {
-            path: "in_position",
-            doc: "when a move that ends at rest is done",
-            absent: Some("the set position decides alone"),
-            null: None,
-            holds: Holds::Object(Object::new("`in_position`", IN_POSITION)),
-        },
+        ),
+        Key::object(
+            "in_position",
+            "`in_position`",
+            IN_POSITION,
+            Some("the set position decides alone"),
+            "when a move that ends at rest is done",
+        ),
         optional!(
             "max_following_error",
             max_following_error,
             "not supervised",
             "a set position further than this (u) from the actual position is an axis error (404); MC_WriteParameter changes it"
         ),
-        Key {
-            path: "coupling",
-            doc: "behaviour of the axis as a slave, and for slaves that follow its actual values, see coupling.md",
-            absent: Some("as without its keys"),
-            null: None,
-            holds: Holds::Object(Object::new("`coupling`", COUPLING)),
-        },
+        Key::object(
+            "coupling",
+            "`coupling`",
+            COUPLING,
+            Some("as without its keys"),
+            "behaviour of the axis as a slave, and for slaves that follow its actual values, see coupling.md",
+        ),
         word!(
             "jog_at_limit",
             jog_at_limit,
@@ -321,16 +306,15 @@ pub static AXIS: Object<AxisConfig> = Object::new(
             Some("`restart`"),
             "a rising edge of Execute while the instance is Busy: starts the command anew, `restart`; does nothing, `ignore`, as blocks of Tc2 do. An edge of MC_Stop is never ignored: Execute is its lock"
         ),
-        Key {
-            path: "vibration",
-            doc: "list of the one or two modes in which its load swings: set-points are shaped so that moves end without swing, see vibration.md",
-            absent: Some("none, nothing is shaped"),
-            null: None,
-            holds: Holds::List(&[
+        Key::new(
+            "vibration",
+            Some("none, nothing is shaped"),
+            "list of the one or two modes in which its load swings: set-points are shaped so that moves end without swing, see vibration.md",
+            Holds::List(&[
                 Object::new("a mode of `vibration`", MODE_0),
                 Object::new("a mode of `vibration`", MODE_1),
             ]),
-        },
+        ),
     ],
 );
 
@@ -338,43 +322,36 @@ pub static AXIS: Object<AxisConfig> = Object::new(
 macro_rules! mode {
     ($place:literal, $frequency:literal, $damping:literal, $shaper:literal) => {
         &[
-            Key {
-                path: $frequency,
-                doc: "frequency without damping (Hz): a period takes from 4 to 4096 cycles",
-                absent: None,
-                null: None,
-                holds: Holds::Number {
-                    bounds: Bounds::POSITIVE,
-                    get: |config| config.vibration[$place].map(|mode| mode.frequency),
-                    set: |config, value| {
-                        config.vibration[$place].get_or_insert(VibrationMode::new(value)).frequency = value;
-                    },
+            Key::number(
+                $frequency,
+                Bounds::POSITIVE,
+                None,
+                "frequency without damping (Hz): a period takes from 4 to 4096 cycles",
+                |config| config.vibration[$place].map(|mode| mode.frequency),
+                |config, value| {
+                    config.vibration[$place].get_or_insert(VibrationMode::new(value)).frequency = value;
                 },
-            },
-            Key {
-                path: $damping,
-                doc: "damping ratio, from 0 to 0.9",
-                absent: Some("0"),
-                null: None,
-                holds: Holds::Number {
-                    bounds: Bounds {
-                        most: DAMPING_MAX,
-                        ..Bounds::from(0.0)
-                    },
-                    get: |config| config.vibration[$place].map(|mode| mode.damping),
-                    set: |config, value| {
-                        if let Some(mode) = &mut config.vibration[$place] {
-                            mode.damping = value;
-                        }
-                    },
+            ),
+            Key::number(
+                $damping,
+                Bounds {
+                    most: DAMPING_MAX,
+                    ..Bounds::from(0.0)
                 },
-            },
-            Key {
-                path: $shaper,
-                doc: "`zv`, the shortest, for a frequency that is known; `zvd` and `ei`, twice as long, for one that is not; `period`, the mean over a period",
-                absent: Some("`ei`"),
-                null: None,
-                holds: Holds::Word {
+                Some("0"),
+                "damping ratio, from 0 to 0.9",
+                |config| config.vibration[$place].map(|mode| mode.damping),
+                |config, value| {
+                    if let Some(mode) = &mut config.vibration[$place] {
+                        mode.damping = value;
+                    }
+                },
+            ),
+            Key::new(
+                $shaper,
+                Some("`ei`"),
+                "`zv`, the shortest, for a frequency that is known; `zvd` and `ei`, twice as long, for one that is not; `period`, the mean over a period",
+                Holds::Word {
                     words: &SHAPERS,
                     get: |config| {
                         let mode = config.vibration[$place]?;
@@ -386,7 +363,7 @@ macro_rules! mode {
                         }
                     },
                 },
-            },
+            ),
         ]
     };
 }
@@ -404,68 +381,43 @@ const MODE_1: &[Key<AxisConfig>] = mode!(
     "vibration.1.shaper"
 );
 
-const SHAPERS: [&str; ShaperKind::ALL.len()] = {
-    let mut words = [""; ShaperKind::ALL.len()];
-    let mut index = 0;
-    while index < words.len() {
-        words[index] = ShaperKind::ALL[index].name();
-        index += 1;
-    }
-    words
-};
+const SHAPERS: [&str; ShaperKind::ALL.len()] = names!(ShaperKind::ALL);
 
-const PROFILES: [&str; MoveProfile::ALL.len()] = {
-    let mut words = [""; MoveProfile::ALL.len()];
-    let mut index = 0;
-    while index < words.len() {
-        words[index] = MoveProfile::ALL[index].name();
-        index += 1;
-    }
-    words
-};
+const PROFILES: [&str; MoveProfile::ALL.len()] = names!(MoveProfile::ALL);
 
 const LIMITS: &[Key<AxisConfig>] = &[
-    Key {
-        path: "limits.velocity",
-        doc: "largest velocity (u/s)",
-        absent: None,
-        null: None,
-        holds: Holds::Number {
-            bounds: Bounds::POSITIVE,
-            get: |config| Some(config.limits.velocity),
-            set: |config, value| config.limits.velocity = value,
+    Key::number(
+        "limits.velocity",
+        Bounds::POSITIVE,
+        None,
+        "largest velocity (u/s)",
+        |config| Some(config.limits.velocity),
+        |config, value| config.limits.velocity = value,
+    ),
+    Key::number(
+        "limits.acceleration",
+        Bounds::POSITIVE,
+        None,
+        "largest rate while the speed grows (u/s^2)",
+        |config| Some(config.limits.acceleration),
+        // The default of the deceleration is the acceleration.
+        |config, value| {
+            config.limits.acceleration = value;
+            if config.limits.deceleration == f64::INFINITY {
+                config.limits.deceleration = value;
+            }
         },
-    },
+    ),
     Key {
-        path: "limits.acceleration",
-        doc: "largest rate while the speed grows (u/s^2)",
-        absent: None,
-        null: None,
-        holds: Holds::Number {
-            bounds: Bounds::POSITIVE,
-            get: |config| Some(config.limits.acceleration),
-            // The default of the deceleration is the acceleration.
-            set: |config, value| {
-                config.limits.acceleration = value;
-                if config.limits.deceleration == f64::INFINITY {
-                    config.limits.deceleration = value;
-                }
-            },
-        },
-    },
-    Key {
-        path: "limits.deceleration",
-        doc: "largest rate while the speed falls (u/s^2)",
-        absent: Some("the acceleration"),
-        null: Some(Null {
-            is: |_| false,
-            set: |_| {},
-        }),
-        holds: Holds::Number {
-            bounds: Bounds::POSITIVE,
-            get: |config| Some(config.limits.deceleration),
-            set: |config, value| config.limits.deceleration = value,
-        },
+        null: Some(Null::ABSENT),
+        ..Key::number(
+            "limits.deceleration",
+            Bounds::POSITIVE,
+            Some("the acceleration"),
+            "largest rate while the speed falls (u/s^2)",
+            |config| Some(config.limits.deceleration),
+            |config, value| config.limits.deceleration = value,
+        )
     },
     limit!(
         "limits.jerk",
@@ -485,21 +437,18 @@ const LIMITS: &[Key<AxisConfig>] = &[
 macro_rules! application {
     ($path:literal, $field:ident, $absent:literal, $doc:literal) => {
         Key {
-            path: $path,
-            doc: $doc,
-            absent: Some($absent),
-            null: Some(Null {
-                is: |_| false,
-                set: |_| {},
-            }),
-            holds: Holds::Number {
-                bounds: Bounds::POSITIVE,
-                get: |config| {
+            null: Some(Null::ABSENT),
+            ..Key::number(
+                $path,
+                Bounds::POSITIVE,
+                Some($absent),
+                $doc,
+                |config| {
                     let limits = config.application_limits.as_ref();
                     limits.map(|it| it.$field).filter(|limit| *limit != f64::INFINITY)
                 },
-                set: |config, value| application(config).$field = value,
-            },
+                |config, value| application(config).$field = value,
+            )
         }
     };
 }
@@ -516,25 +465,22 @@ const APPLICATION_LIMITS: &[Key<AxisConfig>] = &[
         "that of the axis",
         "largest velocity (u/s)"
     ),
-    Key {
-        path: "application_limits.acceleration",
-        doc: "largest rate while the speed grows (u/s^2)",
-        absent: Some("that of the axis"),
-        null: None,
-        holds: Holds::Number {
-            bounds: Bounds::POSITIVE,
-            get: |config| config.application_limits.map(|it| it.acceleration),
-            // The default of the deceleration is the acceleration, as far as the axis permits.
-            set: |config, value| {
-                let deceleration = config.limits.deceleration;
-                let limits = application(config);
-                limits.acceleration = value;
-                if limits.deceleration == deceleration {
-                    limits.deceleration = value.min(deceleration);
-                }
-            },
+    Key::number(
+        "application_limits.acceleration",
+        Bounds::POSITIVE,
+        Some("that of the axis"),
+        "largest rate while the speed grows (u/s^2)",
+        |config| config.application_limits.map(|it| it.acceleration),
+        // The default of the deceleration is the acceleration, as far as the axis permits.
+        |config, value| {
+            let deceleration = config.limits.deceleration;
+            let limits = application(config);
+            limits.acceleration = value;
+            if limits.deceleration == deceleration {
+                limits.deceleration = value.min(deceleration);
+            }
         },
-    },
+    ),
     application!(
         "application_limits.deceleration",
         deceleration,
@@ -558,17 +504,14 @@ const APPLICATION_LIMITS: &[Key<AxisConfig>] = &[
 /// A key for one of the stop limits.
 macro_rules! stop {
     ($path:literal, $field:ident, $doc:literal) => {
-        Key {
-            path: $path,
-            doc: $doc,
-            absent: Some("the limit"),
-            null: None,
-            holds: Holds::Number {
-                bounds: Bounds::POSITIVE,
-                get: |config| config.stop.and_then(|stop| stop.$field),
-                set: |config, value| config.stop.get_or_insert_default().$field = Some(value),
-            },
-        }
+        Key::number(
+            $path,
+            Bounds::POSITIVE,
+            Some("the limit"),
+            $doc,
+            |config| config.stop.and_then(|stop| stop.$field),
+            |config, value| config.stop.get_or_insert_default().$field = Some(value),
+        )
     };
 }
 
@@ -610,86 +553,74 @@ fn scale(config: &mut AxisConfig, change: impl FnOnce(&mut (u32, u32, bool, f64)
 const COUNT: (u64, u64) = (1, u32::MAX as u64);
 
 const SCALING: &[Key<AxisConfig>] = &[
-    Key {
-        path: "scaling.increments",
-        doc: "this number of increments of the drive ..",
-        absent: None,
-        null: None,
-        holds: Holds::Whole {
+    Key::new(
+        "scaling.increments",
+        None,
+        "this number of increments of the drive ..",
+        Holds::Whole {
             range: COUNT,
             get: |config| config.scaling.map(|scaling| scaling.increments().into()),
             set: |config, value| scale(config, |parts| parts.0 = u32::try_from(value).unwrap_or(0)),
         },
-    },
-    Key {
-        path: "scaling.units",
-        doc: ".. is this number of user units",
-        absent: None,
-        null: None,
-        holds: Holds::Whole {
+    ),
+    Key::new(
+        "scaling.units",
+        None,
+        ".. is this number of user units",
+        Holds::Whole {
             range: COUNT,
             get: |config| config.scaling.map(|scaling| scaling.units().into()),
             set: |config, value| scale(config, |parts| parts.1 = u32::try_from(value).unwrap_or(0)),
         },
-    },
-    Key {
-        path: "scaling.invert",
-        doc: "the drive counts the other way",
-        absent: Some("false"),
-        null: None,
-        holds: Holds::Bool {
+    ),
+    Key::new(
+        "scaling.invert",
+        Some("false"),
+        "the drive counts the other way",
+        Holds::Bool {
             get: |config| config.scaling.is_some_and(|scaling| scaling.invert()),
             set: |config, value| scale(config, |parts| parts.2 = value),
         },
-    },
-    Key {
-        path: "scaling.offset",
-        doc: "position at increment 0 (u)",
-        absent: Some("0"),
-        null: None,
-        holds: Holds::Number {
-            bounds: Bounds::FINITE,
-            get: |config| config.scaling.map(|scaling| scaling.offset()),
-            set: |config, value| scale(config, |parts| parts.3 = value),
-        },
-    },
+    ),
+    Key::number(
+        "scaling.offset",
+        Bounds::FINITE,
+        Some("0"),
+        "position at increment 0 (u)",
+        |config| config.scaling.map(|scaling| scaling.offset()),
+        |config, value| scale(config, |parts| parts.3 = value),
+    ),
 ];
 
 const NO_END: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
 const SOFTWARE_LIMITS: &[Key<AxisConfig>] = &[
-    Key {
-        path: "software_limits.min",
-        doc: "lowest position (u)",
-        absent: Some("none"),
-        null: None,
-        holds: Holds::Number {
-            bounds: Bounds::FINITE,
-            get: |config| {
-                config
-                    .software_limits
-                    .map(|(min, _)| min)
-                    .filter(|min| *min != NO_END.0)
-            },
-            set: |config, value| config.software_limits.get_or_insert(NO_END).0 = value,
+    Key::number(
+        "software_limits.min",
+        Bounds::FINITE,
+        Some("none"),
+        "lowest position (u)",
+        |config| {
+            config
+                .software_limits
+                .map(|(min, _)| min)
+                .filter(|min| *min != NO_END.0)
         },
-    },
-    Key {
-        path: "software_limits.max",
-        doc: "highest position (u), above the lowest",
-        absent: Some("none"),
-        null: None,
-        holds: Holds::Number {
-            bounds: Bounds::FINITE,
-            get: |config| {
-                config
-                    .software_limits
-                    .map(|(_, max)| max)
-                    .filter(|max| *max != NO_END.1)
-            },
-            set: |config, value| config.software_limits.get_or_insert(NO_END).1 = value,
+        |config, value| config.software_limits.get_or_insert(NO_END).0 = value,
+    ),
+    Key::number(
+        "software_limits.max",
+        Bounds::FINITE,
+        Some("none"),
+        "highest position (u), above the lowest",
+        |config| {
+            config
+                .software_limits
+                .map(|(_, max)| max)
+                .filter(|max| *max != NO_END.1)
         },
-    },
+        |config, value| config.software_limits.get_or_insert(NO_END).1 = value,
+    ),
 ];
 
 const NO_WINDOW: InPosition = InPosition {
@@ -698,30 +629,26 @@ const NO_WINDOW: InPosition = InPosition {
 };
 
 const IN_POSITION: &[Key<AxisConfig>] = &[
-    Key {
-        path: "in_position.window",
-        doc: "the actual position has been within this (u) of the set position ..",
-        absent: None,
-        null: None,
-        holds: Holds::Number {
-            bounds: Bounds::POSITIVE,
-            get: |config| config.in_position.map(|it| it.window),
-            set: |config, value| config.in_position.get_or_insert(NO_WINDOW).window = value,
-        },
-    },
-    Key {
-        path: "in_position.time",
-        doc: ".. for this long (scans, or TIME)",
-        absent: Some("0"),
-        null: None,
-        holds: Holds::Scans {
+    Key::number(
+        "in_position.window",
+        Bounds::POSITIVE,
+        None,
+        "the actual position has been within this (u) of the set position ..",
+        |config| config.in_position.map(|it| it.window),
+        |config, value| config.in_position.get_or_insert(NO_WINDOW).window = value,
+    ),
+    Key::new(
+        "in_position.time",
+        Some("0"),
+        ".. for this long (scans, or TIME)",
+        Holds::Scans {
             range: (0, SCANS),
             get: |config| config.in_position.map(|it| it.scans.into()),
             set: |config, value| {
                 config.in_position.get_or_insert(NO_WINDOW).scans = u32::try_from(value).unwrap_or(u32::MAX);
             },
         },
-    },
+    ),
 ];
 
 const COUPLING: &[Key<AxisConfig>] = &[
@@ -749,47 +676,37 @@ const COUPLING: &[Key<AxisConfig>] = &[
         Some("`error`"),
         "if its master goes out of operation: it stops with error 421 (`error`), or comes to rest and stays coupled (`hold`)"
     ),
-    Key {
-        path: "coupling.actual_filter",
-        doc: "length of each of the four averages through which slaves see its actual values (scans, at most 64, or TIME; 0 for none)",
-        absent: Some("16 scans"),
-        null: None,
-        holds: Holds::Scans {
+    Key::new(
+        "coupling.actual_filter",
+        Some("16 scans"),
+        "length of each of the four averages through which slaves see its actual values (scans, at most 64, or TIME; 0 for none)",
+        Holds::Scans {
             range: (0, ACTUAL_FILTER_MAX as u64),
             get: |config| Some(config.following.actual_filter.into()),
             set: |config, value| config.following.actual_filter = u32::try_from(value).unwrap_or(u32::MAX),
         },
-    },
+    ),
     flag!(
         "coupling.actual_lead",
         following.actual_lead,
         "false",
         "slaves of its actual values see it ahead by the delay of the averages"
     ),
-    Key {
-        path: "coupling.cam_continuity",
-        doc: "number of derivatives of a cam that must be continuous (0 to 3); if its limits require more, it stops at the rows at which one jumps",
-        absent: Some("3 with a snap limit, 2 with a jerk limit, 1 without"),
-        null: None,
-        holds: Holds::Whole {
+    Key::new(
+        "coupling.cam_continuity",
+        Some("3 with a snap limit, 2 with a jerk limit, 1 without"),
+        "number of derivatives of a cam that must be continuous (0 to 3); if its limits require more, it stops at the rows at which one jumps",
+        Holds::Whole {
             range: (0, CAM_CONTINUITY_MAX as u64),
             get: |config| config.following.cam_continuity.map(Into::into),
             set: |config, value| {
                 config.following.cam_continuity = Some(u8::try_from(value).unwrap_or(CAM_CONTINUITY_MAX));
             },
         },
-    },
+    ),
 ];
 
-const PROCEDURES: [&str; Procedure::ALL.len()] = {
-    let mut words = [""; Procedure::ALL.len()];
-    let mut index = 0;
-    while index < words.len() {
-        words[index] = Procedure::ALL[index].name();
-        index += 1;
-    }
-    words
-};
+const PROCEDURES: [&str; Procedure::ALL.len()] = names!(Procedure::ALL);
 
 const NO_BLOCK: BlockDetection = BlockDetection {
     velocity: 0.0,
@@ -797,12 +714,11 @@ const NO_BLOCK: BlockDetection = BlockDetection {
 };
 
 const HOMING: &[Key<AxisConfig>] = &[
-    Key {
-        path: "homing.procedure",
-        doc: "`direct`, `absolute_switch`, `limit_switch`, `reference_pulse`, `block`, `drive`",
-        absent: None,
-        null: None,
-        holds: Holds::Word {
+    Key::new(
+        "homing.procedure",
+        None,
+        "`direct`, `absolute_switch`, `limit_switch`, `reference_pulse`, `block`, `drive`",
+        Holds::Word {
             words: &PROCEDURES,
             get: |config| place!(Procedure::ALL, config.homing.procedure),
             set: |config, place| {
@@ -811,7 +727,7 @@ const HOMING: &[Key<AxisConfig>] = &[
                 }
             },
         },
-    },
+    ),
     word!(
         "homing.direction",
         homing.direction,
@@ -836,17 +752,14 @@ const HOMING: &[Key<AxisConfig>] = &[
         Some("`rising`"),
         "of the home switch: `rising`, `falling`, `switch_positive`, `switch_negative`"
     ),
-    Key {
-        path: "homing.velocity",
-        doc: "of the search (u/s), not above that of the limits",
-        absent: Some("needed for a search"),
-        null: None,
-        holds: Holds::Number {
-            bounds: Bounds::POSITIVE,
-            get: |config| Some(config.homing.velocity).filter(|velocity| *velocity != 0.0),
-            set: |config, value| config.homing.velocity = value,
-        },
-    },
+    Key::number(
+        "homing.velocity",
+        Bounds::POSITIVE,
+        Some("needed for a search"),
+        "of the search (u/s), not above that of the limits",
+        |config| Some(config.homing.velocity).filter(|velocity| *velocity != 0.0),
+        |config, value| config.homing.velocity = value,
+    ),
     optional!(
         "homing.creep",
         homing.creep,
@@ -859,24 +772,23 @@ const HOMING: &[Key<AxisConfig>] = &[
         "false",
         "the next reference pulse behind the edge of the switch is the reference"
     ),
-    Key {
-        path: "homing.block",
-        doc: "condition for a mechanical stop",
-        absent: Some("needed for `block`"),
-        null: None,
-        holds: Holds::Object(Object::new("`block` of a homing", BLOCK)),
-    },
-    Key {
-        path: "homing.time_limit",
-        doc: "of the search (scans, or TIME)",
-        absent: Some("none"),
-        null: None,
-        holds: Holds::Scans {
+    Key::object(
+        "homing.block",
+        "`block` of a homing",
+        BLOCK,
+        Some("needed for `block`"),
+        "condition for a mechanical stop",
+    ),
+    Key::new(
+        "homing.time_limit",
+        Some("none"),
+        "of the search (scans, or TIME)",
+        Holds::Scans {
             range: (0, SCANS),
             get: |config| config.homing.time_limit,
             set: |config, value| config.homing.time_limit = Some(value),
         },
-    },
+    ),
     optional!(
         "homing.distance_limit",
         homing.distance_limit,
@@ -886,28 +798,24 @@ const HOMING: &[Key<AxisConfig>] = &[
 ];
 
 const BLOCK: &[Key<AxisConfig>] = &[
-    Key {
-        path: "homing.block.velocity",
-        doc: "the actual velocity is below this (u/s), which is not above that of the search ..",
-        absent: None,
-        null: None,
-        holds: Holds::Number {
-            bounds: Bounds::POSITIVE,
-            get: |config| config.homing.block.map(|block| block.velocity),
-            set: |config, value| config.homing.block.get_or_insert(NO_BLOCK).velocity = value,
-        },
-    },
-    Key {
-        path: "homing.block.time",
-        doc: ".. for this long (scans, or TIME)",
-        absent: None,
-        null: None,
-        holds: Holds::Scans {
+    Key::number(
+        "homing.block.velocity",
+        Bounds::POSITIVE,
+        None,
+        "the actual velocity is below this (u/s), which is not above that of the search ..",
+        |config| config.homing.block.map(|block| block.velocity),
+        |config, value| config.homing.block.get_or_insert(NO_BLOCK).velocity = value,
+    ),
+    Key::new(
+        "homing.block.time",
+        None,
+        ".. for this long (scans, or TIME)",
+        Holds::Scans {
             range: (0, SCANS),
             get: |config| config.homing.block.map(|block| block.scans.into()),
             set: |config, value| {
                 config.homing.block.get_or_insert(NO_BLOCK).scans = u32::try_from(value).unwrap_or(u32::MAX);
             },
         },
-    },
+    ),
 ];

@@ -115,6 +115,14 @@ pub struct Null<T: 'static> {
     pub set: fn(&mut T),
 }
 
+impl<T> Null<T> {
+    /// As if the key were not given.
+    pub const ABSENT: Self = Self {
+        is: |_| false,
+        set: |_| {},
+    };
+}
+
 /// A key.
 #[derive(Clone, Copy, Debug)]
 pub struct Key<T: 'static> {
@@ -131,6 +139,45 @@ pub struct Key<T: 'static> {
 }
 
 impl<T> Key<T> {
+    /// A key for which null means nothing.
+    pub const fn new(
+        path: &'static str,
+        absent: Option<&'static str>,
+        doc: &'static str,
+        holds: Holds<T>,
+    ) -> Self {
+        Self {
+            path,
+            doc,
+            absent,
+            null: None,
+            holds,
+        }
+    }
+
+    /// A key for a number.
+    pub const fn number(
+        path: &'static str,
+        bounds: Bounds,
+        absent: Option<&'static str>,
+        doc: &'static str,
+        get: fn(&T) -> Option<f64>,
+        set: fn(&mut T, f64),
+    ) -> Self {
+        Self::new(path, absent, doc, Holds::Number { bounds, get, set })
+    }
+
+    /// A key with keys of its own.
+    pub const fn object(
+        path: &'static str,
+        what: &'static str,
+        keys: &'static [Self],
+        absent: Option<&'static str>,
+        doc: &'static str,
+    ) -> Self {
+        Self::new(path, absent, doc, Holds::Object(Object::new(what, keys)))
+    }
+
     /// Its own name.
     pub fn name(&self) -> &'static str {
         let above = self.path.bytes().rposition(|byte| byte == b'.');
