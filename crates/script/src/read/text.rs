@@ -346,13 +346,14 @@ impl Reader {
             return self.refuse(Diagnostic::new(Code::BadTime, span, message));
         }
         let interval = Some((interval_ns / cycle).unsigned_abs());
+        let priority = u32::try_from(task.priority.max(0)).unwrap_or(u32::MAX);
         let upper = task.name.to_ascii_uppercase();
         let Some(place) = self.task_places.get(&upper).copied() else {
             self.task_places.insert(upper, tasks.len());
             tasks.push(Task {
                 name: task.name.clone(),
                 interval,
-                priority: u32::try_from(task.priority.max(0)).unwrap_or(u32::MAX),
+                priority,
                 single: None,
                 watchdog: None,
             });
@@ -364,7 +365,7 @@ impl Reader {
             fields.get("tasks").is_none() && matches!(blocks, Some(Json::List(items)) if items.is_empty());
         if nobody && there.interval == Some(1) {
             // The predefined task; it has no part of the script.
-            there.interval = interval;
+            (there.interval, there.priority) = (interval, priority);
             return Some(place);
         }
         if there.interval != interval {
