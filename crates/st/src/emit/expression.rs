@@ -29,6 +29,10 @@ pub(super) struct Emitter<'c, 'p, 'a> {
     pub loops: Vec<Loop>,
     /// The end of the function's statements.
     pub end: Option<Label>,
+    /// A METHOD may be called before its block was ever given its VAR_IN_OUT.
+    pub is_method: bool,
+    /// The statement that is being written.
+    pub statement: Span,
 }
 
 impl<'c, 'p, 'a> Emitter<'c, 'p, 'a> {
@@ -39,6 +43,8 @@ impl<'c, 'p, 'a> Emitter<'c, 'p, 'a> {
             callee: (Root::Zero, 0),
             loops: Vec::new(),
             end: None,
+            is_method: false,
+            statement: Span::default(),
         }
     }
 

@@ -31,6 +31,17 @@ impl Emitter<'_, '_, '_> {
     }
 
     pub(super) fn push_root(&mut self, root: Root) {
+        if let Root::Pointer(Some(local), offset) = root
+            && self.is_method
+        {
+            let site = self.site(self.statement, FaultKind::Unbound);
+            self.function
+                .sink()
+                .local_get(local)
+                .i32_load(at(offset, 2))
+                .i32_eqz();
+            self.plain_fault_if(site);
+        }
         let mut sink = self.function.sink();
         match root {
             Root::Zero => sink.i32_const(0),

@@ -82,6 +82,7 @@ pub(super) fn unit(context: &mut Context<'_, '_>, id: UnitId) -> Function {
     };
     let body = context.bodies.get(&id).copied();
     let mut emitter = Emitter::new(context, Function::new(parameters, value));
+    emitter.is_method = is_method;
     let (root, frame) = if is_function {
         (Root::Zero, info.frame)
     } else {
@@ -191,12 +192,15 @@ impl Emitter<'_, '_, '_> {
     }
 
     pub(super) fn statements(&mut self, list: &[Stmt]) {
+        let outer = self.statement;
         for statement in list {
             let mark = self.function.mark();
+            self.statement = statement.span;
             self.count(statement.span, 0);
             self.statement(statement);
             self.function.release(mark);
         }
+        self.statement = outer;
     }
 
     fn statement(&mut self, statement: &Stmt) {
