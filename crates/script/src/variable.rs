@@ -2,7 +2,7 @@
 
 use standstill_fb::{PinType, Value};
 use standstill_guest::SymbolType;
-use standstill_st::{self as st, Elementary, Section};
+use standstill_st::{self as st, Elementary};
 use standstill_trace::Cell;
 
 /// The properties of a variable besides its name and place.
@@ -20,7 +20,7 @@ impl Variable {
             ty: symbol.ty,
             type_name: symbol.type_name.clone(),
             meaning: symbol.value.clone(),
-            settable: symbol.at.is_some() || matches!(symbol.section, Section::Global | Section::Input),
+            settable: symbol.is_settable(),
         }
     }
 
@@ -30,7 +30,7 @@ impl Variable {
         self.ty
     }
 
-    /// Whether steps may set it: an input, a global variable or one AT an address.
+    /// Whether steps may set it: an input, a global variable that is no CONSTANT, or one AT an address.
     #[must_use]
     pub const fn is_settable(&self) -> bool {
         self.settable

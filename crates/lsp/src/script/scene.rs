@@ -284,10 +284,7 @@ impl<'d> Scene<'d> {
         let leaves = compiled.symbols.leaves(VARIABLES_MOST).into_iter();
         let signal = |it: standstill_st::Symbol| Signal {
             name: format!("{name}.{}", compiled.symbols.short(&it.path)),
-            settable: matches!(
-                it.section,
-                standstill_st::Section::Input | standstill_st::Section::Global
-            ) || it.at.is_some(),
+            settable: it.is_settable(),
             detail: it.type_name,
             doc: String::new(),
         };

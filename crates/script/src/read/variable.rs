@@ -30,7 +30,7 @@ impl Reader {
     ) -> Option<Action> {
         if !variable.is_settable() {
             let message = format!("{} is not for steps to set", quoted(name));
-            let help = "steps set VAR_INPUT, VAR_GLOBAL and variables AT an address";
+            let help = "steps set VAR_INPUT, VAR_GLOBAL and variables AT an address, but no CONSTANT";
             return self.refuse(Diagnostic::new(Code::NotWritable, span, message).help(help));
         }
         let what = format!("{} ({})", quoted(name), variable.type_name());

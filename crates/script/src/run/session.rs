@@ -465,7 +465,9 @@ impl<'a> Session<'a> {
                     .script
                     .variable(point)
                     .filter(|variable| !variable.is_settable());
-                return variable.map(|_| "only inputs, global variables and those AT an address are set");
+                return variable.map(
+                    |_| "only inputs, global variables and those AT an address are set, and no constants",
+                );
             }
             Point::Pin(instance, pin) => (instance, pin),
         };

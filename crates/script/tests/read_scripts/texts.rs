@@ -12,7 +12,7 @@ const FILES: [(&str, &str); 7] = [
     (
         "cell.st",
         "TYPE E_State : (Idle, Busy := 3); END_TYPE
-         VAR_GLOBAL Total : LINT; END_VAR
+         VAR_GLOBAL Total : LINT; END_VAR VAR_GLOBAL CONSTANT Most : INT := 9; END_VAR
          PROGRAM Cell
          VAR_INPUT Go : BOOL; Speed : REAL; Level : INT(0..9); State : E_State; Wait : TIME; END_VAR
          VAR Feeder : AXIS_REF; Mv : MC_MoveAbsolute; Inner : INT; END_VAR
@@ -107,7 +107,7 @@ fn columns_are_what_trace_names_and_what_the_script_asks_for() {
         symbols.map(|symbol| symbol.name.clone()).collect()
     };
     let usual = names(CELL, r#""c.total": 0"#);
-    assert_eq!(usual[..3], ["Fault", "Total", "Mv.Execute"]);
+    assert_eq!(usual[..4], ["Fault", "Total", "Most", "Mv.Execute"]);
     assert!(usual.iter().any(|name| name == "Mv.Done"), "{usual:?}");
     assert!(!usual.iter().any(|name| name == "Inner"), "{usual:?}");
     let asked = names(

@@ -184,7 +184,11 @@ impl<'a> Checker<'a> {
             result: None,
             frame: 0,
         });
-        for section in unit.sections.iter().filter(|section| section.constant) {
+        // The caller gives an input its value, which the unit must not change.
+        let is_known = |section: &&Section| {
+            section.constant && !matches!(section.kind, SectionKind::Input | SectionKind::InOut)
+        };
+        for section in unit.sections.iter().filter(is_known) {
             for variables in &section.variables {
                 for (name, _) in &variables.names {
                     self.declare_constant(Some(id), name, &variables.spec, variables.initial.as_ref());

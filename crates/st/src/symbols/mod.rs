@@ -57,8 +57,22 @@ pub struct Symbol {
     pub at: Option<String>,
     /// Whether it is declared RETAIN or PERSISTENT.
     pub retain: bool,
+    /// Whether it is declared CONSTANT.
+    pub constant: bool,
     /// The meaning of its numbers.
     pub value: Value,
+}
+
+impl Symbol {
+    /// Whether a host may set it: an input, a global variable that is no CONSTANT, or one AT an address.
+    #[must_use]
+    pub fn is_settable(&self) -> bool {
+        match self.section {
+            Section::Input => true,
+            Section::Global => !self.constant,
+            Section::Output | Section::Internal => self.at.is_some(),
+        }
+    }
 }
 
 /// A place in the sources.
@@ -124,6 +138,7 @@ struct Part {
     address: u32,
     section: Section,
     retain: bool,
+    constant: bool,
     at: Option<String>,
 }
 
@@ -304,6 +319,7 @@ impl Symbols {
             address: root.address,
             section: root.section,
             retain: root.member.retain,
+            constant: root.member.constant,
             at: root.member.address.clone(),
         }
     }
@@ -330,6 +346,7 @@ impl Symbols {
             address: of.address + member.offset,
             section,
             retain: of.retain || member.retain,
+            constant: of.constant || member.constant,
             at: member.address.clone(),
         })
     }
@@ -369,6 +386,7 @@ impl Symbols {
             address: of.address + number * array.stride,
             section: of.section,
             retain: of.retain,
+            constant: of.constant,
             at: None,
         }
     }
@@ -387,6 +405,7 @@ impl Symbols {
             address: part.address,
             section: part.section,
             retain: part.retain,
+            constant: part.constant,
             at: part.at.clone(),
             value,
         })
