@@ -57,7 +57,7 @@ impl Reader {
     /// Reads the pins of instance `index` into `instance`.
     fn pins(&mut self, index: usize, fields: &Fields<'_>, instance: &mut Instance) -> Option<()> {
         let block = instance.block;
-        let members = self.optional(fields, "pins", None, |it, node, key| it.map(node, key).map(Some))?;
+        let members = self.if_given(fields, "pins", Self::map)?;
         let mut seen: BTreeMap<usize, Span> = BTreeMap::new();
         let mut good = true;
         for (key, node) in members.iter().flat_map(Fields::iter) {

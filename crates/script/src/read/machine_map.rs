@@ -53,7 +53,7 @@ impl Reader {
         let time_tolerance = self.optional(&fields, "time_tolerance", 0, Self::not_negative_time)?;
         let signals = self.require(&fields, "signals", "a map");
         let signals = signals.and_then(|node| self.signals(node, trace, time_tolerance));
-        let window = self.optional(&fields, "window", None, Self::window)?;
+        let window = self.if_given(&fields, "window", Self::window)?;
         let node = self.require(&fields, "offset", "a map")?;
         let offset = self.offset(node, signals.as_deref()?, trace);
         Some(Map {
@@ -66,11 +66,11 @@ impl Reader {
 
     fn recording(&mut self, node: &Node) -> Option<Layout> {
         let fields = self.fields(node, &shape::RECORDING)?;
-        let delimiter = self.optional(&fields, "delimiter", None, |it, node, key| {
-            it.choice(node, key, &DELIMITERS).map(Some)
+        let delimiter = self.if_given(&fields, "delimiter", |it, node, key| {
+            it.choice(node, key, &DELIMITERS)
         })?;
-        let decimal = self.optional(&fields, "decimal", None, |it, node, key| {
-            it.choice(node, key, &DECIMALS).map(Some)
+        let decimal = self.if_given(&fields, "decimal", |it, node, key| {
+            it.choice(node, key, &DECIMALS)
         })?;
         let node = self.require(&fields, "time", "`recording`")?;
         let time = self.fields(node, &shape::TIME)?;
@@ -132,11 +132,11 @@ impl Reader {
         self.refuse(Diagnostic::new(Code::BadTime, node.span, message))
     }
 
-    fn window(&mut self, node: &Node, what: &str) -> Option<Option<(i64, i64)>> {
+    fn window(&mut self, node: &Node, what: &str) -> Option<(i64, i64)> {
         let fields = self.fields(node, &shape::WINDOW)?;
         let (from, to) = self.limits_of_time(&fields, what)?;
         if from >= 0 {
-            return Some(Some((from, to)));
+            return Some((from, to));
         }
         let message = "`window` begins before scan 0";
         self.refuse(Diagnostic::new(Code::BadTime, node.span, message))

@@ -223,12 +223,10 @@ impl Reader {
         let (ty, address, export) = match &node.json {
             Json::Map(_) => {
                 let fields = self.fields(node, &shape::SYMBOL)?;
-                let address = self.optional(&fields, "address", None, |it, node, key| {
-                    it.whole(node, key, 0..=i64::from(u32::MAX)).map(Some)
+                let address = self.if_given(&fields, "address", |it, node, key| {
+                    it.whole(node, key, 0..=i64::from(u32::MAX))
                 })?;
-                let export = self.optional(&fields, "export", None, |it, node, key| {
-                    Some(Some(it.text(node, key)?.to_owned()))
-                })?;
+                let export = self.if_given(&fields, "export", Self::text)?.map(str::to_owned);
                 if let (Some(_), Some(node)) = (address, fields.get("export")) {
                     let message = "a symbol stands at an `address` or where an `export` says, not both";
                     self.report(Diagnostic::new(Code::BadValue, node.span, message));

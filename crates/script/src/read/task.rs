@@ -43,24 +43,23 @@ impl Reader {
 
     fn task(&mut self, name: &str, node: &Node) -> Option<Task> {
         let fields = self.fields(node, &shape::TASK)?;
-        let interval = match fields.get("interval") {
-            None => Some(None),
-            Some(node) => self.scans(node, "`interval`").and_then(|scans| {
-                if scans == 0 {
+        let interval = self.if_given(&fields, "interval", |it, node, key| {
+            match it.scans(node, key)? {
+                0 => {
                     let message = "`interval` must be at least one cycle";
-                    return self.refuse(Diagnostic::new(Code::BadTime, node.span, message));
+                    it.refuse(Diagnostic::new(Code::BadTime, node.span, message))
                 }
-                Some(Some(scans))
-            }),
-        };
+                scans => Some(scans),
+            }
+        });
         let priority = self.optional(&fields, "priority", 0, |it, node, key| {
             it.whole(node, key, 0..=i64::from(u32::MAX))
         });
-        let single = self.optional(&fields, "single", None, |it, node, key| {
-            it.wire(node, PinType::Bool, key).map(Some)
+        let single = self.if_given(&fields, "single", |it, node, key| {
+            it.wire(node, PinType::Bool, key)
         });
-        let watchdog = self.optional(&fields, "watchdog", None, |it, node, key| {
-            it.whole(node, key, 1..=i64::from(u32::MAX)).map(Some)
+        let watchdog = self.if_given(&fields, "watchdog", |it, node, key| {
+            it.whole(node, key, 1..=i64::from(u32::MAX))
         });
         if fields.get("interval").is_none() && fields.get("single").is_none() {
             let message = format!("the task {} would never run", quoted(name));

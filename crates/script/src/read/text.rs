@@ -61,11 +61,9 @@ impl Reader {
     ) -> Option<Program> {
         let files = self.sources(fields.get("st")?, load);
         let bindings = self.bindings(fields);
-        let program = self.optional(fields, "program", None, |it, node, key| {
-            Some(Some(it.text(node, key)?.to_owned()))
-        });
+        let program = self.if_given(fields, "program", Self::text);
         let options = Options {
-            program: program?,
+            program: program?.map(str::to_owned),
             coverage: self.terms.coverage,
             axes: self.axis_names.clone(),
             bindings: bindings?,

@@ -170,6 +170,19 @@ impl Reader {
         }
     }
 
+    /// The same for a key without a default; its value is then `None`.
+    pub(super) fn if_given<'n, T>(
+        &mut self,
+        fields: &Fields<'n>,
+        key: &str,
+        read: impl FnOnce(&mut Self, &'n Node, &str) -> Option<T>,
+    ) -> Option<Option<T>> {
+        match fields.get(key) {
+            Some(node) => read(self, node, &quoted(key)).map(Some),
+            None => Some(None),
+        }
+    }
+
     pub(super) fn text<'n>(&mut self, node: &'n Node, what: &str) -> Option<&'n str> {
         if let Json::Text(text) = &node.json {
             return Some(text);
