@@ -497,6 +497,8 @@ pub(super) struct Entry {
     pub halted: bool,
     /// It brakes, or is at rest, because MC_Power bars a direction it needs.
     pub paused: bool,
+    /// Why it was paused. A slave keeps it until it has found a way, so that a pause that goes on is recorded once.
+    pub paused_by: Option<ErrorId>,
     /// MC_Stop: Execute is still TRUE.
     pub held: bool,
     /// It has passed its position, or its profile is over, and it continues with its end velocity.
@@ -606,6 +608,7 @@ impl Entry {
             is_behind: false,
             held: work == Work::Stop,
             paused: false,
+            paused_by: None,
             orphaned: false,
             heir: None,
             barred: None,

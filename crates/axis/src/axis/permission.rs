@@ -153,12 +153,16 @@ impl<P: Planner> Axis<P> {
     /// The same, after it was noted whether the owner has passed its position.
     pub(super) fn pause_noted(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
         let scope = &mut self.owner_scope(scope);
-        self.record(Event::Paused { error }, scope);
+        let goes_on = |owner: &Entry| !owner.paused && owner.paused_by == Some(error);
+        if !self.owner.as_ref().is_some_and(goes_on) {
+            self.record(Event::Paused { error }, scope);
+        }
         if matches!(self.mover.motion(), Motion::Hold | Motion::Follow) {
             return self.brake_superimposed();
         }
         if let Some(mut owner) = self.owner.filter(|owner| owner.work.manner().barred) {
             owner.paused = true;
+            owner.paused_by = Some(error);
             owner.turns = 0;
             self.own(owner);
         }
@@ -183,6 +187,13 @@ impl<P: Planner> Axis<P> {
         self.mover.start(motion, limits);
         self.end_orphan();
         self.watch_anew();
+    }
+
+    /// A slave has searched its way. If it is not paused again, the pause is over.
+    pub(super) fn end_pause(&mut self) {
+        if let Some(owner) = self.owner.as_mut().filter(|owner| !owner.paused) {
+            owner.paused_by = None;
+        }
     }
 
     /// The owner continues from its present state, if all directions it needs are permitted. If it no longer can, it

@@ -225,6 +225,7 @@ impl<P: Planner> Axis<P> {
             // A torque that may continue, or has new values, must be checked in every scan.
             self.stir();
         }
+        let searches = matches!(motion, Motion::Geared);
         self.mover
             .start_anew(motion, Self::limits_of(&entry.limits, &motion));
         self.arrival = Arrival::default();
@@ -233,12 +234,13 @@ impl<P: Planner> Axis<P> {
         }
         let entry = Entry {
             paused: false,
+            paused_by: entry.paused_by.filter(|_| searches),
             ..entry
         };
         self.mover.watch(self.needs_watching(&entry));
         self.own(entry);
         self.replan_due = false;
-        if matches!(self.mover.motion(), Motion::Geared) {
+        if searches {
             self.await_master(&entry, scope);
         }
     }

@@ -116,6 +116,9 @@ impl<P: Planner> Axis<P> {
                     let near = self.near_law(&owner, view, anchor, &difference, may_lock);
                     way = near.unwrap_or(way);
                 }
+                if let Some(error) = self.begins_barred(&way, view) {
+                    return self.stay_back(error, view, scope);
+                }
                 if view.future.is_late() {
                     way.left = 0;
                 }
@@ -135,6 +138,24 @@ impl<P: Planner> Axis<P> {
             }
             Err(error) => self.stay_back(error, view, scope),
         }
+    }
+
+    /// The reason why the first step of a way from rest beside the law is barred.
+    fn begins_barred(&self, way: &Way<P::Plan>, view: &View<'_, P::Plan>) -> Option<ErrorId> {
+        if !self.bars_any() || !self.mover.setpoint().is_at_rest() {
+            return None;
+        }
+        let (Motion::Closing { plan, .. }, Some(coupling)) = (&way.motion, &self.follower.coupling) else {
+            return None;
+        };
+        let frame = match way.rung {
+            Rung::BesideLine { velocity, .. } => velocity,
+            Rung::BesideLaw(anchor) | Rung::BesideMeasured { anchor, .. } => {
+                coupling.law(&anchor, &view.seen()).1.velocity
+            }
+            _ => return None,
+        };
+        self.way_barred(frame + plan.at(1).velocity)
     }
 
     /// The smallest difference (u) from the law, which is at `law` now, that rounding does not hide.

@@ -78,6 +78,7 @@ impl<P: Planner> Axis<P> {
         if (is_new && !stays) || self.rung() == Some(Rung::Due) {
             self.lay_law(view);
             self.approach(view, true, scope);
+            self.end_pause();
             if let Some(coupling) = &mut self.follower.coupling {
                 coupling.is_kept = false;
             }

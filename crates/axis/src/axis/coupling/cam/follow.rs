@@ -36,6 +36,7 @@ impl<P: Planner> Axis<P> {
         let stays = is_locked && (stays || self.adds_motion());
         if (is_new && !stays) || self.cam_rung() == Some(Rung::Due) {
             self.decide_on_cam(view, true, scope);
+            self.end_pause();
             self.tell_outside(view, scope);
             // The last step of a shift is a special one.
             if !shifts {
