@@ -4,13 +4,18 @@ use crate::File;
 use crate::c::{comment, tables};
 use crate::dialect::{Dialect, enumerations};
 use crate::names::{Prefix, pou};
-use crate::st::{plain_initial, record_name};
+use crate::st::{Syntax, initial, record_name};
 use standstill_blocks::REGISTRY;
 use standstill_fb::{BlockInfo, Direction, Pin, PinType};
 use std::fmt::Write as _;
 
 /// The schema requires a date; a file that is the same every day has this one.
 const DATE: &str = "2026-01-01T00:00:00";
+
+/// Its enumerations have numbers.
+const SYNTAX: Syntax = Syntax {
+    numbered_enumerations: true,
+};
 
 pub(crate) fn files(prefix: &Prefix, dialect: &Dialect) -> Vec<File> {
     vec![File {
@@ -146,11 +151,7 @@ fn block(out: &mut String, info: &BlockInfo, prefix: &Prefix, dialect: &Dialect)
 }
 
 fn variable(out: &mut String, info: &BlockInfo, index: usize, pin: &Pin, dialect: &Dialect) {
-    let given = info
-        .default_of(index)
-        .filter(|_| pin.direction == Direction::Input);
-    let initial = given.and_then(plain_initial);
-    let initial = initial.map_or_else(String::new, |value| {
+    let initial = initial(info, index, pin, dialect, SYNTAX).map_or_else(String::new, |value| {
         format!("<initialValue><simpleValue value=\"{value}\"/></initialValue>")
     });
     let _ = writeln!(

@@ -91,7 +91,8 @@ pub(crate) fn head(info: &BlockInfo, dialect: &Dialect, syntax: Syntax) -> Strin
             .filter(|(_, pin)| pin.direction == direction);
         let lines: Vec<_> = pins
             .map(|(index, pin)| {
-                let initial = initial(info, index, pin, dialect, syntax);
+                let initial = initial(info, index, pin, dialect, syntax)
+                    .map_or_else(String::new, |value| format!(" := {value}"));
                 format!(
                     "    {} : {}{initial};\n",
                     dialect.pin(info, pin),
@@ -112,48 +113,38 @@ pub(crate) fn head(info: &BlockInfo, dialect: &Dialect, syntax: Syntax) -> Strin
 }
 
 /// The initial value of an input, if it differs from that of its type.
-fn initial(info: &BlockInfo, index: usize, pin: &Pin, dialect: &Dialect, syntax: Syntax) -> String {
-    if pin.direction != Direction::Input {
-        return String::new();
-    }
-    let text = match (info.default_of(index), pin.ty) {
-        (Some(Value::Time(ns)), _) if ns != 0 => format!("T#{}us", ns / 1000),
-        (Some(Value::Enum(ours)), PinType::Enum(of)) => initial_element(&of, ours, dialect, syntax),
-        (given, _) => given.and_then(plain_initial).unwrap_or_default(),
-    };
-    if text.is_empty() {
-        text
-    } else {
-        format!(" := {text}")
-    }
-}
-
-/// An initial value that is a number or TRUE.
-pub(crate) fn plain_initial(value: Value) -> Option<String> {
-    match value {
-        Value::Bool(true) => Some("TRUE".to_owned()),
-        Value::Int(value) if value != 0 => Some(value.to_string()),
-        Value::Dword(value) if value != 0 => Some(value.to_string()),
-        Value::Lreal(value) if value != 0.0 => Some(format!("{value:?}")),
+pub(crate) fn initial(
+    info: &BlockInfo,
+    index: usize,
+    pin: &Pin,
+    dialect: &Dialect,
+    syntax: Syntax,
+) -> Option<String> {
+    let given = info
+        .default_of(index)
+        .filter(|_| pin.direction == Direction::Input);
+    match (given?, pin.ty) {
+        (Value::Bool(true), _) => Some("TRUE".to_owned()),
+        (Value::Int(value), _) if value != 0 => Some(value.to_string()),
+        (Value::Word(value), _) if value != 0 => Some(value.to_string()),
+        (Value::Dword(value), _) if value != 0 => Some(value.to_string()),
+        (Value::Lreal(value), _) if value != 0.0 => Some(format!("{value:?}")),
+        (Value::Time(ns), _) if ns != 0 => Some(format!("T#{}us", ns / 1000)),
+        (Value::Enum(ours), PinType::Enum(of)) => initial_element(&of, ours, dialect, syntax),
         _ => None,
     }
 }
 
 /// The number, if the type is a plain one; otherwise the element, unless it is the first one and so the
 /// initial value anyway.
-fn initial_element(of: &EnumInfo, ours: i32, dialect: &Dialect, syntax: Syntax) -> String {
+fn initial_element(of: &EnumInfo, ours: i32, dialect: &Dialect, syntax: Syntax) -> Option<String> {
     let elements = dialect.elements(of);
-    let found = (0..).zip(&elements).find(|(_, (_, _, number))| *number == ours);
-    match found {
-        Some((_, (_, theirs, _))) if is_plain(&elements, syntax) => {
-            if *theirs == 0 {
-                String::new()
-            } else {
-                theirs.to_string()
-            }
-        }
-        Some((place, (name, ..))) if place > 0 => (*name).to_owned(),
-        _ => String::new(),
+    let place = elements.iter().position(|(_, _, number)| *number == ours)?;
+    let (name, theirs, _) = elements.get(place)?;
+    if is_plain(&elements, syntax) {
+        (*theirs != 0).then(|| theirs.to_string())
+    } else {
+        (place > 0).then(|| (*name).to_owned())
     }
 }
 
