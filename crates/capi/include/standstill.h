@@ -975,8 +975,12 @@ typedef struct standstill_record {
    */
   uint32_t instance;
   /**
-   * 1 refused, 2 point refused, 3 clamped, 4 raised, 5 unavoidable, 6 shifted, 7 planned to a position, 8 planned to
-   * a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13 fault, 14 orphaned.
+   * 1 refused, 2 point refused, 3 clamped, 4 raised, 5 unavoidable, 6 shifted, 7 planned to a position, 8 planned
+   * to a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13 fault, 14 orphaned,
+   * 15 coupled, 16 approaching the law of a gear, 17 in gear, 18 no longer in gear, 19 in sync late, 20 phase shift
+   * planned, 21 lowered to what a slave can follow, 22 cam selected, 23 onto a cam, 24 plan onto a cam, 25 in sync,
+   * 26 no longer in sync, 27 more than one end of a cam passed in a scan, 28 a master leads out of a software limit,
+   * 29 the slave of a cam rests at a row.
    */
   int32_t event;
   /**
@@ -984,15 +988,16 @@ typedef struct standstill_record {
    */
   uint32_t error_id;
   /**
-   * Number of scans of a plan, number of a point, or code of a drive.
+   * Scans of a plan, number of a point, of a row or of a master, ends of a cam, or code of a drive.
    */
   uint64_t count;
   /**
-   * The requested value; the excess of velocity; the target; the velocity.
+   * The requested value; the excess of velocity; the target; the velocity; the numerator of a ratio; the number of a
+   * cam; the jump.
    */
   double value;
   /**
-   * The value used instead, or the limit; the excess of acceleration; the velocity when passing.
+   * The value used instead, or the limit; the excess of acceleration; the velocity when passing; the denominator.
    */
   double limit;
   /**
@@ -1000,7 +1005,7 @@ typedef struct standstill_record {
    */
   double third;
   /**
-   * Name of the pin or field, with a 0 at its end; empty: the axis state decided.
+   * Name of the pin, field, quantity or way, with a 0 at its end; empty: the axis state decided.
    */
   char name[STANDSTILL_NAME];
 } standstill_record;

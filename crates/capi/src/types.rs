@@ -466,20 +466,25 @@ pub struct Record {
     pub axis: i32,
     /// The low half of the key of the block instance; 0: the runtime itself.
     pub instance: u32,
-    /// 1 refused, 2 point refused, 3 clamped, 4 raised, 5 unavoidable, 6 shifted, 7 planned to a position, 8 planned to
-    /// a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13 fault, 14 orphaned.
+    /// 1 refused, 2 point refused, 3 clamped, 4 raised, 5 unavoidable, 6 shifted, 7 planned to a position, 8 planned
+    /// to a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13 fault, 14 orphaned,
+    /// 15 coupled, 16 approaching the law of a gear, 17 in gear, 18 no longer in gear, 19 in sync late, 20 phase shift
+    /// planned, 21 lowered to what a slave can follow, 22 cam selected, 23 onto a cam, 24 plan onto a cam, 25 in sync,
+    /// 26 no longer in sync, 27 more than one end of a cam passed in a scan, 28 a master leads out of a software limit,
+    /// 29 the slave of a cam rests at a row.
     pub event: i32,
     /// ErrorID, 0 without one.
     pub error_id: u32,
-    /// Number of scans of a plan, number of a point, or code of a drive.
+    /// Scans of a plan, number of a point, of a row or of a master, ends of a cam, or code of a drive.
     pub count: u64,
-    /// The requested value; the excess of velocity; the target; the velocity.
+    /// The requested value; the excess of velocity; the target; the velocity; the numerator of a ratio; the number of a
+    /// cam; the jump.
     pub value: f64,
-    /// The value used instead, or the limit; the excess of acceleration; the velocity when passing.
+    /// The value used instead, or the limit; the excess of acceleration; the velocity when passing; the denominator.
     pub limit: f64,
     /// The excess of jerk.
     pub third: f64,
-    /// Name of the pin or field, with a 0 at its end; empty: the axis state decided.
+    /// Name of the pin, field, quantity or way, with a 0 at its end; empty: the axis state decided.
     pub name: [c_char; NAME],
 }
 

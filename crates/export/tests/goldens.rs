@@ -2,6 +2,7 @@
 //! `golden/`. `STANDSTILL_GOLDENS=write` in the environment writes them.
 
 use standstill_export::{Dialect, File, Prefix, Target, export};
+use standstill_fb::ring::FIELDS;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -32,6 +33,16 @@ fn hold(folder: &Path, file: &File) {
             file.text.lines().nth(line).unwrap_or("(nothing)"),
         );
     }
+}
+
+/// The guest's header is written from the fields; that of the C library is not.
+#[test]
+fn both_headers_name_the_same_events() {
+    let header = fs::read_to_string(include().join("standstill.h")).unwrap();
+    let plain: Vec<_> = header.split_whitespace().filter(|word| *word != "*").collect();
+    let (.., events, _) = FIELDS.iter().find(|field| field.0 == "event").unwrap();
+    let events: Vec<_> = events.split_whitespace().collect();
+    assert!(plain.join(" ").contains(&events.join(" ")), "{events:?}");
 }
 
 #[test]

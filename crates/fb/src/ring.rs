@@ -29,20 +29,20 @@ pub const FIELDS: [(&str, &str, &str, usize); 11] = [
          to a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13 fault, 14 orphaned, 15 coupled, 16 approaching \
          the law of a gear, 17 in gear, 18 no longer in gear, 19 in sync late, 20 phase shift planned, 21 lowered to what a slave can follow, 22 cam \
          selected, 23 onto a cam, 24 plan onto a cam, 25 in sync, 26 no longer in sync, 27 more than one end of a cam passed in a scan, 28 a \
-         master leads out of a software limit.",
+         master leads out of a software limit, 29 the slave of a cam rests at a row.",
         24,
     ),
     ("error_id", "u32", "ErrorID, 0 without one.", 28),
     (
         "count",
         "u64",
-        "Scans of a plan, number of a point or of a master, ends of a cam, or code of a drive.",
+        "Scans of a plan, number of a point, of a row or of a master, ends of a cam, or code of a drive.",
         32,
     ),
     (
         "value",
         "f64",
-        "What was asked for; the excess of velocity; where to; the velocity; the numerator of a ratio; the number of a cam.",
+        "What was asked for; the excess of velocity; where to; the velocity; the numerator of a ratio; the number of a cam; the jump.",
         40,
     ),
     (
@@ -314,7 +314,7 @@ mod tests {
     /// The number of each event is documented in [`FIELDS`] and in the C header.
     #[test]
     fn every_event_has_its_number_and_its_values() {
-        use standstill_axis::Event as E;
+        use standstill_axis::{Approach, CamId, Event as E};
         let error = ErrorId::AxisUnknown;
         let error_id = error.number().into();
         let (pin, value, limit) = ("Velocity", 80.0, 50.0);
@@ -351,7 +351,31 @@ mod tests {
             (E::Paused { error }, FlatRecord { event: 12, error_id, ..none }),
             (E::Fault { error, code: 9 }, FlatRecord { event: 13, error_id, count: 9, ..none }),
             (E::Orphaned, FlatRecord { event: 14, ..none }),
+            (
+                E::Coupled { master: AxisId::new(2), numerator: -2, denominator: 3 },
+                FlatRecord { event: 15, count: 3, value: -2.0, limit: 3.0, ..none },
+            ),
+            (
+                E::Approaching { way: Approach::Stretch, velocity, scans: 70 },
+                FlatRecord { event: 16, count: 70, value: velocity, name: Approach::Stretch.name(), ..none },
+            ),
+            (E::InGear, FlatRecord { event: 17, ..none }),
+            (E::GearLost { what: pin, value, limit }, FlatRecord { event: 18, value, limit, name: pin, ..none }),
+            (E::SyncLate { by: 2.5 }, FlatRecord { event: 19, value: 2.5, ..none }),
+            (E::Phasing { to: 2.5, scans: 70 }, FlatRecord { event: 20, count: 70, value: 2.5, ..none }),
+            (E::CamSelected { velocity: value, limit }, FlatRecord { event: 22, value, limit, ..none }),
+            (E::OnCam { master: AxisId::new(2), cam: CamId::from_number(7) }, FlatRecord { event: 23, count: 3, value: 7.0, ..none }),
+            (
+                E::OntoCam { way: Approach::Stretch, value, scans: 70 },
+                FlatRecord { event: 24, count: 70, value, name: Approach::Stretch.name(), ..none },
+            ),
+            (E::InSync, FlatRecord { event: 25, ..none }),
+            (E::SyncLost { what: pin, value, limit }, FlatRecord { event: 26, value, limit, name: pin, ..none }),
+            (E::CamPassed { periods: 3 }, FlatRecord { event: 27, count: 3, ..none }),
+            (E::LeadsOutside { position: value, limit }, FlatRecord { event: 28, value, limit, ..none }),
+            (E::CamStops { row: 3, what: pin, jump: 4.0 }, FlatRecord { event: 29, count: 3, value: 4.0, name: pin, ..none }),
         ];
+        let documented = FIELDS[4].2;
         for (event, expected) in events {
             let from = Record {
                 scan: 7,
@@ -371,6 +395,9 @@ mod tests {
             let mut flat = [0xA5; RECORD_SIZE];
             record.put_flat(&mut flat);
             assert_eq!(f64::read(&flat, 56), expected.third, "{event:?}");
+            let mut numbers = documented.split(", ").filter_map(|said| said.split(' ').next());
+            let is_told = numbers.any(|number| number.parse() == Ok(expected.event));
+            assert!(is_told, "{event:?}: {documented}");
         }
     }
 

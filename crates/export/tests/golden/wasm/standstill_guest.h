@@ -2611,14 +2611,14 @@ typedef struct standstill_record {
      *  fault, 14 orphaned, 15 coupled, 16 approaching the law of a gear, 17 in gear, 18 no longer in gear,
      *  19 in sync late, 20 phase shift planned, 21 lowered to what a slave can follow, 22 cam selected, 23
      *  onto a cam, 24 plan onto a cam, 25 in sync, 26 no longer in sync, 27 more than one end of a cam
-     *  passed in a scan, 28 a master leads out of a software limit. */
+     *  passed in a scan, 28 a master leads out of a software limit, 29 the slave of a cam rests at a row. */
     int32_t event;
     /** ErrorID, 0 without one. */
     uint32_t error_id;
-    /** Scans of a plan, number of a point or of a master, ends of a cam, or code of a drive. */
+    /** Scans of a plan, number of a point, of a row or of a master, ends of a cam, or code of a drive. */
     uint64_t count;
     /** What was asked for; the excess of velocity; where to; the velocity; the numerator of a ratio; the
-     *  number of a cam. */
+     *  number of a cam; the jump. */
     double value;
     /** What was used instead, or the limit; the excess of acceleration; the velocity when passing; the
      *  denominator. */
