@@ -115,6 +115,28 @@ fn numbers_become_strings_and_strings_numbers() {
     ]);
 }
 
+/// Covers: ST35, ST40
+#[test]
+fn durations_are_read_from_strings() {
+    hold(&[
+        "STRING_TO_TIME('T#1m1s5ms') = t AND STRING_TO_LTIME('LTIME#1m1s5ms') = t",
+        "STRING_TO_TIME(TIME_TO_STRING(t)) = t AND STRING_TO_LTIME(LTIME_TO_STRING(T#-2d7ns)) = T#-2d7ns",
+        "STRING_TO_TIME('time#1D2H3M4S5MS6US7NS') = T#1d2h3m4s5ms6us7ns",
+        "STRING_TO_TIME('T#-1_500ms') = T#-1500ms AND STRING_TO_TIME('T#+90m') = T#90m",
+        "STRING_TO_TIME('T#2.5ms') = T#2500us AND STRING_TO_TIME('T#0.000000001d') = T#86us400ns",
+        "STRING_TO_TIME('T#1.0000000015s') = T#1s2ns AND STRING_TO_TIME('T#1.0000000014s') = T#1s1ns",
+        "STRING_TO_TIME('T#1h_30m') = T#1h30m AND STRING_TO_TIME('T#3.ms') = T#3ms",
+        // Only the parts before what is no part.
+        "STRING_TO_TIME('T#5s and more') = T#5s AND STRING_TO_TIME('T#5s20') = T#5s",
+        "STRING_TO_TIME('T#5s1h') = T#5s AND STRING_TO_TIME('T#5s5s') = T#5s AND STRING_TO_TIME('T#1.5m3s') = T#90s",
+        // What is no duration.
+        "STRING_TO_TIME('') = T#0s AND STRING_TO_TIME('5s') = T#0s AND STRING_TO_TIME('T#') = T#0s",
+        "STRING_TO_TIME('T#-') = T#0s AND STRING_TO_TIME('T#s') = T#0s AND STRING_TO_TIME('T#.5s') = T#0s",
+        "STRING_TO_TIME('T#5u') = T#0s AND STRING_TO_TIME('T#5?') = T#0s AND STRING_TO_TIME('ME#5s') = T#0s",
+        "STRING_TO_TIME('#5s') = T#0s AND STRING_TO_TIME('T# 5s') = T#0s",
+    ]);
+}
+
 const UNITS: &str = "
 TYPE Part : STRUCT Name : STRING[12] := 'none'; Count : INT; Code : STRING; END_STRUCT; END_TYPE
 FUNCTION Named : STRING[6]

@@ -220,7 +220,7 @@ impl<'a> Checker<'a> {
                 let name = self.type_name(to);
                 let message = format!("there is no conversion from STRING to {name}");
                 let help = match self.types.elementary(to).map(Elementary::class) {
-                    Some(Class::Real | Class::Time) => OF_TEXT.to_owned(),
+                    Some(Class::Real) => OF_TEXT.to_owned(),
                     _ => format!("write STRING_TO_{name}(..)"),
                 };
                 self.error(Code::UnknownName, call.callee.root.span, message, &help);
