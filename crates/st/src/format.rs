@@ -207,6 +207,8 @@ impl Layout {
         use Token as T;
         match (self.last.unwrap_or(T::End), token) {
             (T::Open | T::OpenBracket | T::Dot | T::Range | T::Typed, _) => false,
+            // A pin left open: `Jerk := ,`
+            (T::Assign | T::Output, T::Comma | T::Close) => true,
             (_, T::Comma | T::Semicolon | T::Close | T::CloseBracket | T::Dot | T::Range | T::Caret) => false,
             (T::Name | T::Integer | T::Based | T::CloseBracket | T::Caret, T::Open | T::OpenBracket) => false,
             (_, T::Colon) => !self.label,

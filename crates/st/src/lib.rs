@@ -134,7 +134,7 @@ fn build(given: &[Source<'_>], options: &Options, module: bool) -> Result<Built,
     };
     let mut image = vec![0; program.layout.end as usize];
     symbols::image(&program, &mut image);
-    if let Err(wrong) = symbols::bind(&program, &sources, options, &mut image) {
+    if let Err(wrong) = symbols::bind(&program, options, &mut image) {
         found.add(wrong);
         return Err(found.report(sources));
     }

@@ -51,6 +51,7 @@ const LINES: &[(&str, Option<&str>)] = &[
     ("end_repeat;\r", Some("END_REPEAT;")),
     ("Mv(Axis:=X,Done=>d,", Some("Mv(Axis := X, Done => d,")),
     ("Execute := TRUE);", Some("  Execute := TRUE);")),
+    ("Mv(Axis := X,Jerk:=,Velocity := );", Some("Mv(Axis := X, Jerk := , Velocity := );")),
     ("end_program", Some("END_PROGRAM")),
 ];
 

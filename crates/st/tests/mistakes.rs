@@ -436,6 +436,52 @@ fn time_grows_with_the_text_and_not_with_its_square() {
     assert!(long < short * 60.0, "{short} {long}");
 }
 
+/// Where a name is misspelt in its declaration, its uses are right.
+#[test]
+fn a_misspelt_declaration_is_told_once() {
+    for (text, message) in [
+        (
+            "PROGRAM P VAR Stat : INT; END_VAR State := State + 1; FOR State := 1 TO 3 DO ; END_FOR; IF State > 1 THEN State := 0; END_IF; END_PROGRAM",
+            "there is no variable `State`",
+        ),
+        (
+            "FUNCTION_BLOCK Conveyr END_FUNCTION_BLOCK PROGRAM P VAR a, b : Conveyor; c : Conveyor; END_VAR a(); b(); c(); END_PROGRAM",
+            "there is no type or function block `Conveyor`",
+        ),
+        (
+            "FUNCTION Are : INT END_FUNCTION PROGRAM P VAR n : INT; END_VAR n := Area(); n := n + Area(); END_PROGRAM",
+            "there is no function `Area`",
+        ),
+    ] {
+        let told: Vec<_> = wrong(text).into_iter().map(|it| it.1).collect();
+        assert_eq!(told, [message]);
+    }
+    // Each unit has its own variables.
+    let told =
+        wrong("FUNCTION_BLOCK B x := 1; x := 2; END_FUNCTION_BLOCK PROGRAM P x := 1; x := 2; END_PROGRAM");
+    assert_eq!(told.len(), 2, "{told:?}");
+}
+
+/// Covers: ST21, ST30
+#[test]
+fn what_shares_nothing_is_allowed() {
+    for text in [
+        // Its own variable, a global one that is read, and one that is written outside of the loop.
+        "VAR_GLOBAL i, n : INT; END_VAR FUNCTION F : INT VAR i : INT; END_VAR i := 5; n := n + 1; F := i; END_FUNCTION
+         FUNCTION G : INT i := 0; END_FUNCTION
+         PROGRAM P VAR s : INT; END_VAR s := G(); FOR i := 1 TO G() + 3 DO s := s + F(); END_FOR; s := G(); END_PROGRAM",
+        "FUNCTION_BLOCK B VAR i : INT; END_VAR FOR i := 1 TO 3 DO ; END_FOR; END_FUNCTION_BLOCK
+         PROGRAM P VAR b : B; i : INT; END_VAR FOR i := 1 TO 3 DO b(); END_FOR; END_PROGRAM",
+        // One instance, known to others by reference.
+        "FUNCTION_BLOCK B VAR In AT %IX0.0 : BOOL; END_VAR END_FUNCTION_BLOCK
+         FUNCTION_BLOCK U VAR_IN_OUT b : B; END_VAR b(); END_FUNCTION_BLOCK
+         PROGRAM P VAR b : ARRAY [1..1] OF B; u, v : U; END_VAR u(b := b[1]); v(b := b[1]); END_PROGRAM",
+    ] {
+        let told = wrong(text);
+        assert!(told.iter().all(|it| it.0 == "portability"), "{told:?}");
+    }
+}
+
 #[test]
 fn one_other_missing_semicolon_is_one_place() {
     let told = wrong("PROGRAM P VAR x : INT; END_VAR IF x > 1 THEN END_IF IF x > 1 THEN END_IF END_PROGRAM");

@@ -774,23 +774,65 @@ fn a_global_variable_is_found_by_its_list_too() {
 
 /// Covers: ST20
 #[test]
-fn two_lists_with_one_name_are_told_once() {
+fn a_name_of_two_lists_needs_its_list() {
+    const LIST: &str = "{attribute 'qualified_only'}\nVAR_GLOBAL x : INT := 1; END_VAR VAR_GLOBAL CONSTANT N : INT := 2; END_VAR";
+    let messages = |main: &str| {
+        let lists = ["A.st", "B.st"].map(|name| source(name, LIST));
+        let sources = [lists[0], lists[1], source("main.st", main)];
+        let report = standstill_st::check(&sources, &Options::default());
+        let told = report.diagnostics().iter();
+        told.map(|it| (it.message.clone(), it.help.clone().unwrap_or_default()))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(
+        messages("PROGRAM P VAR Rows : ARRAY [1..B.N] OF INT; END_VAR A.x := B.x + A.N; END_PROGRAM"),
+        []
+    );
+    let told = (
+        "several lists of global variables have the name `x`".to_owned(),
+        "name the list, too: A.x or B.x".to_owned(),
+    );
+    for main in [
+        "PROGRAM P x := 1; END_PROGRAM",
+        "PROGRAM P VAR y : INT; END_VAR y := X + 1; END_PROGRAM",
+        "PROGRAM P FOR x := 1 TO 3 DO ; END_FOR; END_PROGRAM",
+        "PROGRAM P VAR_EXTERNAL x : INT; END_VAR x := x + 1; END_PROGRAM",
+    ] {
+        assert_eq!(messages(main), std::slice::from_ref(&told), "{main}");
+    }
+    let told = messages("PROGRAM P VAR Rows : ARRAY [1..N] OF INT; END_VAR END_PROGRAM");
+    assert!(told[0].0.contains("`N`"), "{told:?}");
+    // A local variable is meant where there is one.
+    assert_eq!(
+        messages("PROGRAM P VAR x : INT; END_VAR x := 1; A.x := 2; END_PROGRAM"),
+        []
+    );
+}
+
+/// Covers: ST20, ST43
+#[test]
+fn variables_of_two_lists_have_paths_of_their_own() {
     let sources = [
+        source("A.st", "VAR_GLOBAL x : INT; r : AXIS_REF; END_VAR"),
+        source("B.st", "VAR_GLOBAL x : INT; r : AXIS_REF; y : DINT; END_VAR"),
         source(
-            "A.st",
-            "{attribute 'qualified_only'}\nVAR_GLOBAL x : INT; END_VAR",
+            "main.st",
+            "PROGRAM P A.x := A.x + 1; B.x := 10 * A.x; y := B.r.Number; END_PROGRAM",
         ),
-        source(
-            "B.st",
-            "{attribute 'qualified_only'}\nVAR_GLOBAL x : INT; END_VAR",
-        ),
-        source("main.st", "PROGRAM P A.x := B.x; END_PROGRAM"),
     ];
-    let report = standstill_st::check(&sources, &Options::default());
-    let told: Vec<_> = report
-        .diagnostics()
-        .iter()
-        .map(|it| it.message.as_str())
-        .collect();
-    assert_eq!(told, ["two lists of global variables have the name `x`"]);
+    let options = Options {
+        bindings: vec![("b.R".to_owned(), 7)],
+        ..Options::default()
+    };
+    let compiled =
+        standstill_st::compile(&sources, &options).unwrap_or_else(|report| panic!("{}", report.render()));
+    let found = |path: &str| compiled.symbols.find(path).map(|symbol| symbol.path);
+    assert_eq!(found("a.x"), Some("A.x".to_owned()));
+    assert_eq!(found("B.X"), Some("B.x".to_owned()));
+    assert_eq!(found("B.y"), Some("y".to_owned()));
+    assert_eq!(found("x"), None);
+    let mut run = Running::of(compiled);
+    run.scan().unwrap_or_else(|fault| panic!("{fault}"));
+    let values = ["A.x", "B.x", "y", "A.r.Number"].map(|path| run.whole(path));
+    assert_eq!(values, [1, 10, 7, 0]);
 }

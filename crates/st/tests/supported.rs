@@ -179,6 +179,11 @@ const REFUSED: &[(&str, &str)] = &[
         "FUNCTION_BLOCK B VAR_STAT a : INT; END_VAR END_FUNCTION_BLOCK",
     ),
     (
+        "VAR_STAT of a PROGRAM with several instances",
+        "PROGRAM Q VAR_STAT a : INT; END_VAR END_PROGRAM CONFIGURATION C RESOURCE R ON x TASK T(INTERVAL := T#1ms);
+         PROGRAM p WITH T : Q; PROGRAM q WITH T : Q; END_RESOURCE END_CONFIGURATION",
+    ),
+    (
         "VAR_INST",
         "FUNCTION_BLOCK B METHOD M VAR_INST a : INT; END_VAR END_METHOD END_FUNCTION_BLOCK",
     ),

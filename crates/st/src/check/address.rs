@@ -4,7 +4,7 @@ use super::Checker;
 use crate::error::{Code, Diagnostic};
 use crate::source::Span;
 use crate::types::{Member, MemberKind, Type, TypeId, UnitId};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// A variable AT an address.
@@ -29,17 +29,20 @@ impl Checker<'_> {
         let mut units: Vec<UnitId> = self.running.iter().map(|it| it.unit).collect();
         for global in &self.globals {
             found.extend(located(&global.member));
-            self.units_of(global.member.ty, &mut units);
+            self.units_of(global.member.ty, 1, &mut units);
         }
-        let mut seen: BTreeSet<UnitId> = BTreeSet::new();
+        // Two instances of a unit are enough to tell that its variables share their addresses.
+        let mut instances: BTreeMap<UnitId, u32> = BTreeMap::new();
         while let Some(unit) = units.pop() {
-            if !seen.insert(unit) {
+            let count = instances.entry(unit).or_default();
+            *count += 1;
+            if *count > 2 {
                 continue;
             }
             for member in &self.unit(unit).members.list {
-                if !matches!(member.kind, MemberKind::External(_)) {
+                if !matches!(member.kind, MemberKind::External(_) | MemberKind::InOut) {
                     found.extend(located(member));
-                    self.units_of(member.ty, &mut units);
+                    self.units_of(member.ty, 1, &mut units);
                 }
             }
         }
@@ -49,13 +52,24 @@ impl Checker<'_> {
         for it in &found {
             match first.get(it.address.as_str()) {
                 Some(other) => {
-                    let message = format!(
-                        "`{}` and `{}` are two variables at one address, {}",
-                        other.name, it.name, it.address
-                    );
+                    let message = if it.span == other.span {
+                        format!(
+                            "`{}` of several instances is at one address, {}",
+                            it.name, it.address
+                        )
+                    } else {
+                        format!(
+                            "`{}` and `{}` are two variables at one address, {}",
+                            other.name, it.name, it.address
+                        )
+                    };
                     let wrong = Diagnostic::error(Code::DuplicateName, it.span, message);
-                    let wrong = wrong.related(other.span, "the other one");
-                    told.push(wrong.help("declare one of them, in VAR_GLOBAL, and use that in their place"));
+                    told.push(if it.span == other.span {
+                        wrong.help("declare it in VAR_GLOBAL, and hand it over as VAR_INPUT or VAR_IN_OUT")
+                    } else {
+                        let wrong = wrong.related(other.span, "the other one");
+                        wrong.help("declare one of them, in VAR_GLOBAL, and use that in their place")
+                    });
                 }
                 None => _ = first.insert(&it.address, it),
             }
@@ -89,14 +103,14 @@ impl Checker<'_> {
         }
     }
 
-    /// The units whose instances a type holds.
-    fn units_of(&self, ty: TypeId, units: &mut Vec<UnitId>) {
+    /// The units whose instances a type holds, each this often, or twice if it is in an array.
+    fn units_of(&self, ty: TypeId, times: usize, units: &mut Vec<UnitId>) {
         match self.types.get(ty) {
-            Type::Block(unit) => units.push(*unit),
-            Type::Array(array) => self.units_of(array.of, units),
+            Type::Block(unit) => units.extend(std::iter::repeat_n(*unit, times)),
+            Type::Array(array) => self.units_of(array.of, if array.count > 1 { 2 } else { times }, units),
             Type::Structure(structure) => {
                 let members = structure.members.list.iter();
-                members.for_each(|member| self.units_of(member.ty, units));
+                members.for_each(|member| self.units_of(member.ty, times, units));
             }
             _ => {}
         }

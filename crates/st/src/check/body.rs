@@ -6,10 +6,22 @@ use crate::source::Span;
 use crate::types::{MemberKind, UnitId};
 use std::collections::{BTreeMap, BTreeSet};
 
+/// A variable of a unit, or a global one.
+pub(super) type Variable = (Option<UnitId>, usize);
+
+/// A call within a FOR, which must not write the control variable.
+#[derive(Debug)]
+pub(super) struct LoopCall {
+    pub control: Variable,
+    pub caller: UnitId,
+    pub callee: UnitId,
+    pub span: Span,
+}
+
 #[derive(Debug, Default)]
 pub(super) struct BodyState {
-    /// Control variables of running loops: those of a unit, or global ones.
-    pub controls: Vec<(Option<UnitId>, usize)>,
+    /// Control variables of running loops.
+    pub controls: Vec<Variable>,
     /// Number of enclosing loops.
     pub loops: usize,
     /// In_outs that a call of this instance binds, by the text of the instance.
@@ -95,9 +107,16 @@ impl Checker<'_> {
         }
     }
 
-    /// Records a call for the search for recursion.
+    /// Records a call for the search for recursion, and for what it writes.
     pub(super) fn note_call(&mut self, callee: UnitId, span: Span) {
         if let Some(caller) = self.scope {
+            let controls = self.body.controls.iter();
+            self.loop_calls.extend(controls.map(|control| LoopCall {
+                control: *control,
+                caller,
+                callee,
+                span,
+            }));
             self.edges
                 .entry(caller)
                 .or_default()

@@ -27,18 +27,21 @@ impl<'a> Checker<'a> {
             .is_some_and(|unit| self.unit(unit).kind == UnitKind::Function);
         let shadowed = (local && !own_name) || self.global_names.contains_key(&key);
         if !call.callee.selectors.is_empty() || shadowed || call.callee.this {
-            if let Named::Place(place, _) = self.named(&call.callee, None) {
-                let message = match self.types.get(place.ty) {
-                    Type::Block(_) => "a block has no value".to_owned(),
-                    _ => format!("{} cannot be called", self.type_name(place.ty)),
-                };
-                self.error(
-                    Code::WrongType,
-                    call.span,
-                    message,
+            let (message, help) = match self.named(&call.callee, None) {
+                Named::Nothing => return wrong,
+                Named::Value(_) => (
+                    "a constant cannot be called".to_owned(),
+                    "the values of an array are repeated by a number: [3(0)]",
+                ),
+                Named::Place(place, _) => (
+                    match self.types.get(place.ty) {
+                        Type::Block(_) => "a block has no value".to_owned(),
+                        _ => format!("{} cannot be called", self.type_name(place.ty)),
+                    },
                     "call a block in a statement, and read its outputs",
-                );
-            }
+                ),
+            };
+            self.error(Code::WrongType, call.span, message, help);
             return wrong;
         }
         if let Some(unit) = self.unit_names.get(&key).copied() {
@@ -63,7 +66,7 @@ impl<'a> Checker<'a> {
             self.error(Code::Unsupported, name.span, message, instead);
             return wrong;
         }
-        if self.may_be_lost(&key) {
+        if self.may_be_lost(&key) || !self.is_news(None, &key) {
             return wrong;
         }
         let names = self.declared_units();
@@ -312,6 +315,7 @@ impl<'a> Checker<'a> {
                     );
                     return None;
                 }
+                self.note_write_to(path);
                 Some(place)
             }
         }
@@ -401,7 +405,7 @@ impl<'a> Checker<'a> {
             match member.kind {
                 MemberKind::Input => {
                     let value = match value {
-                        Some(value) => self.value(value, member.ty),
+                        Some(value) => self.function_input(unit, value, member.ty),
                         None => match self.default_value(member, call.span) {
                             Some(value) => value,
                             None => {
@@ -455,6 +459,29 @@ impl<'a> Checker<'a> {
         self.check_memory(call.span);
         let ty = self.types.value_type(result);
         Expr::new(Kind::Call(Box::new(called)), ty, call.span)
+    }
+
+    /// The value of an input of a function.
+    fn function_input(&mut self, unit: UnitId, value: &'a Expression, ty: TypeId) -> Expr {
+        let found = self.expression(value, Some(ty));
+        let info = self.unit(unit);
+        if let Some(from) = info.name.strip_suffix("_TO_STRING")
+            && self.sources.in_library(info.span)
+            && let Some(given) = self.types.computed(found.ty)
+            && !Elementary::find(from).is_some_and(|from| given.widens_to(from))
+        {
+            let given = given.name();
+            let message = format!("{} takes {from}, not {given}", info.name);
+            let other = format!("{given}_TO_STRING");
+            let help = if self.unit_names.contains_key(&other) {
+                format!("write {other}(..)")
+            } else {
+                super::library_call::TO_TEXT.to_owned()
+            };
+            self.error(Code::Conversion, found.span, message, &help);
+            return Expr::wrong(found.span);
+        }
+        self.convert(found, ty)
     }
 
     /// The default of an input of a function that a call leaves out.

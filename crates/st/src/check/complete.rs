@@ -44,6 +44,16 @@ const STATEMENT_WORDS: &[Word] = &[
     Word::False,
 ];
 
+/// Keywords that begin what stands outside of units.
+const UNIT_WORDS: &[Word] = &[
+    Word::Program,
+    Word::FunctionBlock,
+    Word::Function,
+    Word::Type,
+    Word::VarGlobal,
+    Word::Configuration,
+];
+
 /// A step of a path before the place.
 #[derive(Debug)]
 enum Part {
@@ -265,7 +275,7 @@ impl Checker<'_> {
         let found = match parts.get(..last)? {
             [] => match self.local(name) {
                 Some((unit, place)) => self.told_of(self.unit(unit).members.list.get(place)?, ""),
-                None => self.told_of(&self.globals.get(*self.global_names.get(name)?)?.member, ""),
+                None => self.told_of(&self.globals.get(self.only_global(name)?)?.member, ""),
             },
             owner => {
                 let ty = self.type_of(owner, false)?;
@@ -338,18 +348,15 @@ impl Checker<'_> {
         };
         let mut ty = match local {
             Some((unit, place)) => self.unit(unit).members.list.get(place)?.ty,
-            None => match (self.global_names.get(root), self.program_named(root)) {
-                (Some(place), _) => self.globals.get(*place)?.member.ty,
+            None => match (self.only_global(root), self.program_named(root)) {
+                (Some(place), _) => self.globals.get(place)?.member.ty,
                 (None, Some(program)) => self.block_type(program),
                 (None, None) => {
-                    // GVL.x
-                    let file = *self.files.get(root)?;
                     let (Part::Name(name), behind) = rest.split_first()? else {
                         return None;
                     };
-                    let global = self.globals.get(*self.global_names.get(name)?)?;
                     rest = behind;
-                    (global.file == file).then_some(global.member.ty)?
+                    self.globals.get(self.listed(root, name)?)?.member.ty
                 }
             },
         };
@@ -374,10 +381,7 @@ impl Checker<'_> {
         {
             return self.parts(ty);
         }
-        let Some(file) = self.files.get(name).copied() else {
-            return Vec::new();
-        };
-        let globals = self.globals.iter().filter(|it| it.file == file);
+        let globals = self.globals.iter().filter(|it| it.is_in(name));
         globals.map(|it| self.variable_offered(&it.member)).collect()
     }
 
@@ -531,8 +535,12 @@ impl Checker<'_> {
         offered
     }
 
-    /// The names that an expression or a statement may begin with.
+    /// The names that an expression or a statement may begin with; outside of units the keywords.
     fn names(&mut self, around: &Around) -> Vec<Completion> {
+        let keyword = |word: &Word| Completion::new(word.text(), CompletionKind::Keyword, "", "");
+        if self.scope.is_none() {
+            return UNIT_WORDS.iter().map(keyword).collect();
+        }
         let mut offered = Vec::new();
         let mut seen = BTreeSet::new();
         let block = self.scope.and_then(|unit| self.unit(unit).owner);
@@ -575,20 +583,8 @@ impl Checker<'_> {
         }
         let function = |name| Completion::new(name, CompletionKind::Function, function_text(name), "");
         offered.extend(functions().map(function));
-        let keyword = |word: &Word| Completion::new(word.text(), CompletionKind::Keyword, "", "");
-        if self.scope.is_some() && !around.declaring {
+        if !around.declaring {
             offered.extend(STATEMENT_WORDS.iter().map(keyword));
-        }
-        if self.scope.is_none() {
-            let words = [
-                Word::Program,
-                Word::FunctionBlock,
-                Word::Function,
-                Word::Type,
-                Word::VarGlobal,
-                Word::Configuration,
-            ];
-            return words.iter().map(keyword).collect();
         }
         offered
     }

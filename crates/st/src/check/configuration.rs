@@ -3,7 +3,7 @@
 use super::{Checker, UnitKind};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::source::Span;
-use crate::syntax::{Argument, Configuration, Expression, Item};
+use crate::syntax::{Argument, Configuration, Expression, Item, SectionKind};
 use crate::typed::{Base, Place, Stmt};
 use crate::types::{Class, Constant, UnitId, WRONG};
 
@@ -180,6 +180,9 @@ impl<'a> Checker<'a> {
                 continue;
             };
             self.look_at_unit(program.program.span, unit);
+            if instances.iter().any(|it| it.unit == unit) {
+                self.check_static_of_several(unit, program.name.span);
+            }
             let Some(task) = task else { continue };
             instances.push(Instance {
                 name: program.name.text.clone(),
@@ -200,6 +203,19 @@ impl<'a> Checker<'a> {
             );
         }
         (tasks, instances)
+    }
+
+    /// VAR_STAT of a PROGRAM that has several instances.
+    fn check_static_of_several(&mut self, unit: UnitId, span: Span) {
+        let mut sections = self.unit(unit).syntax.iter().flat_map(|it| &it.sections);
+        if sections.any(|it| it.kind == SectionKind::Static && !it.constant) {
+            let name = &self.unit(unit).name;
+            let message = format!(
+                "the PROGRAM {name} has several instances, and VAR_STAT, one variable for all of them, is not supported"
+            );
+            let help = "use VAR_GLOBAL, or VAR if each instance shall have its own";
+            self.error(Code::Unsupported, span, message, help);
+        }
     }
 
     fn interval(&mut self, expression: &'a Expression) -> Option<i64> {

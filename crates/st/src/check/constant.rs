@@ -1,22 +1,25 @@
 //! Constants: VAR CONSTANT and VAR_GLOBAL CONSTANT, evaluated when they are needed.
 
-use super::{Checker, State};
+use super::{Checker, ConstantKey, State};
 use crate::error::{Code, Diagnostic};
 use crate::source::Span;
 use crate::syntax::Initial;
 use crate::typed::{Expr, Kind};
-use crate::types::{Constant, UnitId};
+use crate::types::Constant;
 
 impl Checker<'_> {
-    /// The value of a constant of a unit, or of all units; `None` if there is no such constant.
-    pub(super) fn constant(&mut self, unit: Option<UnitId>, key: &str, span: Span) -> Option<Expr> {
-        let entry_key = (unit, key.to_owned());
-        let entry = self.constants.get_mut(&entry_key)?;
+    /// The value of a constant; `None` if there is no such constant.
+    pub(super) fn constant(&mut self, key: &ConstantKey, span: Span) -> Option<Expr> {
+        let (unit, name) = match key {
+            ConstantKey::OfUnit(unit, name) => (Some(*unit), name.clone()),
+            ConstantKey::Global(place) => (None, self.globals[*place].member.name.to_ascii_uppercase()),
+        };
+        let entry = self.constants.get_mut(key)?;
         match entry.state {
             State::Done => {}
             State::Busy => {
                 let wrong =
-                    Diagnostic::error(Code::Circle, span, format!("the constant `{key}` needs itself"));
+                    Diagnostic::error(Code::Circle, span, format!("the constant `{name}` needs itself"));
                 self.tell(wrong.help("give one of the constants in the circle a number"));
                 return Some(Expr::wrong(span));
             }
@@ -35,13 +38,13 @@ impl Checker<'_> {
                         Some((ty, value.constant()?))
                     })
                 });
-                if let Some(entry) = self.constants.get_mut(&entry_key) {
+                if let Some(entry) = self.constants.get_mut(key) {
                     entry.state = State::Done;
                     entry.value = value;
                 }
             }
         }
-        let (ty, value) = self.constants.get(&entry_key)?.value?;
+        let (ty, value) = self.constants.get(key)?.value?;
         let kind = match value {
             Constant::Integer(number) => Kind::Integer(number),
             Constant::Real(number) => Kind::Real(number),

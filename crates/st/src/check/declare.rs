@@ -1,6 +1,6 @@
 //! All names: the declarations of all files, before any of them is checked in detail.
 
-use super::{Checker, ConstantEntry, ElementOf, Global, NamedType, State, UnitInfo, UnitKind};
+use super::{Checker, ConstantEntry, ConstantKey, ElementOf, Global, NamedType, State, UnitInfo, UnitKind};
 use crate::error::{Code, Diagnostic};
 use crate::library::{Function, OPERATORS, blocks, conversion};
 use crate::source::Span;
@@ -101,15 +101,6 @@ impl<'a> Checker<'a> {
         );
     }
 
-    /// The same of the names of two lists of global variables.
-    fn in_two_lists(&mut self, name: &Ident, other: Span) {
-        let message = format!("two lists of global variables have the name `{}`", name.text);
-        let wrong = Diagnostic::error(Code::DuplicateName, name.span, message);
-        self.tell(wrong.related(other, "here it is given first").help(
-            "here the names of all lists are known everywhere, those of qualified_only too: rename one",
-        ));
-    }
-
     /// Reports a name that is also the name of an elementary type, or whose spelling other compilers refuse.
     pub(super) fn check_name(&mut self, name: &Ident) {
         let key = name.key();
@@ -191,7 +182,8 @@ impl<'a> Checker<'a> {
         for section in unit.sections.iter().filter(is_known) {
             for variables in &section.variables {
                 for (name, _) in &variables.names {
-                    self.declare_constant(Some(id), name, &variables.spec, variables.initial.as_ref());
+                    let key = ConstantKey::OfUnit(id, name.key());
+                    self.declare_constant(key, &variables.spec, variables.initial.as_ref());
                 }
             }
         }
@@ -200,12 +192,11 @@ impl<'a> Checker<'a> {
 
     fn declare_constant(
         &mut self,
-        unit: Option<UnitId>,
-        name: &Ident,
+        key: ConstantKey,
         spec: &'a TypeSpec,
         initial: Option<&'a syntax::Initial>,
     ) {
-        self.constants.entry((unit, name.key())).or_insert(ConstantEntry {
+        self.constants.entry(key).or_insert(ConstantEntry {
             spec,
             initial,
             state: State::Todo,
@@ -219,8 +210,20 @@ impl<'a> Checker<'a> {
         for variables in &section.variables {
             for (name, address) in &variables.names {
                 self.check_name(name);
-                let file = self.sources.file_index(name.span);
+                let list = self.sources.stem(self.sources.file_index(name.span));
                 let place = self.globals.len();
+                let others = self.global_names.entry(name.key()).or_default();
+                let same = others.iter().find(|other| self.globals[**other].is_in(list));
+                if let Some(other) = same {
+                    let other = self.globals[*other].member.span;
+                    self.twice(name, other);
+                    continue;
+                }
+                for other in others.iter() {
+                    self.globals[*other].is_shared = true;
+                }
+                let is_shared = !others.is_empty();
+                others.push(place);
                 self.globals.push(Global {
                     member: Member {
                         constant: section.constant,
@@ -230,27 +233,13 @@ impl<'a> Checker<'a> {
                     },
                     spec: Some(&variables.spec),
                     initial: variables.initial.as_ref(),
-                    file,
+                    list: Some(list),
+                    is_shared,
                     state: State::Todo,
                 });
-                let stem = self.sources.stem(file).to_ascii_uppercase();
-                self.files.entry(stem).or_insert(file);
-                match self.global_names.get(&name.key()) {
-                    Some(other) => {
-                        let other = &self.globals[*other];
-                        let (other, lists) = (other.member.span, other.file != file);
-                        if lists {
-                            self.in_two_lists(name, other);
-                        } else {
-                            self.twice(name, other);
-                        }
-                    }
-                    None => {
-                        self.global_names.insert(name.key(), place);
-                        if section.constant {
-                            self.declare_constant(None, name, &variables.spec, variables.initial.as_ref());
-                        }
-                    }
+                if section.constant {
+                    let key = ConstantKey::Global(place);
+                    self.declare_constant(key, &variables.spec, variables.initial.as_ref());
                 }
             }
         }

@@ -3,7 +3,7 @@
 use super::Checker;
 use crate::error::{Code, Diagnostic};
 use crate::types::UnitId;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Largest number of nested calls.
 pub(crate) const CALLS_MOST: u32 = 64;
@@ -67,6 +67,44 @@ impl Checker<'_> {
                 }
             }
         }
+    }
+
+    /// Reports calls within a FOR that write its control variable.
+    pub(super) fn check_loops(&mut self) {
+        for call in std::mem::take(&mut self.loop_calls) {
+            let Some(writers) = self.writers.get(&call.control) else {
+                continue;
+            };
+            if writers.keys().all(|unit| *unit == call.caller) {
+                continue;
+            }
+            let called = self.called_from(call.callee);
+            let Some((_, written)) = writers.iter().find(|(unit, _)| called.contains(unit)) else {
+                continue;
+            };
+            let name = match call.control {
+                (Some(unit), place) => &self.unit(unit).members.list[place].name,
+                (None, place) => &self.globals[place].member.name,
+            };
+            let message = format!(
+                "the call of `{}` writes `{name}`, the control variable of a FOR that is running",
+                self.unit(call.callee).name
+            );
+            let wrong = Diagnostic::error(Code::NotWritable, call.span, message);
+            let wrong = wrong.related(*written, "it is written here");
+            self.tell(wrong.help("use another control variable, a VAR of the unit with the FOR"));
+        }
+    }
+
+    /// A unit, and all that its calls lead to.
+    fn called_from(&self, unit: UnitId) -> BTreeSet<UnitId> {
+        let mut called = BTreeSet::from([unit]);
+        let mut rest = vec![unit];
+        while let Some(edges) = rest.pop().map(|unit| self.edges.get(&unit)) {
+            let callees = edges.into_iter().flat_map(|edges| edges.keys());
+            rest.extend(callees.filter(|callee| called.insert(**callee)));
+        }
+        called
     }
 
     fn circle(&mut self, circle: &[UnitId]) {

@@ -82,11 +82,11 @@ impl Checker<'_> {
         let root = path.root.span;
         match selectors {
             [Selector::Member(name)] => {
-                if let Some(place) = self.global_names.get(&name.key()).copied() {
+                if let Some(place) = self.listed(key, &name.key()) {
                     self.look_at_global(name.span, place);
                 }
             }
-            _ => match (self.local(key), self.global_names.get(key).copied()) {
+            _ => match (self.local(key), self.only_global(key)) {
                 (Some((unit, place)), _) => self.look_at_member(root, unit, place),
                 (None, Some(place)) => self.look_at_global(root, place),
                 (None, None) => {}

@@ -98,8 +98,32 @@ pub(crate) struct Global<'a> {
     /// Absent for the instance of a PROGRAM, whose type is known.
     spec: Option<&'a TypeSpec>,
     initial: Option<&'a Initial>,
-    pub file: usize,
+    /// The list that it is in: the name of its file. None for the instance of a PROGRAM.
+    pub list: Option<&'a str>,
+    /// Whether another list has its name, too, so that only `List.name` is clear.
+    is_shared: bool,
     state: State,
+}
+
+impl Global<'_> {
+    /// Its name, with that of its list if another one has it, too.
+    pub(crate) fn path(&self) -> String {
+        match self.list {
+            Some(list) if self.is_shared => format!("{list}.{}", self.member.name),
+            _ => self.member.name.clone(),
+        }
+    }
+
+    pub(crate) fn is_in(&self, list: &str) -> bool {
+        self.list.is_some_and(|own| own.eq_ignore_ascii_case(list))
+    }
+}
+
+/// How a constant is known: in its unit, or as a global variable.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum ConstantKey {
+    OfUnit(UnitId, String),
+    Global(usize),
 }
 
 /// A constant of a unit or of the project.
@@ -178,21 +202,25 @@ pub(crate) struct Checker<'a> {
     /// By block and name.
     methods: BTreeMap<(UnitId, String), UnitId>,
     globals: Vec<Global<'a>>,
-    global_names: BTreeMap<String, usize>,
+    /// The global variables of a name, in upper case: at most one of each list.
+    global_names: BTreeMap<String, Vec<usize>>,
     /// Names at the top of files that are refused or could not be read, in upper case.
     damaged: BTreeSet<String>,
+    /// Names that nothing has, in upper case: of variables in a unit, others in the project.
+    unknown: BTreeSet<(Option<UnitId>, String)>,
     /// Whether further such names are not known.
     names_lost: bool,
-    constants: BTreeMap<(Option<UnitId>, String), ConstantEntry<'a>>,
+    constants: BTreeMap<ConstantKey, ConstantEntry<'a>>,
     elements: BTreeMap<String, Vec<ElementOf>>,
-    /// Stems of files with global variables.
-    files: BTreeMap<String, usize>,
     layout: Layout,
     /// The unit whose names are visible.
     scope: Option<UnitId>,
     depth: usize,
     body: body::BodyState,
     edges: BTreeMap<UnitId, BTreeMap<UnitId, Span>>,
+    /// The units whose statements write a variable, and one place of each.
+    writers: BTreeMap<body::Variable, BTreeMap<UnitId, Span>>,
+    loop_calls: Vec<body::LoopCall>,
     look: Look,
     /// The instances of programs that tasks run.
     running: Vec<Running>,
@@ -267,15 +295,17 @@ fn checked<'a>(
         globals: Vec::new(),
         global_names: BTreeMap::new(),
         damaged: BTreeSet::new(),
+        unknown: BTreeSet::new(),
         names_lost: false,
         constants: BTreeMap::new(),
         elements: BTreeMap::new(),
-        files: BTreeMap::new(),
         layout: Layout::default(),
         scope: None,
         depth: 0,
         body: body::BodyState::default(),
         edges: BTreeMap::new(),
+        writers: BTreeMap::new(),
+        loop_calls: Vec::new(),
         look,
         running: Vec::new(),
     };
@@ -292,6 +322,7 @@ fn checked<'a>(
     let bodies = checker.bodies();
     checker.run(&mut tasks, &instances);
     checker.check_calls();
+    checker.check_loops();
     checker.check_addresses();
     (checker, tasks, instances, bodies)
 }
@@ -338,6 +369,12 @@ impl<'a> Checker<'a> {
         let block = self.scope.and_then(|unit| self.unit(unit).owner);
         let mut units = [self.scope, block].into_iter().flatten();
         self.may_be_damaged(key) || units.any(|unit| self.is_damaged(unit))
+    }
+
+    /// Whether an unknown name is one that was not reported before: all uses of one that is misspelt where it is
+    /// declared are one mistake.
+    fn is_news(&mut self, scope: Option<UnitId>, key: &str) -> bool {
+        self.unknown.insert((scope, key.to_owned()))
     }
 
     /// Whether a unit has variables that are not known.

@@ -1,6 +1,6 @@
 //! From a path in the text to an address in memory.
 
-use super::{Checker, ElementOf, Global, State, UnitKind};
+use super::{Checker, ConstantKey, ElementOf, Global, State, UnitKind};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::library::{Function, blocks, conversion};
 use crate::source::Span;
@@ -45,19 +45,10 @@ impl<'a> Checker<'a> {
         }
         let mut listed = None;
         let root = self.variable(&key, path.root.span).or_else(|| {
-            // A list of global variables by the name of its file: GVL.x
-            let file = self.files.get(&key).copied()?;
             let (Selector::Member(name), rest) = selectors.split_first()? else {
                 return None;
             };
-            let mut place = self.global_names.get(&name.key()).copied()?;
-            if self.globals[place].file != file {
-                // One whose name another list has, too, which is reported there.
-                let same = |global: &Global<'_>| {
-                    global.file == file && global.member.name.eq_ignore_ascii_case(&name.text)
-                };
-                place = self.globals.iter().position(same)?;
-            }
+            let place = self.listed(&key, &name.key())?;
             selectors = rest;
             listed = Some((place, name.span));
             Some(self.global_place(place))
@@ -99,7 +90,7 @@ impl<'a> Checker<'a> {
         };
         self.look_at_member(path.root.span, block, place);
         if selectors.is_empty()
-            && let Some(value) = self.constant(Some(block), &path.root.key(), path.root.span)
+            && let Some(value) = self.constant(&ConstantKey::OfUnit(block, path.root.key()), path.root.span)
         {
             return Named::Value(value);
         }
@@ -130,7 +121,7 @@ impl<'a> Checker<'a> {
         let block = self.scope.and_then(|unit| self.unit(unit).owner);
         for unit in [self.scope, block].into_iter().flatten() {
             if selectors.is_empty()
-                && let Some(value) = self.constant(Some(unit), key, span)
+                && let Some(value) = self.constant(&ConstantKey::OfUnit(unit, key.to_owned()), span)
             {
                 return Some(value);
             }
@@ -143,23 +134,43 @@ impl<'a> Checker<'a> {
                 return None;
             }
         }
-        match selectors {
-            [] => self.constant(None, key, span),
-            [Selector::Member(name)]
-                if self.files.contains_key(key) && self.global_names.contains_key(&name.key()) =>
-            {
-                let file = self.files.get(key).copied();
-                let place = self.global_names.get(&name.key()).copied()?;
-                let shadowed = self.variable_exists(key);
-                let same = Some(self.globals[place].file) == file;
-                if same && !shadowed {
-                    self.constant(None, &name.key(), span)
-                } else {
-                    None
-                }
-            }
+        let place = match selectors {
+            [] => self.only_global(key)?,
+            [Selector::Member(name)] if !self.variable_exists(key) => self.listed(key, &name.key())?,
+            _ => return None,
+        };
+        self.constant(&ConstantKey::Global(place), span)
+    }
+
+    /// The global variable of this name, if only one list has it.
+    pub(super) fn only_global(&self, key: &str) -> Option<usize> {
+        match self.global_names.get(key)?.as_slice() {
+            [only] => Some(*only),
             _ => None,
         }
+    }
+
+    /// A global variable by the name of its list, which is that of its file, and its own: `GVL.x`
+    pub(super) fn listed(&self, list: &str, key: &str) -> Option<usize> {
+        let mut places = self.global_names.get(key)?.iter().copied();
+        places.find(|place| self.globals[*place].is_in(list))
+    }
+
+    /// The global variable of this name. If several lists have it, that is reported, and it is none of them.
+    pub(super) fn clear_global(&mut self, key: &str, span: Span) -> Option<usize> {
+        let [first, second, ..] = self.global_names.get(key)?.as_slice() else {
+            return self.only_global(key);
+        };
+        let (one, other) = (&self.globals[*first], &self.globals[*second]);
+        let message = format!(
+            "several lists of global variables have the name `{}`",
+            one.member.name
+        );
+        let help = format!("name the list, too: {} or {}", one.path(), other.path());
+        let wrong = Diagnostic::error(Code::DuplicateName, span, message);
+        let wrong = wrong.related(other.member.span, "one of them").help(help);
+        self.tell(wrong);
+        None
     }
 
     pub(super) fn variable_exists(&self, key: &str) -> bool {
@@ -172,8 +183,11 @@ impl<'a> Checker<'a> {
             self.look_at_member(span, unit, place);
             return Some(self.member_place(unit, place));
         }
-        let Some(place) = self.global_names.get(key).copied() else {
+        if !self.global_names.contains_key(key) {
             return self.program_instance(key, span);
+        }
+        let Some(place) = self.clear_global(key, span) else {
+            return Some((Place::plain(Base::Memory, 0, crate::types::WRONG), None));
         };
         self.global(place);
         self.look_at_global(span, place);
@@ -217,11 +231,11 @@ impl<'a> Checker<'a> {
             },
             spec: None,
             initial: None,
-            // It is in no list of global variables.
-            file: usize::MAX,
+            list: None,
+            is_shared: false,
             state: State::Done,
         });
-        self.global_names.insert(key.to_owned(), place);
+        self.global_names.insert(key.to_owned(), vec![place]);
         Some(self.global_place(place))
     }
 
@@ -590,7 +604,7 @@ impl<'a> Checker<'a> {
     fn unknown(&mut self, path: &Path) {
         let name = &path.root;
         let key = name.key();
-        if self.may_be_lost(&key) {
+        if self.may_be_lost(&key) || !self.is_news(self.scope, &key) {
             return;
         }
         let function = self

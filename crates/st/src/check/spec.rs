@@ -56,7 +56,7 @@ impl<'a> Checker<'a> {
             self.error(Code::Unsupported, name.span, message, instead);
             return (WRONG, Start::Default);
         }
-        if self.may_be_damaged(&key) {
+        if self.may_be_damaged(&key) || !self.is_news(None, &key) {
             return (WRONG, Start::Default);
         }
         let mut help = None;

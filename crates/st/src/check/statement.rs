@@ -1,13 +1,14 @@
 //! Statements.
 
 use super::Checker;
+use super::body::Variable;
 use super::convert::widened;
 use super::path::Named;
 use crate::error::{Code, Diagnostic};
 use crate::source::Span;
-use crate::syntax::{Case, Expression, For, Ident, Path, Statement, StatementKind};
+use crate::syntax::{Case, Expression, For, Ident, Path, Selector, Statement, StatementKind};
 use crate::typed::{Branch, Expr, Kind, Place, Stmt, StmtKind};
-use crate::types::{BOOL, Constant, Elementary, MemberKind, Type, TypeId, Types, UnitId};
+use crate::types::{BOOL, Constant, Elementary, MemberKind, Type, TypeId, Types};
 
 impl<'a> Checker<'a> {
     pub(super) fn statements(&mut self, list: &'a [Statement]) -> Vec<Stmt> {
@@ -97,7 +98,10 @@ impl<'a> Checker<'a> {
                 self.error(Code::NotWritable, path.span, why, "assign to another variable");
                 None
             }
-            Named::Place(place, None) => Some(place),
+            Named::Place(place, None) => {
+                self.note_write_to(path);
+                Some(place)
+            }
         }
     }
 
@@ -258,7 +262,8 @@ impl<'a> Checker<'a> {
 
     fn for_(&mut self, each: &'a For) -> Option<StmtKind> {
         let path_span = each.variable.span;
-        let (found, control) = self.control(&each.variable).unzip();
+        let control = self.variable_of(&each.variable.key());
+        let found = self.control(&each.variable, control);
         let declared = found.as_ref().map(|place| place.ty);
         let of = declared
             .and_then(|ty| self.types.computed(ty))
@@ -304,26 +309,23 @@ impl<'a> Checker<'a> {
         })))
     }
 
-    /// The control variable of a FOR, and how it is known while the loop runs.
-    fn control(&mut self, name: &Ident) -> Option<(Place, (Option<UnitId>, usize))> {
+    /// The control variable of a FOR.
+    fn control(&mut self, name: &Ident, control: Option<Variable>) -> Option<Place> {
         let key = name.key();
-        let local = self.local(&key);
-        let ((place, fixed), control) = match (local, self.global_names.get(&key).copied()) {
+        let (place, fixed) = match (self.local(&key), control) {
             (Some((unit, place)), _) => {
                 self.look_at_member(name.span, unit, place);
-                let member = self.unit(unit).members.list.get(place);
-                let control = match member.map(|member| member.kind) {
-                    Some(MemberKind::External(global)) => (None, global),
-                    _ => (Some(unit), place),
-                };
-                (self.member_place(unit, place), control)
+                self.member_place(unit, place)
             }
-            (None, Some(place)) => {
+            (None, Some((_, place))) => {
                 self.look_at_global(name.span, place);
-                (self.global_place(place), (None, place))
+                self.global_place(place)
             }
             (None, None) => {
-                if !self.may_be_lost(&key) {
+                let several = self.global_names.contains_key(&key);
+                if several {
+                    self.clear_global(&key, name.span);
+                } else if !self.may_be_lost(&key) && self.is_news(self.scope, &key) {
                     let message = format!("there is no variable `{}`", name.text);
                     let help = "declare the control variable: `i : INT;`";
                     self.error(Code::UnknownName, name.span, message, help);
@@ -335,7 +337,43 @@ impl<'a> Checker<'a> {
             self.error(Code::NotWritable, name.span, why, "use another control variable");
             return None;
         }
-        Some((place, control))
+        self.note_write(control, name.span);
+        Some(place)
+    }
+
+    /// Records a write to the variable at the root of a path.
+    pub(super) fn note_write_to(&mut self, path: &Path) {
+        let key = path.root.key();
+        let variable = match path.selectors.first() {
+            _ if path.this => self.this_block().and_then(|block| {
+                let (place, _) = self.unit(block).members.find(&key)?;
+                Some((Some(block), place))
+            }),
+            Some(Selector::Member(name)) => self
+                .variable_of(&key)
+                .or_else(|| Some((None, self.listed(&key, &name.key())?))),
+            _ => self.variable_of(&key),
+        };
+        self.note_write(variable, path.span);
+    }
+
+    fn note_write(&mut self, variable: Option<Variable>, span: Span) {
+        if let (Some(variable), Some(unit)) = (variable, self.scope) {
+            let writers = self.writers.entry(variable).or_default();
+            writers.entry(unit).or_insert(span);
+        }
+    }
+
+    /// How the variable of this name is known: as one of its unit, or as a global one.
+    fn variable_of(&self, key: &str) -> Option<Variable> {
+        let Some((unit, place)) = self.local(key) else {
+            return Some((None, self.only_global(key)?));
+        };
+        let member = self.unit(unit).members.list.get(place)?;
+        Some(match member.kind {
+            MemberKind::External(global) => (None, global),
+            _ => (Some(unit), place),
+        })
     }
 
     /// The step of FOR as a LINT: it may be negative if the control variable is unsigned.

@@ -207,8 +207,8 @@ impl<'a> Checker<'a> {
     fn externals(&mut self, id: UnitId, variables: &'a Variables) {
         let (ty, _) = self.spec(&variables.spec);
         for (name, _) in &variables.names {
-            let Some(place) = self.global_names.get(&name.key()).copied() else {
-                if !self.may_be_damaged(&name.key()) {
+            let Some(place) = self.clear_global(&name.key(), name.span) else {
+                if !self.global_names.contains_key(&name.key()) && !self.may_be_damaged(&name.key()) {
                     let guess = self.guess(&name.text, self.declared_globals());
                     let message = format!("there is no global variable {}", quoted(&name.text));
                     let wrong = Diagnostic::error(Code::UnknownName, name.span, message);

@@ -307,14 +307,14 @@ impl Signatures {
     }
 }
 
-/// Exports the addresses of global variables of elementary types by their names.
+/// Exports the addresses of global variables of elementary types by their paths.
 fn variables(program: &Program<'_>, exports: &mut ExportSection) -> GlobalSection {
     let mut globals = GlobalSection::new();
-    let variables = program.globals.iter().map(|global| &global.member);
-    let variables = variables.filter(|member| program.types.elementary(member.ty).is_some());
+    let variables = program.globals.iter();
+    let variables = variables.filter(|global| program.types.elementary(global.member.ty).is_some());
     let free = |name: &str| name != "memory" && !name.starts_with("plc_");
-    for (place, member) in variables
-        .filter(|member| free(&member.name))
+    for (place, global) in variables
+        .filter(|global| free(&global.member.name))
         .take(EXPORTS_MOST)
         .enumerate()
     {
@@ -323,8 +323,8 @@ fn variables(program: &Program<'_>, exports: &mut ExportSection) -> GlobalSectio
             mutable: false,
             shared: false,
         };
-        globals.global(ty, &ConstExpr::i32_const(member.offset.cast_signed()));
-        exports.export(&member.name, ExportKind::Global, place as u32);
+        globals.global(ty, &ConstExpr::i32_const(global.member.offset.cast_signed()));
+        exports.export(&global.path(), ExportKind::Global, place as u32);
     }
     globals
 }

@@ -3,25 +3,20 @@
 use crate::Options;
 use crate::check::{Program, UnitKind};
 use crate::error::{Code, Diagnostic, did_you_mean};
-use crate::source::{Sources, Span};
+use crate::source::Span;
 use crate::types::{Array, Member, MemberKind, Type, TypeId};
 
 /// Largest number of variables that a message lists.
 const LISTED_MOST: usize = 8;
 
 /// Writes the initial axis of each variable of type AXIS_REF.
-pub(crate) fn bind(
-    program: &Program<'_>,
-    sources: &Sources,
-    options: &Options,
-    memory: &mut [u8],
-) -> Result<(), Diagnostic> {
+pub(crate) fn bind(program: &Program<'_>, options: &Options, memory: &mut [u8]) -> Result<(), Diagnostic> {
     let mut found = Vec::new();
     for global in &program.globals {
         references(
             program,
             global.member.ty,
-            &global.member.name,
+            &global.path(),
             global.member.offset,
             &mut found,
         );
@@ -53,7 +48,7 @@ pub(crate) fn bind(
             known.eq_ignore_ascii_case(&plain)
                 || within.as_ref().is_some_and(|it| known.eq_ignore_ascii_case(it))
         };
-        let listed = without_list(program, sources, &plain);
+        let listed = without_list(program, &plain);
         let by_name = found.iter().find(|(known, ..)| same(known));
         match by_name.or_else(|| {
             found
@@ -76,14 +71,15 @@ pub(crate) fn bind(
 }
 
 /// The path of a global variable without the name of its file: `x` of `GVL.x`.
-fn without_list<'p>(program: &Program<'_>, sources: &Sources, path: &'p str) -> &'p str {
+fn without_list<'p>(program: &Program<'_>, path: &'p str) -> &'p str {
     let Some((list, rest)) = path.split_once('.') else {
         return path;
     };
     let name = rest.split(['.', '[']).next().unwrap_or(rest);
-    let listed = program.globals.iter().any(|global| {
-        sources.stem(global.file).eq_ignore_ascii_case(list) && global.member.name.eq_ignore_ascii_case(name)
-    });
+    let listed = program
+        .globals
+        .iter()
+        .any(|global| global.is_in(list) && global.member.name.eq_ignore_ascii_case(name));
     if listed { rest } else { path }
 }
 

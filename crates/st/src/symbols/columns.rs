@@ -66,7 +66,7 @@ impl Symbols {
         let hidden = self
             .roots
             .iter()
-            .any(|root| root.member.name.eq_ignore_ascii_case(first));
+            .any(|root| root.path.eq_ignore_ascii_case(first));
         if hidden { path } else { rest }
     }
 

@@ -113,6 +113,8 @@ struct Root {
     address: u32,
     section: Section,
     instance: bool,
+    /// Its name; of a global variable whose name another list has, too, with that of its list.
+    path: String,
     /// The name of its file, of a global variable.
     list: String,
 }
@@ -161,7 +163,8 @@ impl Symbols {
             member: global.member.clone(),
             section: Section::Global,
             instance: false,
-            list: sources.stem(global.file).to_owned(),
+            path: global.path(),
+            list: global.list.unwrap_or_default().to_owned(),
         });
         let mut roots: Vec<Root> = globals.collect();
         let mut types = program.types;
@@ -172,6 +175,7 @@ impl Symbols {
                 address: instance.address,
                 section: Section::Internal,
                 instance: true,
+                path: instance.name.clone(),
                 list: String::new(),
             }
         }));
@@ -235,7 +239,7 @@ impl Symbols {
 
     /// The variable with this path, without regard to case: `global`, `instance.variable`, and `variable` if there
     /// is one instance of a program. A global variable hides a local one; it is also found by the name of its file,
-    /// `GVL.global`. `%IX0.0` finds the variable AT that address.
+    /// `GVL.global`, and only so if several files have its name. `%IX0.0` finds the variable AT that address.
     #[must_use]
     pub fn find(&self, path: &str) -> Option<Symbol> {
         if path.starts_with('%') {
@@ -259,7 +263,7 @@ impl Symbols {
     fn follow(&self, path: &str, mut visit: impl FnMut(&Part)) -> Option<Part> {
         let mut rest = path;
         let name = next_name(&mut rest)?;
-        let named = |root: &&Root| root.member.name.eq_ignore_ascii_case(name);
+        let named = |root: &&Root| root.path.eq_ignore_ascii_case(name);
         let of_instance = || self.member(&self.root(self.only_instance()?), name);
         let found = self.roots.iter().find(named).map(|root| self.root(root));
         let mut part = match found.or_else(of_instance) {
@@ -314,7 +318,7 @@ impl Symbols {
 
     fn root(&self, root: &Root) -> Part {
         Part {
-            path: root.member.name.clone(),
+            path: root.path.clone(),
             ty: root.member.ty,
             address: root.address,
             section: root.section,
