@@ -69,6 +69,33 @@ fn an_operand_that_blocks_an_expression_is_named() {
     names(&found, &["there.Execute", "stop is TRUE", "no step sets it"]);
 }
 
+/// Each variable of a program that steps set leads to its own step.
+#[test]
+fn variables_of_a_program_lead_to_their_steps() {
+    let text = r#"{"standstill": 1, "cycle": "T#1ms", "scans": 100, "inputs": {"one": false, "other": false},
+        "axes": {"X": {"limits": {"velocity": 1000, "acceleration": 100000}, "state": "Standstill"}},
+        "programs": {"c": {"st": "c.st"}},
+        "blocks": [{"name": "mv", "type": "MC_MoveAbsolute",
+                    "pins": {"Axis": "X", "Execute": {"all": ["c.a", "c.b"]}, "Position": 5, "Velocity": 10}}],
+        "steps": [{"when": {"one": true}, "set": {"c.a": true}}, {"when": {"other": true}, "set": {"c.b": true}}],
+        "expect": [{"by": 50, "that": {"mv.Busy": true}}]}"#;
+    let program = "PROGRAM P VAR_INPUT a, b : BOOL; END_VAR END_PROGRAM";
+    let nothing = &mut |_: &str| Err("no such file".to_owned());
+    let mut load = |_: &str| Ok(program.as_bytes().to_vec());
+    let script = standstill_script::read_with_programs(text, "test.scan.json", &[], nothing, &mut load);
+    let found = standstill_script::run(&script.unwrap_or_else(|error| panic!("{error}"))).unwrap();
+    let reasons: Vec<_> = found.why.iter().map(|reason| reason.text.as_str()).collect();
+    for words in [
+        "steps[0] sets c.a when one is TRUE",
+        "steps[1] sets c.b when other is TRUE",
+    ] {
+        assert!(
+            reasons.iter().any(|reason| reason.contains(words)),
+            "{reasons:#?}"
+        );
+    }
+}
+
 #[test]
 fn a_step_whose_condition_is_an_expression_leads_to_what_it_reads() {
     let blocks = [

@@ -28,6 +28,7 @@ impl Walk<'_> {
                 }
             }
             Point::Input(_) => self.steps(point, since, scan),
+            Point::Symbol(..) if self.setters(point).next().is_some() => self.steps(point, since, scan),
             Point::Symbol(..) => self.written(point, scan).into_iter().collect(),
             Point::Formula(formula) => self.formula(formula, true, since, scan),
         }
@@ -222,7 +223,13 @@ impl Walk<'_> {
 
     /// The reason why no step set a variable or a pin in time.
     pub(super) fn steps(&mut self, point: Point, since: u64, scan: u64) -> Vec<Finding> {
-        if !self.enter(1, usize::MAX, self.place_of(point)) {
+        let (kind, place, inner) = match point {
+            Point::Input(index) => (1, index, 0),
+            Point::Pin(instance, pin) => (6, instance, pin),
+            Point::Symbol(program, symbol) => (7, program, symbol),
+            Point::Formula(index) => (8, index, 0),
+        };
+        if !self.enter(kind, place, inner) {
             return Vec::new();
         }
         let name = self.look.called(point);
@@ -256,8 +263,12 @@ impl Walk<'_> {
             return None;
         }
         let name = self.look.called(point);
+        let other = match point {
+            Point::Symbol(..) => "its program",
+            _ => "another step",
+        };
         let text =
-            format!("steps[{step}] sets {name} in scan {at}, and another step sets it back in the same scan");
+            format!("steps[{step}] sets {name} in scan {at}, and {other} sets it back in the same scan");
         Some(Finding::new(Rank::Stopped, Some(at), text))
     }
 
@@ -344,14 +355,6 @@ impl Walk<'_> {
             names => format!("{name} is set by {}", names.join(", ")),
         };
         Some(Finding::new(Rank::Follows, Some(scan), text))
-    }
-
-    fn place_of(&self, point: Point) -> usize {
-        match point {
-            Point::Input(index) => index,
-            Point::Pin(instance, pin) => 1_000_000 + 1_000 * instance + pin,
-            Point::Formula(_) | Point::Symbol(..) => usize::MAX,
-        }
     }
 
     /// Whether a wire reads a point of a block that is called later in the same scan.
