@@ -2,8 +2,8 @@
 
 use crate::paint;
 use crate::suggest::beside;
-use standstill_script::RunError;
 use standstill_script::suite::{SuiteError, shown};
+use standstill_script::{Code, RunError};
 use standstill_trace::file::FileError;
 use standstill_trace::golden::GoldenError;
 use standstill_trace::printable_lines;
@@ -76,10 +76,8 @@ impl Failure {
         feature = "watch"
     )))]
     pub fn left_out(feature: &str) -> Self {
-        Self::usage(&format!(
-            "this build of standstill has no `{feature}`: build it with the feature `{feature}`, as \
-             `cargo build --release -p standstill-cli` without `--no-default-features` does"
-        ))
+        let remedy = remedy(feature);
+        Self::usage(&format!("this build of standstill has no `{feature}`: {remedy}"))
     }
 
     /// A file that could not be read or written. Text that is no UTF-8 is an invalid file, not a disk error.
@@ -105,6 +103,14 @@ impl Failure {
             }
         }
     }
+}
+
+/// How to get a program with a feature that this one does not have.
+fn remedy(feature: &str) -> String {
+    format!(
+        "build it with the feature `{feature}`, as `cargo build --release -p standstill-cli` without \
+         `--no-default-features` does"
+    )
 }
 
 /// The end of a message about a missing file or folder: the name that was probably meant.
@@ -144,7 +150,13 @@ impl From<SuiteError> for Failure {
             | SuiteError::Run { .. }
             | SuiteError::Golden(GoldenError::Form { .. }) => Exit::BadInput,
             // Its text is already rendered.
-            SuiteError::Script(script) => return Self::Told(Exit::BadInput, script.to_string()),
+            SuiteError::Script(script) => {
+                let mut text = script.to_string();
+                if script.diagnostics().iter().any(|it| it.code == Code::NotBuilt) {
+                    text += &format!("\n\nhelp: {}", remedy("guest"));
+                }
+                return Self::Told(Exit::BadInput, text);
+            }
         };
         Self::Told(exit, format!("error: {error}"))
     }

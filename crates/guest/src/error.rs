@@ -7,8 +7,7 @@ use std::fmt;
 pub enum LoadError {
     /// There is no interpreter in this build.
     #[error(
-        "this build of standstill runs no programs and no expressions: build it with the feature `guest`, as \
-         `cargo build --release -p standstill-cli` without `--no-default-features` does"
+        "this build has no interpreter for programs and expressions: the feature `engine` of standstill-guest is off"
     )]
     NotBuilt,
     /// WebAssembly as text, which this build does not read.

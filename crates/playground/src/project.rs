@@ -127,7 +127,7 @@ pub fn check(request: &str) -> String {
 /// Whether the module with guests may read a script that this one cannot.
 fn needs_guests(error: &ScriptError) -> bool {
     let mut codes = error.diagnostics().iter().map(|found| found.code);
-    !cfg!(feature = "guest") && codes.any(|code| code == Code::BadProgram)
+    codes.any(|code| code == Code::NotBuilt)
 }
 
 /// The answer to a refused request.

@@ -88,6 +88,8 @@ codes! {
     BadOverride = "bad_override",
     /// A guest program that cannot be read or used.
     BadProgram = "bad_program",
+    /// A program or an expression, and this build has no interpreter for them.
+    NotBuilt = "not_built",
     /// An expression that cannot be read or has no such value.
     BadExpression = "bad_expression",
     /// A script whose trace would be larger than the runtime records.

@@ -63,7 +63,7 @@ impl Reader {
         let inner = expression(text)?;
         if !ARE_RUN {
             let message = format!("the expression cannot run: {}", LoadError::NotBuilt);
-            return self.refuse(Diagnostic::new(Code::BadProgram, node.span, message));
+            return self.refuse(Diagnostic::new(Code::NotBuilt, node.span, message));
         }
         if self.formulas.len() >= FORMULAS_MAX {
             let message = format!("a script has at most {FORMULAS_MAX} expressions");

@@ -112,7 +112,7 @@ impl Reader {
         let fields = self.fields(node, &shape::PROGRAM)?;
         if !ARE_RUN {
             let message = format!("the program {} cannot run: {}", quoted(name), LoadError::NotBuilt);
-            return self.refuse(Diagnostic::new(Code::BadProgram, node.span, message));
+            return self.refuse(Diagnostic::new(Code::NotBuilt, node.span, message));
         }
         let defaults = Settings::default();
         let fuel = self.optional(&fields, "fuel", defaults.fuel, |it, node, key| {
