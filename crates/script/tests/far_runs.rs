@@ -286,11 +286,8 @@ fn script(random: &mut Random) -> Value {
 
 #[test]
 fn random_runs_far_ahead_are_the_runs_scan_by_scan() {
-    let count = std::env::var("STANDSTILL_SOAK")
-        .ok()
-        .and_then(|count| count.parse().ok());
     let (mut scans, mut left_out, mut broken, mut refused) = (0, 0, 0, 0);
-    let count = count.unwrap_or_else(|| standstill_testkit::cases(150));
+    let count = standstill_testkit::soak(standstill_testkit::cases(150));
     for seed in 0..count {
         let mut random = Random(seed);
         let text = script(&mut random).to_string();

@@ -26,12 +26,19 @@ pub fn cases(whole: u64) -> u64 {
     whole_or(whole, whole.div_ceil(50))
 }
 
+/// The number that the environment gives by this name; without it `usual`.
+#[cfg(not(target_os = "none"))]
+#[must_use]
+pub fn given<T: core::str::FromStr>(name: &str, usual: T) -> T {
+    let given = std::env::var(name).ok();
+    given.and_then(|number| number.parse().ok()).unwrap_or(usual)
+}
+
 /// The cases that `STANDSTILL_SOAK` in the environment asks for, as docs/performance.md does; without it `usual`.
 #[cfg(not(target_os = "none"))]
 #[must_use]
 pub fn soak(usual: u64) -> u64 {
-    let given = std::env::var("STANDSTILL_SOAK").ok();
-    given.and_then(|count| count.parse().ok()).unwrap_or(usual)
+    given("STANDSTILL_SOAK", usual)
 }
 
 /// The step with which a search goes through a long list: 1 if it [searches]; else 23, a prime, so that no column

@@ -170,10 +170,7 @@ pub fn cube_root(x: f64) -> f64 {
 
 /// The number of random cases: `count`, times `STANDSTILL_SOAK_FACTOR` if that is set.
 pub fn rounds(count: u64) -> u64 {
-    let factor = std::env::var("STANDSTILL_SOAK_FACTOR")
-        .ok()
-        .and_then(|text| text.parse().ok());
-    count * factor.unwrap_or(1)
+    count * standstill_testkit::given("STANDSTILL_SOAK_FACTOR", 1)
 }
 
 /// Bounds of order 3 that may each be the decisive one.

@@ -4,7 +4,7 @@
 
 mod play;
 
-use standstill_testkit::{Random, cases};
+use standstill_testkit::{Random, cases, given};
 use std::fs;
 use std::path::Path;
 
@@ -56,12 +56,8 @@ fn no_damage_to_a_program_leads_to_a_panic() {
     let programs = programs();
     assert!(programs.len() > 10);
     programs.iter().for_each(|program| play::play(program));
-    let number = |variable: &str, usual: u64| {
-        let set = std::env::var(variable).ok().and_then(|text| text.parse().ok());
-        set.unwrap_or(usual)
-    };
-    let first = number("STANDSTILL_ST_SEED", 0);
-    for seed in first..first + number("STANDSTILL_ST_DAMAGE", cases(3000)) {
+    let first = given("STANDSTILL_ST_SEED", 0);
+    for seed in first..first + given("STANDSTILL_ST_DAMAGE", cases(3000)) {
         // In a longer run this line shows the progress.
         if seed % 100_000 == 99_999 {
             eprintln!("{} done", seed + 1 - first);

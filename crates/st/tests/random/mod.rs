@@ -8,7 +8,7 @@ mod generate;
 use crate::common::{Running, compile, valid};
 use generate::{Generated, generate};
 use standstill_guest::Settings;
-use standstill_testkit::Random;
+use standstill_testkit::{Random, given};
 use std::path::PathBuf;
 use std::process::Command;
 use std::{env, fs};
@@ -18,13 +18,6 @@ const PROGRAMS: usize = 200;
 
 /// Number of runs of each.
 const SCANS: usize = 3;
-
-fn number(variable: &str, usual: usize) -> usize {
-    env::var(variable)
-        .ok()
-        .and_then(|text| text.parse().ok())
-        .unwrap_or(usual)
-}
 
 /// The output of clang's program, a line for each of ours; `None` without clang.
 fn in_c(programs: &[Generated], seed: u64) -> Option<String> {
@@ -130,8 +123,8 @@ fn same(seed: u64, count: usize) -> bool {
 /// Covers: ST13, ST14, ST30, ST31, ST32, ST33, ST34, ST35, ST40
 #[test]
 fn programs_are_worth_what_clang_says() {
-    let count = number("STANDSTILL_ST_PROGRAMS", standstill_testkit::cases(1000) as usize);
-    let seed = number("STANDSTILL_ST_SEED", 1) as u64;
+    let count = given("STANDSTILL_ST_PROGRAMS", standstill_testkit::cases(1000) as usize);
+    let seed = given("STANDSTILL_ST_SEED", 1_u64);
     let each = PROGRAMS.min(count);
     let files = count.div_ceil(PROGRAMS) as u64;
     let threads = std::thread::available_parallelism().map_or(1, usize::from).min(2) as u64;
