@@ -242,10 +242,7 @@ fn cams_switch_in_the_right_scan_at_every_speed() {
             axes[0].follow_feedback(&feedback, &mut Scope::new(scan, &mut log));
             if scan == 0 {
                 let command = Command::MoveVelocity {
-                    dynamics: Dynamics {
-                        velocity,
-                        ..Dynamics::default()
-                    },
+                    dynamics: Dynamics::at(velocity),
                     direction: Direction::Unset.into(),
                 };
                 let request = Request::aborting(command);

@@ -485,6 +485,14 @@ pub struct SyncPoint {
 }
 
 impl Dynamics {
+    /// A velocity (u/s) with the defaults of the axis.
+    pub fn at(velocity: f64) -> Self {
+        Self {
+            velocity,
+            ..Self::default()
+        }
+    }
+
     fn bits(&self) -> [u64; 5] {
         let values = [
             self.velocity,

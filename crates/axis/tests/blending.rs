@@ -6,12 +6,12 @@
 //! numbers are seeded; a failing case prints its own.
 
 use crate::differences::Watch;
+use crate::standing;
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Dynamics, Fate, Limits, Log,
-    Request, Scope, Standard, StartState, steps,
+    Axis, AxisId, AxisState, BufferMode, Command, CommandId, Dynamics, Fate, Limits, Log, Request, Scope,
+    Standard,
 };
 use standstill_testkit::{Random, cases};
-use std::slice;
 
 /// A move of a chain.
 #[derive(Clone, Copy, Debug)]
@@ -119,10 +119,7 @@ fn judge(seed: u64) -> Result<Seen, String> {
     let cycle = 1e-3;
     let limits = limits(&mut random, cycle);
     let moves = chain(&mut random, &limits, cycle);
-    let config = AxisConfig {
-        start: StartState::Standstill,
-        ..AxisConfig::new(limits)
-    };
+    let config = standing::config(limits);
     let mut axis = Axis::new(AxisId::new(0), config, Standard::new(cycle)).map_err(|e| format!("{e:?}"))?;
     let mut log = Log::default();
     let mut ids: Vec<CommandId> = Vec::new();
@@ -154,7 +151,7 @@ fn judge(seed: u64) -> Result<Seen, String> {
             .iter()
             .position(|id| matches!(axis.fate(*id), Fate::Active { .. }));
         let past = axis.setpoint();
-        steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, &mut log));
+        axis.step_alone(&mut Scope::new(scan, &mut log));
         let point = axis.setpoint();
         watch
             .see(point.position)

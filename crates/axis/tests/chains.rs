@@ -11,10 +11,9 @@
 use crate::differences::Watch;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId,
-    Factors, Fate, Limits, Log, QUEUE_MAX, Request, Scope, Standard, StartState, steps,
+    Factors, Fate, Limits, Log, QUEUE_MAX, Request, Scope, Standard, StartState,
 };
 use standstill_testkit::{Random, cases};
-use std::slice;
 
 pub const CYCLE: f64 = 0.001;
 
@@ -142,7 +141,7 @@ impl Rig {
     /// One scan within the limits of the axis; returns the position after it.
     pub fn advance(&mut self) -> f64 {
         let scope = &mut Scope::new(self.scan, &mut self.log);
-        steps::advance(slice::from_mut(&mut self.axis), scope);
+        self.axis.step_alone(scope);
         self.scan += 1;
         let position = self.axis.setpoint().position;
         self.watch.see(position).unwrap();
@@ -267,10 +266,7 @@ fn random_chains_take_the_scans_of_one_move() {
 /// The distance of the axis until it has its full velocity, and from there to rest.
 fn ways_of_ramps(limits: Limits) -> (f64, f64) {
     let mut rig = Rig::new(limits);
-    let dynamics = Dynamics {
-        velocity: limits.velocity,
-        ..Dynamics::default()
-    };
+    let dynamics = Dynamics::at(limits.velocity);
     let direction = Direction::Positive.into();
     let id = rig.command(
         Command::MoveVelocity { dynamics, direction },
@@ -466,10 +462,7 @@ fn round(limits: Limits, length: f64, ways: &[f64], relative: bool, mode: Buffer
     } else {
         Direction::Negative
     };
-    let dynamics = Dynamics {
-        velocity: limits.velocity,
-        ..Dynamics::default()
-    };
+    let dynamics = Dynamics::at(limits.velocity);
     let mut end = 0.0_f64;
     for way in ways {
         end = (end + way).rem_euclid(length);
@@ -517,7 +510,7 @@ fn a_modulo_axis_goes_round_as_one_motion() {
         while rig.axis.state() != AxisState::Standstill {
             assert!(rig.scan < LONGEST, "seed {seed}: does not end");
             let scope = &mut Scope::new(rig.scan, &mut rig.log);
-            steps::advance(slice::from_mut(&mut rig.axis), scope);
+            rig.axis.step_alone(scope);
             rig.scan += 1;
             let velocity = side * rig.axis.setpoint().velocity;
             assert!(velocity >= -1e-9 * limits.velocity, "seed {seed}: turns");
@@ -575,7 +568,7 @@ fn a_successor_taken_away_leaves_no_limit() {
             let mut scan = rig.scan;
             while axis.state() != AxisState::Standstill {
                 assert!(scan < LONGEST, "seed {seed}: does not end");
-                steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, &mut log));
+                axis.step_alone(&mut Scope::new(scan, &mut log));
                 watch.see(axis.setpoint().position).unwrap();
                 scan += 1;
             }
@@ -603,10 +596,7 @@ fn what_interrupts_a_chain_takes_over_within_the_limits() {
             }
         }
         rig.moves.clear();
-        let dynamics = Dynamics {
-            velocity: limits.velocity,
-            ..Dynamics::default()
-        };
+        let dynamics = Dynamics::at(limits.velocity);
         let command = match random.below(3) {
             0 => Command::Halt { dynamics },
             1 => Command::MoveVelocity {
@@ -633,10 +623,7 @@ fn a_distance_behind_a_software_limit_ends_the_motion_before_it() {
             software_limits: Some((-100.0, 7.5)),
             ..AxisConfig::new(limits(order))
         });
-        let dynamics = Dynamics {
-            velocity: 50.0,
-            ..Dynamics::default()
-        };
+        let dynamics = Dynamics::at(50.0);
         let command = Command::MoveRelative {
             distance: 2.0,
             dynamics,

@@ -2,12 +2,12 @@
 //! comes to its end once it is permitted.
 
 use crate::draw;
+use crate::standing;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Factors, Fate,
-    Limits, Log, Permission, Plan, Planner, Raw, Request, Scope, Standard, StartState, Superimpose, steps,
+    Limits, Log, Permission, Plan, Planner, Raw, Request, Scope, Standard, Superimpose,
 };
 use standstill_testkit::{Random, cases};
-use std::slice;
 
 const CYCLE: f64 = 0.01;
 const CASES: u64 = 4_000;
@@ -17,10 +17,7 @@ const RESTLESS: u64 = 400;
 const MOST_SCANS: u64 = 20_000;
 
 fn command(random: &mut Random, limits: &Limits) -> Command {
-    let dynamics = Dynamics {
-        velocity: limits.velocity * random.between(0.1, 1.0),
-        ..Dynamics::default()
-    };
+    let dynamics = Dynamics::at(limits.velocity * random.between(0.1, 1.0));
     let way = random.between(-60.0, 60.0);
     let direction = Raw::from(Direction::Unset);
     match random.below(7) {
@@ -67,9 +64,8 @@ impl Case {
         let mut random = Random(seed);
         let limits = draw::limits(&mut random);
         let config = AxisConfig {
-            start: StartState::Standstill,
             stop_deceleration: (random.below(2) == 0).then_some(limits.deceleration * 0.4),
-            ..AxisConfig::new(limits)
+            ..standing::config(limits)
         };
         Self {
             axis: Axis::new(AxisId::new(0), config, Standard::new(CYCLE)).unwrap(),
@@ -161,10 +157,7 @@ impl Case {
         if superimposes && self.random.below(40) == 0 {
             let request = Superimpose {
                 distance: self.random.between(-20.0, 20.0),
-                dynamics: Dynamics {
-                    velocity: limits.velocity * 0.3,
-                    ..Dynamics::default()
-                },
+                dynamics: Dynamics::at(limits.velocity * 0.3),
             };
             match self
                 .axis
@@ -192,10 +185,7 @@ fn in_a_barred_direction_an_axis_only_brakes() {
         let mut over = [false; 2];
         for _ in 0..RESTLESS {
             case.disturb(false);
-            steps::advance(
-                slice::from_mut(&mut case.axis),
-                &mut Scope::new(case.scan, &mut case.log),
-            );
+            case.axis.step_alone(&mut Scope::new(case.scan, &mut case.log));
             case.scan += 1;
             let outlook = case.axis.outlook();
             paused += u64::from(outlook.paused);
@@ -219,10 +209,7 @@ fn what_was_paused_comes_to_its_end() {
         let mut case = Case::new(seed);
         for _ in 0..RESTLESS {
             case.disturb(true);
-            steps::advance(
-                slice::from_mut(&mut case.axis),
-                &mut Scope::new(case.scan, &mut case.log),
-            );
+            case.axis.step_alone(&mut Scope::new(case.scan, &mut case.log));
             case.scan += 1;
         }
         while !case.axis.outlook().waiting.iter().all(Option::is_none)
@@ -243,10 +230,7 @@ fn what_was_paused_comes_to_its_end() {
                 .axis
                 .set_override(Factors::ONE, &mut Scope::new(case.scan, &mut case.log));
             assert!(changed.is_ok(), "seed {seed}: {changed:?}");
-            steps::advance(
-                slice::from_mut(&mut case.axis),
-                &mut Scope::new(case.scan, &mut case.log),
-            );
+            case.axis.step_alone(&mut Scope::new(case.scan, &mut case.log));
             case.scan += 1;
             assert!(case.scan < MOST_SCANS, "seed {seed}: {:?}", case.axis.outlook());
         }

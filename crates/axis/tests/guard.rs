@@ -3,11 +3,11 @@
 //! The planner here is the product's own, but one set-point of its plans is wrong.
 
 use crate::double::{Faulty, Wrong};
+use crate::standing;
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, Command, Direction, Dynamics, ErrorId, Event, Limits, Log, Request,
-    Scope, Setpoint, StartState, steps,
+    Axis, AxisId, AxisState, Command, Direction, Dynamics, ErrorId, Event, Limits, Log, Request, Scope,
+    Setpoint,
 };
-use std::slice;
 
 const LIMITS: Limits = Limits {
     velocity: 50.0,
@@ -26,25 +26,19 @@ fn run(wrong: Wrong) -> (Vec<Setpoint>, Axis<Faulty>, Log) {
 
 /// The same at another velocity (u/s).
 fn run_at(velocity: f64, wrong: Wrong) -> (Vec<Setpoint>, Axis<Faulty>, Log) {
-    let config = AxisConfig {
-        start: StartState::Standstill,
-        ..AxisConfig::new(LIMITS)
-    };
+    let config = standing::config(LIMITS);
     let mut axis =
         Axis::new(AxisId::new(0), config, Faulty::new(CYCLE, wrong)).expect("a good configuration");
     let mut log = Log::default();
     let go = Command::MoveVelocity {
-        dynamics: Dynamics {
-            velocity,
-            ..Dynamics::default()
-        },
+        dynamics: Dynamics::at(velocity),
         direction: Direction::Unset.into(),
     };
     axis.command(&Request::aborting(go), &mut Scope::new(0, &mut log))
         .expect("taken");
     let mut published = vec![axis.setpoint()];
     for scan in 0..2000 {
-        steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, &mut log));
+        axis.step_alone(&mut Scope::new(scan, &mut log));
         published.push(axis.setpoint());
     }
     (published, axis, log)

@@ -5,159 +5,13 @@
 //! command brings an axis into exactly such a state, so a test planner does. The stop is planned by the product's own
 //! planner.
 
+use crate::double::Faulty;
+use crate::standing;
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, Command, Direction, Dynamics, Excess, Fate, Limits, Log,
-    MoveProfile, Passage, Plan, PlanError, Planner, ProfileFault, ProfileKind, ProfilePoint, Request, Scope,
-    Setpoint, Standard, StandardPlan, StartState, steps,
+    Axis, AxisConfig, AxisId, AxisState, Command, Direction, Dynamics, Fate, Limits, Log, Request, Scope,
+    Setpoint,
 };
-use std::cell::Cell;
 use std::collections::BTreeMap;
-use std::slice;
-
-/// Puts an axis into `state` with its first ramp, in steps that the axis accepts from a plan. After that it is
-/// [`Standard`].
-#[derive(Clone, Debug)]
-struct Placing {
-    state: Cell<Option<Setpoint>>,
-    standard: Standard,
-}
-
-#[derive(Clone, Copy, Debug)]
-#[expect(clippy::large_enum_variant, reason = "a plan is copied, so it is not boxed")]
-enum Placed {
-    /// In equal steps from rest at its position to a state, in this number of scans.
-    At(Setpoint, u64),
-    Then(StandardPlan),
-}
-
-impl Plan for Placed {
-    fn scans(&self) -> u32 {
-        match self {
-            Self::At(..) => u32::MAX,
-            Self::Then(plan) => plan.scans(),
-        }
-    }
-
-    fn at(&self, scan: u64) -> Setpoint {
-        match self {
-            Self::At(state, scans) if scan < *scans => {
-                let part = scan as f64 / *scans as f64;
-                Setpoint {
-                    velocity: part * state.velocity,
-                    acceleration: part * state.acceleration,
-                    ..Setpoint::at_rest(state.position)
-                }
-            }
-            Self::At(state, _) => *state,
-            Self::Then(plan) => plan.at(scan),
-        }
-    }
-
-    fn excess(&self) -> Option<Excess> {
-        match self {
-            Self::At(..) => None,
-            Self::Then(plan) => plan.excess(),
-        }
-    }
-
-    fn excess_over(&self, limits: &Limits) -> Option<Excess> {
-        match self {
-            Self::At(..) => None,
-            Self::Then(plan) => plan.excess_over(limits),
-        }
-    }
-
-    fn shift(&mut self, _: f64) {
-        unreachable!("coordinates stay")
-    }
-}
-
-impl Planner for Placing {
-    type Plan = Placed;
-
-    fn cycle(&self) -> f64 {
-        self.standard.cycle()
-    }
-
-    fn ramp_to(
-        &self,
-        start: &Setpoint,
-        velocity: f64,
-        limits: &Limits,
-        before: &Limits,
-    ) -> Result<Placed, PlanError> {
-        match self.state.take() {
-            Some(state) => {
-                let steps = [
-                    state.velocity.abs() / (limits.acceleration * self.cycle()),
-                    state.acceleration.abs() / (limits.jerk * self.cycle()),
-                ];
-                Ok(Placed::At(state, 1 + steps[0].max(steps[1]).ceil() as u64))
-            }
-            None => self
-                .standard
-                .ramp_to(start, velocity, limits, before)
-                .map(Placed::Then),
-        }
-    }
-
-    fn move_to(
-        &self,
-        _: MoveProfile,
-        _: &Setpoint,
-        _: f64,
-        _: &Limits,
-        _: &Limits,
-    ) -> Result<Placed, PlanError> {
-        unreachable!("only ramps are asked for")
-    }
-
-    fn pass(&self, _: &Setpoint, _: f64, _: f64, _: &Limits, _: &Limits) -> Result<Placed, PlanError> {
-        unreachable!("only ramps are asked for")
-    }
-
-    fn blend(
-        &self,
-        _: &Setpoint,
-        _: f64,
-        _: &Passage,
-        _: &Limits,
-        _: &Limits,
-    ) -> Result<Option<Placed>, PlanError> {
-        unreachable!("only ramps are asked for")
-    }
-
-    fn profile(
-        &self,
-        _: ProfileKind,
-        _: &Setpoint,
-        _: &[ProfilePoint],
-        _: &Limits,
-        _: Option<(f64, f64)>,
-    ) -> Result<Placed, ProfileFault> {
-        unreachable!("no profile is commanded")
-    }
-
-    fn entry_speed(&self, _: f64, _: f64, _: f64, _: f64, _: &Limits) -> f64 {
-        unreachable!("nothing is blended")
-    }
-
-    fn fits(&self, _: (&Placed, u64), _: (&Placed, u64), _: &Limits, _: Option<(f64, f64)>) -> bool {
-        unreachable!("nothing is superimposed")
-    }
-
-    fn room(&self, _: (&Placed, u64), _: &Limits) -> Limits {
-        unreachable!("nothing is superimposed")
-    }
-
-    fn next_switch(&self, _: (&Placed, u64)) -> u64 {
-        unreachable!("nothing is superimposed")
-    }
-
-    fn ways(&self, _: (&Placed, u64)) -> (f64, f64) {
-        unreachable!("nothing is superimposed")
-    }
-}
 
 /// A state in motion, and the least number of scans from there.
 struct Case {
@@ -199,22 +53,18 @@ fn cases(text: &str) -> Vec<Case> {
 
 impl Case {
     /// An axis in the state of the case.
-    fn axis(&self, log: &mut Log) -> Axis<Placing> {
+    fn axis(&self, log: &mut Log) -> Axis<Faulty> {
         let config = AxisConfig {
-            start: StartState::Standstill,
             position: self.start.position,
-            ..AxisConfig::new(self.limits)
+            ..standing::config(self.limits)
         };
-        let planner = Placing {
-            state: Cell::new(Some(self.start)),
-            standard: Standard::new(self.cycle),
-        };
+        let planner = Faulty::placing(self.cycle, self.start);
         let mut axis = Axis::new(AxisId::new(0), config, planner).expect("a good configuration");
         let there = self.velocity(self.limits.velocity);
         axis.command(&Request::aborting(there), &mut Scope::new(0, log))
             .expect("taken");
         for scan in 0..100_000 {
-            steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, log));
+            axis.step_alone(&mut Scope::new(scan, log));
             if axis.setpoint() == self.start {
                 return axis;
             }
@@ -223,10 +73,7 @@ impl Case {
     }
 
     fn velocity(&self, velocity: f64) -> Command {
-        let dynamics = Dynamics {
-            velocity,
-            ..Dynamics::default()
-        };
+        let dynamics = Dynamics::at(velocity);
         Command::MoveVelocity {
             dynamics,
             direction: Direction::Unset.into(),
@@ -244,7 +91,7 @@ impl Case {
         let stops = self.goal == 0.0;
         let heading = self.start.velocity.signum();
         for scan in 1.. {
-            steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, &mut log));
+            axis.step_alone(&mut Scope::new(scan, &mut log));
             let Setpoint {
                 velocity,
                 acceleration,

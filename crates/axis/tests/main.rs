@@ -18,6 +18,7 @@ mod on_cam;
 mod outlook;
 mod shaped;
 mod slow_master;
+mod standing;
 mod superimposed;
 mod superimposed_behind;
 mod superimposed_least;

@@ -5,10 +5,11 @@
 //! the reported positions.
 
 use crate::draw;
+use crate::followed::behind;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Comms, DriveFeedback, DrivePosition, DriveSignals,
-    Dynamics, ErrorId, ExecutionMode, Followed, Limits, Log, Master, Request, Scaling, Scope, Standard,
-    StartState, SyncMode, SyncPoint, ValueSource, couple, steps,
+    Dynamics, ErrorId, ExecutionMode, Limits, Log, Request, Scaling, Scope, Standard, StartState, SyncMode,
+    SyncPoint, ValueSource, couple, steps,
 };
 use standstill_testkit::{Random, cases};
 
@@ -57,21 +58,9 @@ impl Bench {
         }
     }
 
-    fn couple(
-        &mut self,
-        (numerator, denominator): (i16, u16),
-        sync: Option<SyncPoint>,
-    ) -> Result<(), ErrorId> {
+    fn couple(&mut self, ratio: (i16, u16), sync: Option<SyncPoint>) -> Result<(), ErrorId> {
         let command = Command::GearIn {
-            followed: Followed {
-                master: Master {
-                    axis: AxisId::new(0),
-                    turn: None,
-                },
-                numerator,
-                denominator: denominator.into(),
-                source: ValueSource::Actual.into(),
-            },
+            followed: behind(&self.axes[0], ratio, ValueSource::Actual),
             sync,
             dynamics: Dynamics::default(),
         };

@@ -1,23 +1,20 @@
 //! The forecast of an axis for its next motion.
 
+use crate::standing;
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, Direction, Dynamics, ErrorId, Limits, Log,
-    Request, Scope, Standard, StartState, Superimpose, steps,
+    Axis, AxisState, BufferMode, Command, Direction, Dynamics, ErrorId, Limits, Log, Request, Scope,
+    Superimpose,
 };
-use std::slice;
 
 /// An axis at rest with limits of 100 u/s and 1000 u/s^2.
 fn axis() -> Axis {
-    let config = AxisConfig {
-        start: StartState::Standstill,
-        ..AxisConfig::new(Limits {
-            velocity: 100.0,
-            acceleration: 1000.0,
-            deceleration: 1000.0,
-            ..Limits::NONE
-        })
+    let limits = Limits {
+        velocity: 100.0,
+        acceleration: 1000.0,
+        deceleration: 1000.0,
+        ..Limits::NONE
     };
-    Axis::new(AxisId::new(0), config, Standard::new(0.01)).expect("a good configuration")
+    standing::axis(limits, 0.01)
 }
 
 fn at(velocity: f64, acceleration: f64) -> Dynamics {
@@ -42,7 +39,7 @@ fn moving(acceleration: f64, faster: f64) -> (Axis, Log) {
     axis.command(&Request::aborting(command), &mut Scope::new(0, &mut log))
         .expect("taken");
     for scan in 0..10 {
-        steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, &mut log));
+        axis.step_alone(&mut Scope::new(scan, &mut log));
     }
     let added = Superimpose {
         distance: 200.0,
@@ -66,10 +63,7 @@ fn what_was_lowered_is_tried_again_until_that_is_in_vain_and_before_the_owner_ha
             assert_eq!(tried, 1, "{left}");
             tried_in_vain += 1;
         }
-        steps::advance(
-            slice::from_mut(&mut axis),
-            &mut Scope::new(50 - u64::from(left), &mut log),
-        );
+        axis.step_alone(&mut Scope::new(50 - u64::from(left), &mut log));
     }
 }
 
@@ -84,7 +78,7 @@ fn what_waits_for_room_is_tried_again_then_too() {
     };
     axis.command(&Request::aborting(command), &mut Scope::new(0, &mut log))
         .expect("taken");
-    steps::advance(slice::from_mut(&mut axis), &mut Scope::new(0, &mut log));
+    axis.step_alone(&mut Scope::new(0, &mut log));
     let added = Superimpose {
         distance: 20.0,
         dynamics: at(10.0, 0.0),
@@ -93,10 +87,7 @@ fn what_waits_for_room_is_tried_again_then_too() {
         .expect("taken");
     for left in (1..=8_u32).rev() {
         assert_eq!(tried_in(&axis), 1, "{left}");
-        steps::advance(
-            slice::from_mut(&mut axis),
-            &mut Scope::new(9 - u64::from(left), &mut log),
-        );
+        axis.step_alone(&mut Scope::new(9 - u64::from(left), &mut log));
     }
 }
 
@@ -105,7 +96,7 @@ fn what_is_added_as_asked_for_is_not_tried_again() {
     let (mut axis, mut log) = moving(100.0, 20.0);
     for scan in 10..60 {
         assert_eq!(tried_in(&axis), 0);
-        steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, &mut log));
+        axis.step_alone(&mut Scope::new(scan, &mut log));
     }
 }
 
@@ -122,7 +113,7 @@ fn a_stop_does_not_wait_behind_a_stop() {
     for command in [go, stop] {
         axis.command(&Request::aborting(command), &mut Scope::new(0, &mut log))
             .expect("taken");
-        steps::advance(slice::from_mut(&mut axis), &mut Scope::new(0, &mut log));
+        axis.step_alone(&mut Scope::new(0, &mut log));
     }
     assert_eq!(axis.state(), AxisState::Stopping);
     for mode in [

@@ -4,11 +4,12 @@
 //! the weights of the shapers alone, for any take-over at any time. It has to keep every limit, and to be done when
 //! the last of the motion has come out of the shaper.
 
+use crate::standing;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, CommandId, ConfigError, Direction, DriveFeedback,
     DrivePosition, DriveRequest, Dynamics, ErrorId, ExecutionMode, Fate, IdealDrive, Limits, Log,
-    ParameterValue, Permission, Request, Scope, Setpoint, ShaperKind, Standard, StartState, Superimpose,
-    VibrationMode, steps,
+    ParameterValue, Permission, Request, Scope, Setpoint, ShaperKind, Standard, Superimpose, VibrationMode,
+    steps,
 };
 use standstill_axis::{Drive, PlanError};
 use standstill_planner::Shapers;
@@ -200,9 +201,8 @@ fn dynamics(random: &mut Random, limits: &Limits) -> Dynamics {
 
 fn config(limits: Limits, vibration: [Option<VibrationMode>; 2]) -> AxisConfig {
     AxisConfig {
-        start: StartState::Standstill,
         vibration,
-        ..AxisConfig::new(limits)
+        ..standing::config(limits)
     }
 }
 
@@ -365,10 +365,7 @@ fn coordinates_may_move_while_something_is_in_the_shaper() {
             ..config(limits, [Some(mode(12.0, 0.01, ShaperKind::Ei)), None])
         };
         let mut twins = Twins::new(config);
-        let dynamics = Dynamics {
-            velocity: 40.0,
-            ..Dynamics::default()
-        };
+        let dynamics = Dynamics::at(40.0);
         let direction = Direction::Positive.into();
         twins.command(Command::MoveVelocity { dynamics, direction });
         let mut last = twins.axes[0].setpoint();
@@ -415,10 +412,7 @@ fn power_stays_on_until_nothing_is_left() {
     };
     for fault in [false, true] {
         let mut twins = Twins::new(config(limits, [Some(mode(5.0, 0.0, ShaperKind::Zvd)), None]));
-        let dynamics = Dynamics {
-            velocity: 40.0,
-            ..Dynamics::default()
-        };
+        let dynamics = Dynamics::at(40.0);
         let direction = Direction::Positive.into();
         twins.command(Command::MoveVelocity { dynamics, direction });
         for _ in 0..300 {

@@ -9,13 +9,16 @@
 //!
 //! `SLOW_MASTER_CASES` runs more of them.
 
+use crate::differences::Seen;
 use crate::draw;
+use crate::followed::behind;
+use crate::standing;
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Dynamics, Event, Factors, Followed,
-    Following, Limits, Log, Master, OnLimit, Permission, PhaseShift, Raw, Request, Scope, Setpoint, Standard,
-    StartState, Superimpose, ValueSource, couple, steps,
+    Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Dynamics, Event, Factors, Following,
+    Limits, Log, OnLimit, Permission, PhaseShift, Raw, Request, Scope, Standard, Superimpose, ValueSource,
+    couple, steps,
 };
-use standstill_testkit::{Random, cases};
+use standstill_testkit::{Random, cases, given};
 
 const CYCLE: f64 = 0.01;
 const CASES: u64 = 1500;
@@ -27,49 +30,14 @@ const TREES: [&[usize]; 5] = [&[0], &[0, 0], &[0, 1], &[0, 1, 0], &[0, 1, 2]];
 
 fn axis(number: u16, limits: Limits) -> Axis {
     let config = AxisConfig {
-        start: StartState::Standstill,
         override_max: 2.0,
         following: Following {
             on_limit: OnLimit::SlowMaster,
             ..Following::DEFAULT
         },
-        ..AxisConfig::new(limits)
+        ..standing::config(limits)
     };
     Axis::new(AxisId::new(number), config, Standard::new(CYCLE)).unwrap()
-}
-
-/// The last published positions, newest first.
-#[derive(Clone, Copy)]
-struct Seen([f64; 5]);
-
-impl Seen {
-    fn check(&mut self, now: &Setpoint, limits: &Limits, what: &str) {
-        self.0.rotate_right(1);
-        self.0[0] = now.position;
-        let acceleration = limits.acceleration.max(limits.deceleration);
-        let bounds = [limits.velocity, acceleration, limits.jerk, limits.snap];
-        let derivatives = [now.velocity, now.acceleration, now.jerk, now.snap];
-        let mut differences = self.0;
-        // The resolution of f64 positions in a difference of each order.
-        let mut grain = 4.0 * f64::EPSILON * self.0.iter().fold(1.0, |most: f64, p| most.max(p.abs()));
-        for (order, (bound, derivative)) in bounds.iter().zip(derivatives).enumerate() {
-            assert!(
-                derivative.abs() <= bound * (1.0 + 1e-9),
-                "{what}: derivative {} is {derivative}, limit {bound}",
-                order + 1
-            );
-            for place in 0..4 - order {
-                differences[place] = (differences[place] - differences[place + 1]) / CYCLE;
-            }
-            grain *= 2.0 / CYCLE;
-            assert!(
-                differences[0].abs() <= bound * (1.0 + 1e-9) + grain,
-                "{what}: difference {} is {}, limit {bound}",
-                order + 1,
-                differences[0]
-            );
-        }
-    }
 }
 
 struct Case {
@@ -97,16 +65,10 @@ impl Case {
         };
         for (slave, &master) in (1..).zip(tree) {
             let sign = if case.random.below(2) == 0 { 1 } else { -1 };
+            let numerator = sign * case.random.below(8) as i16;
+            let ratio = (numerator, 1 + case.random.below(7) as u16);
             let command = Command::GearIn {
-                followed: Followed {
-                    master: Master {
-                        axis: AxisId::new(master as u16),
-                        turn: None,
-                    },
-                    numerator: sign * case.random.below(8) as i16,
-                    denominator: 1 + case.random.below(7) as i32,
-                    source: ValueSource::Set.into(),
-                },
+                followed: behind(&case.axes[master], ratio, ValueSource::Set),
                 sync: None,
                 dynamics: Dynamics::default(),
             };
@@ -255,7 +217,7 @@ impl Case {
 
 fn stays_in_gear(seed: u64) {
     let mut case = Case::new(seed);
-    let mut seen = vec![Seen([0.0; 5]); case.axes.len()];
+    let mut seen = vec![Seen::new(CYCLE); case.axes.len()];
     let mut told = 0;
     let pace = 2 + case.random.below(40);
     for scan in 0..SCANS {
@@ -295,8 +257,7 @@ fn stays_in_gear(seed: u64) {
 
 #[test]
 fn slaves_stay_in_gear_whatever_their_master_is_told() {
-    let asked_for = std::env::var("SLOW_MASTER_CASES");
-    for seed in 0..asked_for.map_or_else(|_| cases(CASES), |count| count.parse().unwrap()) {
+    for seed in 0..given("SLOW_MASTER_CASES", cases(CASES)) {
         stays_in_gear(seed);
     }
 }
@@ -331,10 +292,7 @@ fn a_master_uses_all_that_its_slave_leaves() {
             most.min(case.limits[slave].velocity / ratio)
         });
         let run = Command::MoveVelocity {
-            dynamics: Dynamics {
-                velocity: case.limits[0].velocity,
-                ..Dynamics::default()
-            },
+            dynamics: Dynamics::at(case.limits[0].velocity),
             direction: Raw::default(),
         };
         for scan in 0..4000 {

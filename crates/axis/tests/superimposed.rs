@@ -6,25 +6,17 @@
 
 use crate::differences::Seen;
 use crate::draw;
+use crate::standing;
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, Fate, Limits,
-    Log, Plan, Raw, Request, Scope, Setpoint, Standard, StartState, Superimpose, steps,
+    Axis, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, Fate, Limits, Log, Plan, Raw,
+    Request, Scope, Setpoint, Superimpose,
 };
 use standstill_testkit::{Random, cases};
-use std::slice;
 
 const CYCLE: f64 = 0.01;
 const CASES: u64 = 10_000;
 /// A case that takes longer is a motion that never ends.
 const MOST_SCANS: u64 = 40_000;
-
-fn axis(limits: Limits) -> Axis {
-    let config = AxisConfig {
-        start: StartState::Standstill,
-        ..AxisConfig::new(limits)
-    };
-    Axis::new(AxisId::new(0), config, Standard::new(CYCLE)).unwrap()
-}
 
 fn bits(setpoint: &Setpoint) -> [u64; 4] {
     [
@@ -52,8 +44,8 @@ impl Case {
         Self {
             limits,
             random,
-            with: axis(limits),
-            without: axis(limits),
+            with: standing::axis(limits, CYCLE),
+            without: standing::axis(limits, CYCLE),
             log: Log::default(),
             scan: 0,
         }
@@ -129,14 +121,8 @@ fn one_on_one(seed: u64) {
             case.without.fate(without),
             "seed {seed}, scan {scan}"
         );
-        steps::advance(
-            slice::from_mut(&mut case.with),
-            &mut Scope::new(scan, &mut case.log),
-        );
-        steps::advance(
-            slice::from_mut(&mut case.without),
-            &mut Scope::new(scan, &mut case.log),
-        );
+        case.with.step_alone(&mut Scope::new(scan, &mut case.log));
+        case.without.step_alone(&mut Scope::new(scan, &mut case.log));
         let now = case.with.setpoint();
         seen.check(&now, &case.limits, &format!("seed {seed}, scan {scan}"));
         let twin = case.without.setpoint();
@@ -213,10 +199,7 @@ fn many_on_many(seed: u64) {
                 .command(&request, &mut Scope::new(case.scan, &mut case.log))
                 .is_ok();
         }
-        steps::advance(
-            slice::from_mut(&mut case.with),
-            &mut Scope::new(scan, &mut case.log),
-        );
+        case.with.step_alone(&mut Scope::new(scan, &mut case.log));
         let now = case.with.setpoint();
         seen.check(&now, &case.limits, &format!("seed {seed}, scan {scan}"));
         assert_ne!(

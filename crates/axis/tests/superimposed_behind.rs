@@ -8,9 +8,11 @@
 
 use crate::differences::Seen;
 use crate::draw;
+use crate::followed::behind;
+use crate::standing;
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, Command, CommandId, Direction, Dynamics, Fate, Followed, Limits,
-    Log, Master, Raw, Request, Scope, Standard, StartState, Superimpose, ValueSource, couple, steps,
+    Axis, AxisId, AxisState, Command, CommandId, Direction, Dynamics, Fate, Limits, Log, Raw, Request, Scope,
+    Standard, Superimpose, ValueSource, couple, steps,
 };
 use standstill_testkit::{Random, cases};
 
@@ -67,10 +69,7 @@ impl Case {
             _ => able(&master, size, random.between(1.0, 3.0)),
         };
         let axis = |number, limits| {
-            let config = AxisConfig {
-                start: StartState::Standstill,
-                ..AxisConfig::new(limits)
-            };
+            let config = standing::config(limits);
             Axis::new(AxisId::new(number), config, Standard::new(CYCLE)).unwrap()
         };
         Self {
@@ -85,17 +84,8 @@ impl Case {
     }
 
     fn couple(&mut self, slave: usize) {
-        let master = Master {
-            axis: AxisId::new(0),
-            turn: None,
-        };
         let command = Command::GearIn {
-            followed: Followed {
-                master,
-                numerator: self.ratio.0,
-                denominator: self.ratio.1.into(),
-                source: ValueSource::Set.into(),
-            },
+            followed: behind(&self.axes[MASTER], self.ratio, ValueSource::Set),
             sync: None,
             dynamics: Dynamics::default(),
         };

@@ -6,11 +6,8 @@
 //! the limits of the axis at every scan end, and the added motion keeps its own velocity. It was found with SciPy's
 //! HiGHS, with no part of this project.
 
-use standstill_axis::{
-    Axis, AxisConfig, AxisId, Command, Direction, Dynamics, Fate, Limits, Log, Raw, Request, Scope, Standard,
-    StartState, Superimpose, steps,
-};
-use std::slice;
+use crate::standing;
+use standstill_axis::{Command, Direction, Dynamics, Fate, Limits, Log, Raw, Request, Scope, Superimpose};
 
 const CYCLE: f64 = 0.001;
 
@@ -65,16 +62,8 @@ fn cases() -> impl Iterator<Item = Case> {
 
 /// The velocity of the axis scan by scan, with and without MC_MoveSuperimposed.
 fn run(case: &Case, adds: bool) -> Vec<f64> {
-    let config = AxisConfig {
-        start: StartState::Standstill,
-        ..AxisConfig::new(case.limits)
-    };
-    let mut axis = Axis::new(AxisId::new(0), config, Standard::new(CYCLE)).unwrap();
+    let mut axis = standing::axis(case.limits, CYCLE);
     let mut log = Log::default();
-    let with = |velocity| Dynamics {
-        velocity,
-        ..Dynamics::default()
-    };
     let (mut added, mut velocities) = (None, Vec::new());
     for scan in 1..MOST_SCANS {
         let scope = &mut Scope::new(scan, &mut log);
@@ -83,7 +72,7 @@ fn run(case: &Case, adds: bool) -> Vec<f64> {
         }
         if scan == 1 {
             let direction: Raw<Direction> = Direction::Unset.into();
-            let (position, dynamics) = (case.target, with(case.velocity));
+            let (position, dynamics) = (case.target, Dynamics::at(case.velocity));
             let request = Request::aborting(Command::MoveAbsolute {
                 position,
                 dynamics,
@@ -94,11 +83,11 @@ fn run(case: &Case, adds: bool) -> Vec<f64> {
         if scan == case.at && adds {
             let request = Superimpose {
                 distance: case.distance,
-                dynamics: with(case.added_velocity),
+                dynamics: Dynamics::at(case.added_velocity),
             };
             added = Some(axis.superimpose(&request, scope).unwrap());
         }
-        steps::advance(slice::from_mut(&mut axis), scope);
+        axis.step_alone(scope);
         velocities.push(axis.setpoint().velocity);
     }
     assert!(!adds, "it never ends");

@@ -5,22 +5,19 @@
 //! take-overs of each kind by default; `STANDSTILL_TAKE_OVERS=1000000` in the environment tries a
 //! million. The numbers are seeded and a failing case prints its own.
 
+use crate::standing;
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, Event, Fate,
-    Limits, Log, Plan, Request, Scope, Setpoint, Standard, StartState, steps,
+    Axis, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, Event, Fate, Limits, Log, Plan,
+    Request, Scope, Setpoint,
 };
 use standstill_soak::Random;
 use standstill_soak::rules::limits::{Track, check_excess};
-use std::slice;
+use standstill_testkit::given;
 
 const CYCLE: f64 = 0.001;
 
 /// Longest motion that is followed to its end (scans).
 const LONGEST: u64 = 100_000;
-
-fn take_overs() -> u64 {
-    std::env::var("STANDSTILL_TAKE_OVERS").map_or(10_000, |count| count.parse().expect("a count"))
-}
 
 /// Limits of order 2, 3 or 4 whose parts all take a few scans.
 fn limits(random: &mut Random) -> Limits {
@@ -62,11 +59,7 @@ struct Rig {
 
 impl Rig {
     fn new(limits: Limits) -> Self {
-        let config = AxisConfig {
-            start: StartState::Standstill,
-            ..AxisConfig::new(limits)
-        };
-        let axis = Axis::new(AxisId::new(0), config, Standard::new(CYCLE)).expect("a good configuration");
+        let axis = standing::axis(limits, CYCLE);
         Self {
             track: Track::new(&axis, CYCLE),
             axis,
@@ -92,10 +85,7 @@ impl Rig {
     }
 
     fn scan(&mut self) -> Setpoint {
-        steps::advance(
-            slice::from_mut(&mut self.axis),
-            &mut Scope::new(self.scan, &mut self.log),
-        );
+        self.axis.step_alone(&mut Scope::new(self.scan, &mut self.log));
         self.scan += 1;
         for record in self.log.since(self.records) {
             match (record.event, self.axis.plan()) {
@@ -186,7 +176,7 @@ const HARD: [(u64, u64); 1] = [
 
 /// Calls `one` with rigs in random motion, each for a few take-overs.
 fn for_each(stream: u64, mut one: impl FnMut(&mut Rig, &mut Random)) {
-    let mut left = take_overs();
+    let mut left = given("STANDSTILL_TAKE_OVERS", 10_000_u64);
     let hard = HARD
         .iter()
         .filter(|(of, _)| *of == stream)

@@ -7,10 +7,9 @@
 
 use crate::chains::{BLENDING, CYCLE, LONGEST, Rig, drawn_dynamics, drawn_limits};
 use standstill_axis::{
-    AxisConfig, AxisState, BufferMode, Command, Dynamics, Fate, Limits, Scope, Superimpose, steps,
+    AxisConfig, AxisState, BufferMode, Command, Dynamics, Fate, Limits, Scope, Superimpose,
 };
 use standstill_testkit::{Random, cases};
-use std::slice;
 
 struct Move {
     end: f64,
@@ -292,14 +291,11 @@ fn what_is_superimposed_at_a_turn_keeps_the_limits() {
             assert!(rig.scan < LONGEST, "seed {seed}: does not end");
             let scope = &mut Scope::new(rig.scan, &mut rig.log);
             if rig.scan == at {
-                let dynamics = Dynamics {
-                    velocity: 0.3 * limits.velocity,
-                    ..Dynamics::default()
-                };
+                let dynamics = Dynamics::at(0.3 * limits.velocity);
                 let request = Superimpose { distance, dynamics };
                 rig.axis.superimpose(&request, scope).expect("a distance");
             }
-            steps::advance(slice::from_mut(&mut rig.axis), scope);
+            rig.axis.step_alone(scope);
             rig.scan += 1;
             rig.watch.see(rig.axis.setpoint().position).unwrap();
         }

@@ -2,11 +2,10 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Direction, Drive, DrivePosition, Dynamics, Limits, Log,
-    Permission, Request, Scaling, Scope, Standard, steps,
+    Permission, Request, Scaling, Scope, Standard,
 };
 use standstill_drives::cia402::{Cia402Drive, Reaction, Settings, State};
 use standstill_testkit::Random;
-use std::slice;
 
 const CYCLE: f64 = 0.001;
 
@@ -59,7 +58,7 @@ impl Rig {
         let scope = &mut Scope::new(self.scan, &mut self.log);
         self.axis.follow_feedback(&feedback, scope);
         during(&mut self.axis, scope);
-        steps::advance(slice::from_mut(&mut self.axis), scope);
+        self.axis.step_alone(scope);
         let command = self.axis.drive_command();
         let (DrivePosition::Increments(target), DrivePosition::Increments(actual)) =
             (command.position, feedback.position)
@@ -94,10 +93,7 @@ impl Rig {
 
 fn endless(velocity: f64) -> Command {
     Command::MoveVelocity {
-        dynamics: Dynamics {
-            velocity,
-            ..Dynamics::default()
-        },
+        dynamics: Dynamics::at(velocity),
         direction: Direction::Positive.into(),
     }
 }
@@ -245,10 +241,7 @@ fn schedules(seeds: core::ops::Range<u64>) {
             } else {
                 Command::MoveRelative {
                     distance: 0.01 * velocity,
-                    dynamics: Dynamics {
-                        velocity: 1.0 + velocity.abs() / 2.0,
-                        ..Dynamics::default()
-                    },
+                    dynamics: Dynamics::at(1.0 + velocity.abs() / 2.0),
                 }
             };
             for scan in 0..random.below(40) {

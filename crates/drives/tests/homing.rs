@@ -2,11 +2,10 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Drive, DrivePosition, Fate, HomeDirection, Homing,
-    IdealDrive, Limits, Log, Procedure, Request, Scope, Standard, StartState, SwitchEdge, steps,
+    IdealDrive, Limits, Log, Procedure, Request, Scope, Standard, StartState, SwitchEdge,
 };
 use standstill_drives::switches::{Marker, Switches, Travel};
 use standstill_testkit::Random;
-use std::slice;
 
 const CYCLE: f64 = 0.001;
 
@@ -61,7 +60,7 @@ fn place_of_zero(homing: Homing, start: f64, delay: usize) -> f64 {
             Fate::Active { .. } => assert_eq!(axis.state(), AxisState::Homing),
             fate => panic!("{homing:?} from {start}: {fate:?}"),
         }
-        steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, &mut log));
+        axis.step_alone(&mut Scope::new(scan, &mut log));
         let setpoint = axis.setpoint();
         let command = axis.drive_command();
         if command.rename.is_none() {

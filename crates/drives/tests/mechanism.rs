@@ -2,12 +2,11 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Drive, DrivePosition, Dynamics, Fate, Limits, Log,
-    Permission, Request, Scaling, Scope, Standard, steps,
+    Permission, Request, Scaling, Scope, Standard,
 };
 use standstill_drives::mechanism::{
     Gains, Load, Mechanism, Plant, PlantDrive, SUBSTEPS, Servo, SetPoint, Stops,
 };
-use std::slice;
 
 const CYCLE: f64 = 0.001;
 
@@ -328,7 +327,7 @@ impl Rig {
         self.axis.follow_feedback(&feedback, scope);
         self.axis.set_power(true, Permission::BOTH, scope);
         during(&mut self.axis, scope);
-        steps::advance(slice::from_mut(&mut self.axis), scope);
+        self.axis.step_alone(scope);
         self.drive.write(0, &self.axis.drive_command());
         self.scan += 1;
         (self.axis.setpoint().position, feedback.enabled)
@@ -354,10 +353,7 @@ fn an_axis_moves_a_load_and_the_load_swings_behind_it() {
         }
         let mut command = None;
         rig.step(|axis, scope| {
-            let dynamics = Dynamics {
-                velocity: 2.0,
-                ..Dynamics::default()
-            };
+            let dynamics = Dynamics::at(2.0);
             let request = Request::aborting(Command::MoveRelative {
                 distance: 0.5,
                 dynamics,
@@ -395,10 +391,7 @@ fn without_power_it_coasts_and_enabling_takes_it_where_it_is() {
         rig.step(|_, _| {});
     }
     rig.step(|axis, scope| {
-        let dynamics = Dynamics {
-            velocity: 2.0,
-            ..Dynamics::default()
-        };
+        let dynamics = Dynamics::at(2.0);
         let command = Command::MoveRelative {
             distance: 100.0,
             dynamics,

@@ -2,11 +2,10 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, Command, Direction, Drive, DrivePosition, Dynamics, Fate, IdealDrive, Limits,
-    Log, Request, Scope, Standard, StartState, TouchProbe, Trigger, steps,
+    Log, Request, Scope, Standard, StartState, TouchProbe, Trigger,
 };
 use standstill_drives::peripherals::Peripherals;
 use standstill_testkit::Random;
-use std::slice;
 
 const CYCLE: f64 = 0.001;
 
@@ -50,10 +49,7 @@ impl Rig {
         self.axis
             .follow_feedback(&feedback, &mut Scope::new(self.scan, &mut self.log));
         commands(self);
-        steps::advance(
-            slice::from_mut(&mut self.axis),
-            &mut Scope::new(self.scan, &mut self.log),
-        );
+        self.axis.step_alone(&mut Scope::new(self.scan, &mut self.log));
         self.device.order(self.axis.order());
         self.drive.write(0, &self.axis.drive_command());
         self.scan += 1;
@@ -83,10 +79,7 @@ fn an_edge_between_scans_is_recorded_to_a_millionth_of_the_way() {
         } else {
             -speed
         };
-        let dynamics = Dynamics {
-            velocity,
-            ..Dynamics::default()
-        };
+        let dynamics = Dynamics::at(velocity);
         let command = Command::MoveVelocity {
             dynamics,
             direction: Direction::Unset.into(),

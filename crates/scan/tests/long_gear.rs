@@ -53,10 +53,7 @@ impl Programs<Standard, IdealDrive> for Program {
         let coupled = couple(context.axes, SLAVE, &Request::aborting(gear), &mut context.scope);
         assert!(coupled.is_ok(), "{coupled:?}");
         let run = Command::MoveVelocity {
-            dynamics: Dynamics {
-                velocity: 1800.0,
-                ..Dynamics::default()
-            },
+            dynamics: Dynamics::at(1800.0),
             direction: Direction::Unset.into(),
         };
         let moves = context.axes[MASTER.index()].command(&Request::aborting(run), &mut context.scope);
@@ -94,10 +91,8 @@ fn rounded(up: u128, down: u128) -> f64 {
 /// Covers: G1, G11, G31
 #[test]
 fn every_scan_of_the_runtime_at_three_sevenths_is_the_exact_place_rounded_once() {
-    let scans = std::env::var("STANDSTILL_SOAK")
-        .ok()
-        .and_then(|scans| scans.parse().ok())
-        .unwrap_or(standstill_testkit::whole_or(1_000_000_i64, 200_000));
+    let usual = standstill_testkit::whole_or(1_000_000_i64, 200_000);
+    let scans = standstill_testkit::given("STANDSTILL_SOAK", usual);
     let mut machine = Machine::new();
     for _ in [MASTER, SLAVE] {
         let config = AxisConfig {

@@ -9,13 +9,13 @@
 //! stay inside a limit is recorded; that may happen in one case of a thousand. Without a record it never happens.
 
 use crate::draw;
+use crate::standing;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Event, Factors, Fate,
-    Log, MoveProfile, Plan, Raw, Request, Scope, Standard, StartState, Superimpose, steps,
+    Log, MoveProfile, Plan, Raw, Request, Scope, Standard, Superimpose,
 };
 use standstill_soak::rules::limits::Track;
 use standstill_testkit::{Random, cases};
-use std::slice;
 
 const CYCLE: f64 = 0.01;
 /// A case that takes longer is a motion that never ends.
@@ -51,11 +51,10 @@ impl Case {
             _ => MoveProfile::Fastest,
         };
         let config = AxisConfig {
-            start: StartState::Standstill,
             modulo: (random.below(4) == 0).then_some(90.0),
             override_max: if random.below(4) == 0 { 2.0 } else { 1.0 },
             profile,
-            ..AxisConfig::new(limits)
+            ..standing::config(limits)
         };
         let axis = Axis::new(AxisId::new(0), config, Standard::new(CYCLE)).unwrap();
         Self {
@@ -77,10 +76,7 @@ impl Case {
 
     fn advance(&mut self, scans: u64) {
         for _ in 0..scans {
-            steps::advance(
-                slice::from_mut(&mut self.axis),
-                &mut Scope::new(self.scan, &mut self.log),
-            );
+            self.axis.step_alone(&mut Scope::new(self.scan, &mut self.log));
             for record in self.log.since(self.told) {
                 match (record.event, self.axis.plan()) {
                     (Event::Unavoidable(_), _) => self.unavoidable = true,

@@ -2,9 +2,10 @@
 //! length of the whole travel, no reversal that is not permitted, and the target met to the bit.
 
 use super::rig::{CYCLE, Random, Rig};
+use crate::standing;
 use standstill_axis::{
-    AxisConfig, BufferMode, Command, Direction, DrivePosition, Dynamics, Fate, IdealDrive, InstanceId,
-    Limits, Permission, Request, Scaling, Scope, StartState,
+    AxisConfig, BufferMode, Command, Direction, DrivePosition, Dynamics, Fate, IdealDrive, Limits,
+    Permission, Request, Scaling, Scope, StartState,
 };
 
 fn dynamics(random: &mut Random, limits: &Limits) -> Dynamics {
@@ -46,9 +47,8 @@ fn random_config(random: &mut Random) -> AxisConfig {
     AxisConfig {
         modulo: Some(length),
         position: length * random.unit(),
-        start: StartState::Standstill,
         scaling: scaling.filter(|scaling| scaling.turn(length).is_some()),
-        ..AxisConfig::new(limits)
+        ..standing::config(limits)
     }
 }
 
@@ -63,9 +63,8 @@ fn gear(limit: f64, invert: bool, offset: f64) -> AxisConfig {
     };
     AxisConfig {
         modulo: Some(360.0),
-        start: StartState::Standstill,
         scaling: Scaling::new(8_388_608 * 7, 1080, invert, offset).ok(),
-        ..AxisConfig::new(limits)
+        ..standing::config(limits)
     }
 }
 
@@ -234,10 +233,7 @@ fn increments_never_jump() {
             ..gear(3600.0, invert, 11.0)
         };
         let mut rig = Rig::new(config);
-        let dynamics = Dynamics {
-            velocity: 3600.0,
-            ..Dynamics::default()
-        };
+        let dynamics = Dynamics::at(3600.0);
         let mut random = Random(7);
         let mut before = None;
         for scan in 0..20_000 {
@@ -315,23 +311,11 @@ fn an_axis_a_thousand_million_turns_out_moves_as_one_at_home() {
     let run = |base: i64| {
         let mut rig = Rig::new(config);
         rig.drive = IdealDrive::new(DrivePosition::Increments(base), 0, Some(0), false);
-        let dynamics = Dynamics {
-            velocity: 3600.0,
-            ..Dynamics::default()
-        };
+        let dynamics = Dynamics::at(3600.0);
         let mut rows = Vec::new();
         for scan in 0..4000 {
-            rig.axis.set_power(
-                true,
-                Permission::BOTH,
-                &mut Scope {
-                    scan: rig.scan,
-                    instance: InstanceId(1),
-                    log: &mut rig.log,
-                    cams: standstill_axis::Cams::default(),
-                    history: &mut [],
-                },
-            );
+            rig.axis
+                .set_power(true, Permission::BOTH, &mut Scope::new(rig.scan, &mut rig.log));
             if scan == 10 {
                 let direction = Direction::Positive.into();
                 rig.command(Command::MoveVelocity { dynamics, direction });
@@ -357,10 +341,7 @@ fn an_axis_a_thousand_million_turns_out_moves_as_one_at_home() {
 #[test]
 fn many_turns_end_on_the_increment_of_the_position() {
     let mut rig = Rig::new(gear(72_000.0, false, 0.0));
-    let dynamics = Dynamics {
-        velocity: 72_000.0,
-        ..Dynamics::default()
-    };
+    let dynamics = Dynamics::at(72_000.0);
     let direction = Direction::Positive.into();
     rig.command(Command::MoveVelocity { dynamics, direction });
     for _ in 0..500_000 {
@@ -383,10 +364,7 @@ fn many_turns_end_on_the_increment_of_the_position() {
 #[test]
 fn buffered_moves_find_their_way_from_where_they_start() {
     let mut rig = Rig::new(gear(100.0, false, 0.0));
-    let dynamics = Dynamics {
-        velocity: 100.0,
-        ..Dynamics::default()
-    };
+    let dynamics = Dynamics::at(100.0);
     rig.command(Command::MoveRelative {
         distance: 300.0,
         dynamics,
@@ -401,16 +379,7 @@ fn buffered_moves_find_their_way_from_where_they_start() {
     };
     let id = rig
         .axis
-        .command(
-            &request,
-            &mut Scope {
-                scan: rig.scan,
-                instance: InstanceId(1),
-                log: &mut rig.log,
-                cams: standstill_axis::Cams::default(),
-                history: &mut [],
-            },
-        )
+        .command(&request, &mut Scope::new(rig.scan, &mut rig.log))
         .unwrap();
     // From 0, where it is commanded, the travel would be 100; from 300 it is 160.
     assert_eq!(rig.run(id), Fate::Done);

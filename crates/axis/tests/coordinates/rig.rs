@@ -1,11 +1,10 @@
 //! An axis over an ideal drive, and a generator of cases.
 
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, Command, CommandId, Drive, DrivePosition, Fate, IdealDrive, InstanceId, Log,
-    Request, Scope, Standard, steps,
+    Axis, AxisConfig, AxisId, Command, CommandId, Drive, DrivePosition, Fate, IdealDrive, Log, Request,
+    Scope, Standard,
 };
 pub use standstill_testkit::Random;
-use std::slice;
 
 pub const CYCLE: f64 = 0.001;
 
@@ -46,13 +45,7 @@ impl Rig {
         self.axis
             .command(
                 &Request::aborting(command),
-                &mut Scope {
-                    scan: self.scan,
-                    instance: InstanceId(1),
-                    log: &mut self.log,
-                    cams: standstill_axis::Cams::default(),
-                    history: &mut [],
-                },
+                &mut Scope::new(self.scan, &mut self.log),
             )
             .unwrap()
     }
@@ -63,10 +56,7 @@ impl Rig {
         self.axis
             .follow_feedback(&feedback, &mut Scope::new(self.scan, &mut self.log));
         let before = self.axis.setpoint().position;
-        steps::advance(
-            slice::from_mut(&mut self.axis),
-            &mut Scope::new(self.scan, &mut self.log),
-        );
+        self.axis.step_alone(&mut Scope::new(self.scan, &mut self.log));
         let now = self.axis.setpoint();
         self.drive.write(0, &self.axis.drive_command());
         let mut difference = now.position - before;

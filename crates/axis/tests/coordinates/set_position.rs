@@ -1,9 +1,9 @@
 //! Shifts of the coordinates under random motions. Increments and velocities continue as without a shift.
 
 use super::rig::{CYCLE, Random, Rig};
+use crate::standing;
 use standstill_axis::{
-    AxisConfig, Command, Direction, Dynamics, ExecutionMode, Fate, InstanceId, Limits, Scaling, Scope,
-    StartState,
+    AxisConfig, Command, Direction, Dynamics, ExecutionMode, Fate, Limits, Scaling, Scope,
 };
 
 const LIMITS: Limits = Limits {
@@ -17,9 +17,8 @@ const LIMITS: Limits = Limits {
 fn config(modulo: Option<f64>) -> AxisConfig {
     AxisConfig {
         modulo,
-        start: StartState::Standstill,
         scaling: Scaling::new(8_388_608 * 7, 1080, false, 0.0).ok(),
-        ..AxisConfig::new(LIMITS)
+        ..standing::config(LIMITS)
     }
 }
 
@@ -30,10 +29,7 @@ fn increments_and_velocity_have_no_step() {
     for modulo in [None, Some(360.0)] {
         let mut rig = Rig::new(config(modulo));
         let mut random = Random(3);
-        let dynamics = Dynamics {
-            velocity: 1000.0,
-            ..Dynamics::default()
-        };
+        let dynamics = Dynamics::at(1000.0);
         let (mut before, mut velocity) = (None, 0.0);
         for scan in 0..30_000 {
             if scan % 500 == 0 {
@@ -62,18 +58,7 @@ fn increments_and_velocity_have_no_step() {
                 let mode = ExecutionMode::Immediately.into();
                 let id = rig
                     .axis
-                    .set_position(
-                        position,
-                        relative,
-                        mode,
-                        &mut Scope {
-                            scan: rig.scan,
-                            instance: InstanceId(1),
-                            log: &mut rig.log,
-                            cams: standstill_axis::Cams::default(),
-                            history: &mut [],
-                        },
-                    )
+                    .set_position(position, relative, mode, &mut Scope::new(rig.scan, &mut rig.log))
                     .unwrap();
                 assert_eq!(rig.axis.fate(id), Fate::Done);
                 if !relative {

@@ -1,8 +1,9 @@
 //! Axes that follow no master, together with axes that do.
 
 use super::rig::Rig;
+use crate::standing;
 use standstill_axis::{
-    AxisConfig, AxisState, Command, Direction, Dynamics, ErrorId, Limits, Raw, Request, Scope, StartState,
+    AxisConfig, AxisState, Command, Direction, Dynamics, ErrorId, Limits, Raw, Request, Scope,
 };
 use standstill_testkit::Random;
 
@@ -20,17 +21,13 @@ fn config(modulo: Option<f64>) -> AxisConfig {
         snap: 1e6,
     };
     AxisConfig {
-        start: StartState::Standstill,
         modulo,
-        ..AxisConfig::new(limits)
+        ..standing::config(limits)
     }
 }
 
 fn some_motion(random: &mut Random) -> Command {
-    let dynamics = Dynamics {
-        velocity: random.between(10.0, 200.0),
-        ..Dynamics::default()
-    };
+    let dynamics = Dynamics::at(random.between(10.0, 200.0));
     let place = random.between(0.0, 360.0);
     match random.below(4) {
         0 => Command::Halt { dynamics },

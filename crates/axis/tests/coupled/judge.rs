@@ -2,9 +2,8 @@
 
 use super::exact::{Law, Row};
 use super::rig::Rig;
-use standstill_axis::{
-    Axis, AxisConfig, AxisId, Command, CommandId, Direction, Dynamics, Limits, StartState,
-};
+use crate::standing;
+use standstill_axis::{Axis, AxisConfig, AxisId, Command, CommandId, Direction, Dynamics, Limits};
 
 /// By how much a limit may be exceeded, relative to it.
 const RELATIVE: f64 = 1e-9;
@@ -244,20 +243,14 @@ fn the_same_gear_twice_in_one_scan_is_the_same_law() {
         jerk: 20_000.0,
         snap: 1e6,
     };
-    let config = AxisConfig {
-        start: StartState::Standstill,
-        ..AxisConfig::new(limits)
-    };
+    let config = standing::config(limits);
     let mut rig = Rig::new(&[config; 3], 0.001);
     let gear = rig.gear(0, (3, 7), None, Dynamics::default());
     for slave in [1, 2] {
         rig.command(slave, gear).expect("taken");
     }
     let run = Command::MoveVelocity {
-        dynamics: Dynamics {
-            velocity: 150.0,
-            ..Dynamics::default()
-        },
+        dynamics: Dynamics::at(150.0),
         direction: Direction::Unset.into(),
     };
     rig.command(0, run).expect("taken");
@@ -295,9 +288,8 @@ fn however_far_behind_a_slave_comes_back_within_its_limits() {
         snap: 1e5,
     };
     let config = |limits| AxisConfig {
-        start: StartState::Standstill,
         modulo: Some(360.0),
-        ..AxisConfig::new(limits)
+        ..standing::config(limits)
     };
     for turns in [50.0, 500.0, 1500.0] {
         let mut rig = Rig::new(&[config(fast), config(slow)], 0.001);
@@ -305,10 +297,7 @@ fn however_far_behind_a_slave_comes_back_within_its_limits() {
         rig.command(1, gear).expect("taken");
         let go = Command::MoveRelative {
             distance: turns * 360.0,
-            dynamics: Dynamics {
-                velocity: 1e5,
-                ..Dynamics::default()
-            },
+            dynamics: Dynamics::at(1e5),
         };
         let mut track = Track::new(&rig.axes[1], 0.001);
         rig.step();

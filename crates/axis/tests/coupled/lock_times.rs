@@ -5,8 +5,9 @@
 //! for a scan. A plan that switches between scans may need one less.
 
 use super::rig::Rig;
+use crate::standing;
 use serde_json::{Value, json};
-use standstill_axis::{AxisConfig, Command, Direction, Dynamics, Limits, Setpoint, StartState, SyncPoint};
+use standstill_axis::{Command, Direction, Dynamics, Limits, Setpoint, SyncPoint};
 
 const MASTER: usize = 0;
 const SLAVE: usize = 1;
@@ -56,10 +57,7 @@ impl Case {
     /// Runs the case on the axes.
     fn run(&self) -> Run {
         let cycle = self.number("cycle");
-        let configs = ["master", "slave"].map(|key| AxisConfig {
-            start: StartState::Standstill,
-            ..AxisConfig::new(self.limits(key))
-        });
+        let configs = ["master", "slave"].map(|key| standing::config(self.limits(key)));
         let mut rig = Rig::new(&configs, cycle);
         let ratio = (self.number("numerator") as i16, self.count("denominator") as u16);
         let factor = f64::from(ratio.0) / f64::from(ratio.1);
@@ -83,10 +81,7 @@ impl Case {
             rig.step();
         }
         let (master, start) = (rig.axes[MASTER].setpoint(), rig.axes[SLAVE].setpoint());
-        let dynamics = Dynamics {
-            velocity: self.number("velocity"),
-            ..Dynamics::default()
-        };
+        let dynamics = Dynamics::at(self.number("velocity"));
         let offset = self.number("ahead");
         let sync = self.0["sync"].as_bool().expect("sync").then(|| SyncPoint {
             master: master.position,
@@ -130,10 +125,7 @@ impl Case {
 
 fn to_velocity(velocity: f64) -> Command {
     Command::MoveVelocity {
-        dynamics: Dynamics {
-            velocity,
-            ..Dynamics::default()
-        },
+        dynamics: Dynamics::at(velocity),
         direction: Direction::Unset.into(),
     }
 }

@@ -5,11 +5,12 @@
 
 use super::judge::{Locked, Track, places};
 use super::rig::Rig;
+use crate::standing;
 use standstill_axis::{
     AxisConfig, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorClass, ErrorId, Event,
-    Factors, Fate, Limits, PhaseShift, Raw, Scope, StartState, Superimpose, SyncPoint,
+    Factors, Fate, Limits, PhaseShift, Raw, Scope, Superimpose, SyncPoint,
 };
-use standstill_testkit::{Random, cases};
+use standstill_testkit::{Random, cases, given, soak};
 use std::fmt::Write as _;
 
 /// Results of episodes.
@@ -76,10 +77,9 @@ impl Episode {
                     (_, None) => random.between(-1000.0, 1000.0),
                 };
                 AxisConfig {
-                    start: StartState::Standstill,
                     modulo,
                     position,
-                    ..AxisConfig::new(limits)
+                    ..standing::config(limits)
                 }
             })
             .collect();
@@ -300,10 +300,7 @@ impl Episode {
             master,
             shift: reach * self.random.between(-0.3, 0.3),
             is_relative: self.random.one_in(2),
-            dynamics: Dynamics {
-                velocity: reach * self.random.between(0.05, 1.0),
-                ..Dynamics::default()
-            },
+            dynamics: Dynamics::at(reach * self.random.between(0.05, 1.0)),
             buffer_mode: Raw::from(BufferMode::Aborting),
         };
         let scope = &mut Scope::new(self.rig.scan, &mut self.rig.log);
@@ -438,10 +435,6 @@ impl Episode {
     }
 }
 
-fn number(name: &str) -> Option<u64> {
-    std::env::var(name).ok()?.parse().ok()
-}
-
 /// Episodes of the first 10^6 that failed before: a plan onto a line far away, with coarser positions than those that
 /// the slave publishes; a gear that is lost in the scan in which it was reached, whose law begins there nevertheless;
 /// and a slave of a slave whose master changed to another ratio within one scan.
@@ -458,8 +451,8 @@ fn slaves_of_episodes_that_failed_once_keep_their_limits() {
 /// Covers: G1, G11, G25, G45, G46
 #[test]
 fn random_slaves_have_a_plan_within_their_limits_and_are_on_their_law_to_the_bit() {
-    let count = number("STANDSTILL_SOAK").unwrap_or_else(|| cases(1000));
-    let first = number("STANDSTILL_FIRST").unwrap_or(0);
+    let count = soak(cases(1000));
+    let first = given("STANDSTILL_FIRST", 0);
     let mut total = Seen::default();
     let mut failed = Vec::new();
     for episode in first..first + count {

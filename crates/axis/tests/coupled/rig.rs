@@ -1,9 +1,9 @@
 //! Axes without drives, scan by scan.
 
-use crate::followed::follow_drives;
+use crate::followed::{behind, follow_drives};
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, Command, CommandId, Dynamics, ErrorId, Followed, Log, Master, Raw, Request,
-    Scope, Standard, SyncPoint, ValueSource, couple, steps,
+    Axis, AxisConfig, AxisId, Command, CommandId, Dynamics, ErrorId, Log, Request, Scope, Standard,
+    SyncPoint, ValueSource, couple, steps,
 };
 
 /// Axes, and the number of the next scan.
@@ -37,20 +37,12 @@ impl Rig {
     pub fn gear(
         &self,
         master: usize,
-        (numerator, denominator): (i16, u16),
+        ratio: (i16, u16),
         sync: Option<SyncPoint>,
         dynamics: Dynamics,
     ) -> Command {
         Command::GearIn {
-            followed: Followed {
-                master: Master {
-                    axis: self.axes[master].id(),
-                    turn: self.axes[master].config().modulo,
-                },
-                numerator,
-                denominator: denominator.into(),
-                source: Raw::from(ValueSource::Set),
-            },
+            followed: behind(&self.axes[master], ratio, ValueSource::Set),
             sync,
             dynamics,
         }

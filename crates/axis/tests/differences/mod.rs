@@ -3,6 +3,7 @@
 use standstill_axis::{Limits, Setpoint};
 
 /// The last published positions, newest first, for the derivatives.
+#[derive(Clone)]
 pub struct Seen {
     positions: [f64; 5],
     cycle: f64,

@@ -1,9 +1,10 @@
-//! The product's planner with one wrong set-point in each plan.
+//! The product's planner with one wrong set-point in each plan, or with a first ramp to a state in motion.
 
 use standstill_axis::{
     Excess, Limits, MoveProfile, Passage, Plan, PlanError, Planner, ProfileFault, ProfileKind, ProfilePoint,
     Setpoint, Standard, StandardPlan,
 };
+use std::cell::Cell;
 
 /// The scan with the wrong set-point.
 const SCAN: u64 = 150;
@@ -26,38 +27,73 @@ pub enum Wrong {
 #[derive(Clone, Debug)]
 pub struct Faulty {
     standard: Standard,
-    wrong: Wrong,
+    wrong: Option<Wrong>,
+    /// The state into which its first ramp puts an axis.
+    place: Cell<Option<Setpoint>>,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub struct FaultyPlan {
     plan: StandardPlan,
-    wrong: Wrong,
+    wrong: Option<Wrong>,
     is_stop: bool,
+    /// In equal steps from rest at its position to a state, in this number of scans, in place of the plan.
+    placed: Option<(Setpoint, u64)>,
 }
 
 impl Faulty {
     pub fn new(cycle: f64, wrong: Wrong) -> Self {
         Self {
             standard: Standard::new(cycle),
-            wrong,
+            wrong: Some(wrong),
+            place: Cell::default(),
+        }
+    }
+
+    /// Puts an axis into `state` with its first ramp, in steps that the axis accepts from a plan. After that it is
+    /// [`Standard`].
+    pub fn placing(cycle: f64, state: Setpoint) -> Self {
+        Self {
+            standard: Standard::new(cycle),
+            wrong: None,
+            place: Cell::new(Some(state)),
         }
     }
 
     fn faulty<E>(&self, plan: Result<StandardPlan, E>, is_stop: bool) -> Result<FaultyPlan, E> {
         let wrong = self.wrong;
-        plan.map(|plan| FaultyPlan { plan, wrong, is_stop })
+        plan.map(|plan| FaultyPlan {
+            plan,
+            wrong,
+            is_stop,
+            placed: None,
+        })
     }
 }
 
 impl Plan for FaultyPlan {
     fn scans(&self) -> u32 {
-        self.plan.scans()
+        self.placed.map_or_else(|| self.plan.scans(), |_| u32::MAX)
     }
 
     fn at(&self, scan: u64) -> Setpoint {
+        if let Some((state, scans)) = self.placed {
+            let part = scan as f64 / scans as f64;
+            return if scan >= scans {
+                state
+            } else {
+                Setpoint {
+                    velocity: part * state.velocity,
+                    acceleration: part * state.acceleration,
+                    ..Setpoint::at_rest(state.position)
+                }
+            };
+        }
         let mut state = self.plan.at(scan);
-        match self.wrong {
+        let Some(wrong) = self.wrong else {
+            return state;
+        };
+        match wrong {
             Wrong::Always(by) if self.is_stop && scan > 0 => state.position += by,
             Wrong::Begin(by) if self.is_stop && scan == 1 => state.position += by,
             _ if self.is_stop || scan != SCAN => {}
@@ -69,11 +105,11 @@ impl Plan for FaultyPlan {
     }
 
     fn excess(&self) -> Option<Excess> {
-        self.plan.excess()
+        self.plan.excess().filter(|_| self.placed.is_none())
     }
 
     fn excess_over(&self, limits: &Limits) -> Option<Excess> {
-        self.plan.excess_over(limits)
+        self.plan.excess_over(limits).filter(|_| self.placed.is_none())
     }
 
     fn shift(&mut self, by: f64) {
@@ -95,10 +131,16 @@ impl Planner for Faulty {
         limits: &Limits,
         before: &Limits,
     ) -> Result<FaultyPlan, PlanError> {
-        self.faulty(
-            self.standard.ramp_to(start, velocity, limits, before),
-            velocity == 0.0,
-        )
+        let plan = self.standard.ramp_to(start, velocity, limits, before);
+        let plan = self.faulty(plan, velocity == 0.0)?;
+        let placed = self.place.take().map(|state| {
+            let steps = [
+                state.velocity.abs() / (limits.acceleration * self.cycle()),
+                state.acceleration.abs() / (limits.jerk * self.cycle()),
+            ];
+            (state, 1 + steps[0].max(steps[1]).ceil() as u64)
+        });
+        Ok(FaultyPlan { placed, ..plan })
     }
 
     fn move_to(

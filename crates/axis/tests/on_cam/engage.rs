@@ -25,9 +25,7 @@ fn table(master: f64) -> f64 {
 #[test]
 fn onto_a_master_at_rest_it_moves_and_is_in_sync() {
     let mut rig = Rig::new(config(L1, 60.0, None), config(WIDE, -20.0, None));
-    let cam = rig.select(&up_and_back(), ABSOLUTE);
-    let cam_in = rig.cam_in(cam);
-    let id = rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    let id = rig.follow(&up_and_back(), ABSOLUTE);
     let mut scans = 0;
     while !rig.slave().is_in_gear() {
         rig.step();
@@ -42,10 +40,7 @@ fn onto_a_master_at_rest_it_moves_and_is_in_sync() {
         SLAVE,
         Command::MoveAbsolute {
             position: rig.at(),
-            dynamics: Dynamics {
-                velocity: 400.0,
-                ..Dynamics::default()
-            },
+            dynamics: Dynamics::at(400.0),
             direction: Raw::default(),
         },
     );
@@ -58,7 +53,7 @@ fn onto_a_master_at_rest_it_moves_and_is_in_sync() {
     rig.run(200.0);
     rig.steps(2000);
     assert!(rig.slave().is_in_gear());
-    let master = rig.axes[MASTER].setpoint().position;
+    let master = rig.master();
     assert!((rig.at() - table(master)).abs() < 1e-9);
     rig.keeps_limits().unwrap();
 }
@@ -73,8 +68,7 @@ fn onto_a_moving_master_it_joins_ahead() {
         let cam = rig.select(&up_and_back(), ABSOLUTE);
         rig.run(200.0);
         rig.steps(400);
-        let cam_in = rig.cam_in(cam);
-        rig.engage(cam_in, BufferMode::Aborting).unwrap();
+        rig.follow_cam(rig.cam_in(cam));
         assert_eq!(rig.slave().state(), AxisState::SynchronizedMotion);
         let mut scans = 0;
         let mut on_curve = false;
@@ -92,7 +86,7 @@ fn onto_a_moving_master_it_joins_ahead() {
         }
         rig.steps(3000);
         assert!(rig.slave().is_in_gear());
-        assert!((rig.at() - table(rig.axes[MASTER].setpoint().position)).abs() < 1e-9);
+        assert!((rig.at() - table(rig.master())).abs() < 1e-9);
         rig.keeps_limits().unwrap();
     }
 }
@@ -108,7 +102,7 @@ fn a_sync_position_is_where_it_joins() {
         sync_position: 270.0,
         ..rig.cam_in(cam)
     };
-    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.follow_cam(cam_in);
     let mut rested = false;
     while !rig.slave().is_in_gear() {
         rig.step();
@@ -187,8 +181,7 @@ fn just_below_the_highest_velocity_it_is_in_sync_and_just_above_it_lags() {
             let mut rig = Rig::new(config(fast, 0.0, None), config(limits, 0.0, None));
             let cam = rig.select(&rows, RELATIVE);
             let velocity = rig.highest(cam) * share;
-            let cam_in = rig.cam_in(cam);
-            rig.engage(cam_in, BufferMode::Aborting).unwrap();
+            rig.follow_cam(rig.cam_in(cam));
             rig.step();
             rig.run(velocity);
             for _ in 0..60_000 {
@@ -217,8 +210,7 @@ fn a_master_too_fast_is_followed_on_the_curve_and_caught_up_with() {
     let fast = L1.with_velocity(600.0);
     let mut rig = Rig::new(config(fast, 0.0, None), config(narrow, 0.0, None));
     let cam = rig.select(&up_and_back(), RELATIVE);
-    let cam_in = rig.cam_in(cam);
-    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.follow_cam(rig.cam_in(cam));
     rig.run(80.0);
     rig.steps(3000);
     assert!(rig.slave().is_in_gear());
@@ -239,7 +231,7 @@ fn a_master_too_fast_is_followed_on_the_curve_and_caught_up_with() {
             rig.run(100.0);
         }
         rig.step();
-        let master = rig.axes[MASTER].setpoint().position;
+        let master = rig.master();
         let shadow = rig.slave().coupled().unwrap().shadow.unwrap();
         assert!((rig.at() - table(shadow)).abs() < 1e-9, "{scan}");
         // It is never ahead, except that its position may be in the next period of the master.
@@ -281,9 +273,7 @@ fn with_on_limit_error_it_stops_before_a_limit() {
     slave.following.on_limit = OnLimit::Error;
     let fast = L1.with_velocity(800.0);
     let mut rig = Rig::new(config(fast, 0.0, None), slave);
-    let cam = rig.select(&up_and_back(), RELATIVE);
-    let cam_in = rig.cam_in(cam);
-    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.follow(&up_and_back(), RELATIVE);
     rig.step();
     rig.run(800.0);
     rig.steps(300);
@@ -298,9 +288,7 @@ fn with_on_limit_error_it_stops_before_a_limit() {
 #[test]
 fn moved_coordinates_and_stops_of_the_master_do_not_end_it() {
     let mut rig = Rig::new(config(L1, 0.0, None), config(WIDE, 0.0, None));
-    let cam = rig.select(&up_and_back(), RELATIVE);
-    let cam_in = rig.cam_in(cam);
-    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.follow(&up_and_back(), RELATIVE);
     rig.run(150.0);
     rig.steps(700);
     for (axis, by) in [(MASTER, 1000.0), (SLAVE, -30.0)] {
@@ -328,7 +316,7 @@ fn moved_coordinates_and_stops_of_the_master_do_not_end_it() {
     );
     rig.steps(1000);
     assert!(rig.slave().is_in_gear() && rig.axes[MASTER].setpoint().is_at_rest());
-    let master = rig.axes[MASTER].setpoint().position;
+    let master = rig.master();
     assert!((rig.at() + 30.0 - table(master - 1000.0)).abs() < 1e-9);
 }
 
@@ -390,8 +378,7 @@ fn what_is_no_good_is_refused_by_number() {
 fn a_cam_selected_anew_does_not_change_the_one_in_use() {
     let mut rig = Rig::new(config(L1, 0.0, None), config(WIDE, 0.0, None));
     let cam = rig.select(&up_and_back(), RELATIVE);
-    let cam_in = rig.cam_in(cam);
-    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.follow_cam(rig.cam_in(cam));
     rig.run(200.0);
     rig.steps(500);
     rig.retire(cam);
@@ -406,7 +393,7 @@ fn a_cam_selected_anew_does_not_change_the_one_in_use() {
     }
     rig.steps(500);
     assert!(rig.slave().is_in_gear());
-    assert!((rig.at() - table(rig.axes[MASTER].setpoint().position)).abs() < 1e-9);
+    assert!((rig.at() - table(rig.master())).abs() < 1e-9);
 }
 
 /// Covers: G66, G17
@@ -418,15 +405,12 @@ fn what_is_superimposed_moves_the_cam_on() {
         start_mode: StartMode::Relative.into(),
         ..rig.cam_in(cam)
     };
-    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.follow_cam(cam_in);
     rig.steps(2);
     let scope = &mut Scope::new(rig.scan, &mut rig.log);
     let added = standstill_axis::Superimpose {
         distance: 1.0,
-        dynamics: Dynamics {
-            velocity: 1.0,
-            ..Dynamics::default()
-        },
+        dynamics: Dynamics::at(1.0),
     };
     let id = rig.axes[SLAVE].superimpose(&added, scope).unwrap();
     rig.run(100.0);
@@ -434,7 +418,7 @@ fn what_is_superimposed_moves_the_cam_on() {
     for scan in 0..5000 {
         rig.step();
         assert!(rig.slave().is_in_gear(), "{:?}", rig.events());
-        let at = table(rig.axes[MASTER].setpoint().position);
+        let at = table(rig.master());
         if ended.is_none() && rig.slave().covered_distance(id) == Some(1.0) {
             ended = Some(scan);
         }
@@ -457,19 +441,14 @@ fn what_is_superimposed_moves_the_cam_on() {
 #[test]
 fn a_stop_from_speed_is_followed() {
     let mut rig = Rig::new(config(L1, 0.0, None), config(WIDE, 0.0, None));
-    let cam = rig.select(&up_and_back(), RELATIVE);
-    let cam_in = rig.cam_in(cam);
-    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.follow(&up_and_back(), RELATIVE);
     rig.run(-200.0);
     rig.steps(3291);
     rig.command(
         MASTER,
         Command::MoveAbsolute {
             position: -720.05,
-            dynamics: Dynamics {
-                velocity: 100.0,
-                ..Dynamics::default()
-            },
+            dynamics: Dynamics::at(100.0),
             direction: Raw::default(),
         },
     );
@@ -502,9 +481,7 @@ fn a_slave_near_0_keeps_its_limits_behind_a_master_far_away() {
     let mut rig = Rig::new(config(fast, 0.0, None), config(slow, 0.0, None));
     // Equally steep everywhere, so that its shadow uses all of a limit.
     let rows = [row(0.0, 0.0, CamShape::Line), row(360.0, 100.0, CamShape::Line)];
-    let cam = rig.select(&rows, RELATIVE);
-    let cam_in = rig.cam_in(cam);
-    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.follow(&rows, RELATIVE);
     rig.run(1e5);
     rig.steps(1000);
     rig.run(5.0);
@@ -538,10 +515,7 @@ fn however_far_behind_a_slave_comes_back_within_its_limits() {
     for periods in [50.0, 510.0, 5000.0] {
         let way = periods * 360.0;
         let comes_to_rest = |rig: &mut Rig| {
-            let dynamics = Dynamics {
-                velocity: 1e6,
-                ..Dynamics::default()
-            };
+            let dynamics = Dynamics::at(1e6);
             let distance = way;
             rig.command(MASTER, Command::MoveRelative { distance, dynamics });
         };
@@ -559,9 +533,7 @@ fn however_far_behind_a_slave_comes_back_within_its_limits() {
         for (number, moves) in masters.into_iter().enumerate() {
             let turns = |limits| config(limits, 0.0, Some(360.0));
             let mut rig = Rig::new(turns(master), turns(slave));
-            let cam = rig.select(&rows, RELATIVE);
-            let cam_in = rig.cam_in(cam);
-            rig.engage(cam_in, BufferMode::Aborting).unwrap();
+            rig.follow(&rows, RELATIVE);
             moves(&mut rig);
             rig.steps(300);
             assert!(!rig.slave().is_in_gear());
@@ -596,19 +568,14 @@ fn a_shift_of_many_turns_keeps_the_slave_in_sync() {
     };
     let mut rig = Rig::new(config(L1, 0.0, Some(360.0)), config(slave, 0.0, Some(100.0)));
     let rows = [row(0.0, 0.0, CamShape::Line), row(360.0, 100.0, CamShape::Line)];
-    let cam = rig.select(&rows, RELATIVE);
-    let cam_in = rig.cam_in(cam);
-    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.follow(&rows, RELATIVE);
     rig.run(5.0);
     rig.steps(500);
     let request = PhaseShift {
         master: rig.axes[MASTER].id(),
         shift: 510.0 * 360.0,
         is_relative: false,
-        dynamics: Dynamics {
-            velocity: 5000.0,
-            ..Dynamics::default()
-        },
+        dynamics: Dynamics::at(5000.0),
         buffer_mode: BufferMode::Aborting.into(),
     };
     let scope = &mut Scope::new(rig.scan, &mut rig.log);

@@ -9,7 +9,8 @@ use super::rig::{L1, MASTER, RELATIVE, Rig, WIDE, config, row};
 use standstill_axis::{AxisState, BufferMode, CamRow, CamSelection, Command, Dynamics, Limits, Raw};
 use standstill_planner::CamShape;
 use standstill_planner::turns::split;
-use standstill_testkit::{Random, cases, whole_or};
+use standstill_testkit::{Random, cases, given, whole_or};
+use std::ops::Range;
 
 /// The results of all episodes.
 #[derive(Debug, Default)]
@@ -172,7 +173,7 @@ impl Episode {
         }
         if is_in_sync {
             tally.in_sync += 1;
-            let master = self.rig.axes[MASTER].setpoint().position + coupled.phase;
+            let master = self.rig.master() + coupled.phase;
             let master = match self.turns {
                 Some((length, _)) => split(master, length).1,
                 None => master,
@@ -187,17 +188,10 @@ impl Episode {
     }
 }
 
-fn dynamics(velocity: f64) -> Dynamics {
-    Dynamics {
-        velocity,
-        ..Dynamics::default()
-    }
-}
-
 /// A random shift between master and slave, or a random superimposed motion.
 fn adds(rig: &mut Rig, random: &mut Random, velocity: f64) {
     let scope = &mut standstill_axis::Scope::new(rig.scan, &mut rig.log);
-    let dynamics = dynamics(velocity * random.log(0.01, 2.0));
+    let dynamics = Dynamics::at(velocity * random.log(0.01, 2.0));
     let master = rig.axes[MASTER].id();
     let slave = &mut rig.axes[super::rig::SLAVE];
     // A refused command changes nothing.
@@ -342,13 +336,13 @@ fn play_on(seed: u64, master_order: u64, kind: Kind, tally: &mut Tally) -> u64 {
         let command = match random.below(4) {
             0 => Command::MoveRelative {
                 distance: random.between(-400.0, 400.0),
-                dynamics: dynamics(velocity * random.between(0.1, 1.0)),
+                dynamics: Dynamics::at(velocity * random.between(0.1, 1.0)),
             },
             1 => Command::Halt {
                 dynamics: Dynamics::default(),
             },
             _ => Command::MoveVelocity {
-                dynamics: dynamics(velocity * random.between(-1.0, 1.0)),
+                dynamics: Dynamics::at(velocity * random.between(-1.0, 1.0)),
                 direction: Raw::default(),
             },
         };
@@ -486,9 +480,7 @@ fn the_short_way_round_shows_the_bits_of_the_long_one() {
         let mut rig = Rig::new(config(L1, 0.0, Some(360.0)), config(WIDE, 30.0, Some(70.0)));
         rig.drives_tell = drives_tell;
         let rows = [row(0.0, 0.0, CamShape::Rest7), row(250.0, 100.0, CamShape::Rest7)];
-        let cam = rig.select(&rows, RELATIVE);
-        let cam_in = rig.cam_in(cam);
-        rig.engage(cam_in, BufferMode::Aborting).unwrap();
+        rig.follow(&rows, RELATIVE);
         for velocity in [150.0, -80.0, 20.0] {
             rig.run(velocity);
             rig.steps(5000);
@@ -499,18 +491,17 @@ fn the_short_way_round_shows_the_bits_of_the_long_one() {
     assert_eq!(digests[0], digests[1]);
 }
 
+/// The seeds from `CAM_FIRST` on, as many as `CAM_EPISODES` asks for.
+fn episodes(usual: u64) -> Range<u64> {
+    let first = given("CAM_FIRST", 0);
+    first..first + given("CAM_EPISODES", usual)
+}
+
 /// Covers: G45, G46, G51, G60, G62, G66, G78
 #[test]
 fn random_episodes_keep_limits_and_curve() {
-    let count = std::env::var("CAM_EPISODES")
-        .ok()
-        .and_then(|count| count.parse().ok());
     let mut tally = Tally::default();
-    let first = std::env::var("CAM_FIRST")
-        .ok()
-        .and_then(|first| first.parse().ok());
-    let first = first.unwrap_or(0);
-    for seed in first..first + count.unwrap_or(whole_or(250, 13)) {
+    for seed in episodes(whole_or(250, 13)) {
         play(seed, 4, false, true, &mut tally);
         play(seed, 4, true, true, &mut tally);
         if seed % 4 == 0 {
@@ -535,9 +526,7 @@ fn random_cams_with_corners_keep_limits_and_curve() {
         corners: true,
         round: false,
     };
-    let number = |name: &str| std::env::var(name).ok().and_then(|number| number.parse().ok());
-    let first = number("CAM_FIRST").unwrap_or(0);
-    for seed in first..first + number("CAM_EPISODES").unwrap_or_else(|| cases(120)) {
+    for seed in episodes(cases(120)) {
         play_on(seed, 4, kind(false), &mut tally);
         play_on(seed, 4, kind(true), &mut tally);
         if seed % 4 == 0 {
@@ -554,9 +543,7 @@ fn random_cams_with_corners_keep_limits_and_curve() {
 #[test]
 fn random_axes_that_come_round_keep_limits_and_curve() {
     let mut tally = Tally::default();
-    let number = |name: &str| std::env::var(name).ok().and_then(|number| number.parse().ok());
-    let first = number("CAM_FIRST").unwrap_or(0);
-    for seed in first..first + number("CAM_EPISODES").unwrap_or_else(|| cases(240)) {
+    for seed in episodes(cases(240)) {
         let kind = Kind {
             more: seed % 2 == 0,
             drives_tell: true,

@@ -1,10 +1,11 @@
 //! A master, its slave, and their cams, scan by scan.
 
 use crate::followed::follow_drives;
+use crate::standing;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, BufferMode, CamId, CamIn, CamPiece, CamRow, CamSelection, CamSlot, Cams,
     Command, CommandId, Direction, Dynamics, ErrorId, Event, Limits, Log, Master, Raw, Request, Scope,
-    Setpoint, Standard, StartMode, StartState, ValueSource, couple, steps,
+    Setpoint, Standard, StartMode, ValueSource, couple, steps,
 };
 use standstill_planner::CamShape;
 
@@ -52,8 +53,7 @@ pub fn config(limits: Limits, position: f64, modulo: Option<f64>) -> AxisConfig 
     AxisConfig {
         position,
         modulo,
-        start: StartState::Standstill,
-        ..AxisConfig::new(limits)
+        ..standing::config(limits)
     }
 }
 
@@ -157,6 +157,22 @@ impl Rig {
         }
     }
 
+    /// Puts the slave onto a cam of these rows.
+    pub fn follow(&mut self, rows: &[CamRow], selection: CamSelection) -> CommandId {
+        let cam = self.select(rows, selection);
+        self.follow_cam(self.cam_in(cam))
+    }
+
+    /// Puts the slave onto a cam at once.
+    pub fn follow_cam(&mut self, cam_in: CamIn) -> CommandId {
+        self.engage(cam_in, BufferMode::Aborting).unwrap()
+    }
+
+    /// The position of the master.
+    pub fn master(&self) -> f64 {
+        self.axes[MASTER].setpoint().position
+    }
+
     pub fn engage(&mut self, cam_in: CamIn, mode: BufferMode) -> Result<CommandId, ErrorId> {
         let request = Request {
             buffer_mode: mode.into(),
@@ -182,10 +198,7 @@ impl Rig {
         self.command(
             MASTER,
             Command::MoveVelocity {
-                dynamics: Dynamics {
-                    velocity,
-                    ..Dynamics::default()
-                },
+                dynamics: Dynamics::at(velocity),
                 direction: Raw::from(Direction::Unset),
             },
         );

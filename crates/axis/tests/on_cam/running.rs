@@ -3,6 +3,7 @@
 use super::rig::{L1, MASTER, RELATIVE, Rig, SLAVE, WIDE, config, row, up_and_back};
 use standstill_axis::{AxisState, BufferMode, CamRow, CamSelection, Command, Dynamics, Fate, Limits};
 use standstill_planner::CamShape;
+use standstill_testkit::given;
 
 fn stop() -> Command {
     Command::Halt {
@@ -14,9 +15,7 @@ fn stop() -> Command {
 #[test]
 fn the_table_of_the_reference() {
     let mut rig = Rig::new(config(L1, 0.0, None), config(WIDE, 0.0, None));
-    let cam = rig.select(&up_and_back(), RELATIVE);
-    let cam_in = rig.cam_in(cam);
-    let id = rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    let id = rig.follow(&up_and_back(), RELATIVE);
     rig.run(200.0);
     assert_eq!(rig.slave().state(), AxisState::SynchronizedMotion);
     let table = [
@@ -38,7 +37,7 @@ fn the_table_of_the_reference() {
             ends.push(n);
         }
         if let Some((_, m, s)) = table.iter().find(|(at, ..)| *at == n) {
-            assert!((rig.axes[MASTER].setpoint().position - m).abs() < 6e-7, "{n}");
+            assert!((rig.master() - m).abs() < 6e-7, "{n}");
             assert!((rig.at() - s).abs() < 6e-7, "{n}: {}", rig.at());
         }
     }
@@ -52,9 +51,7 @@ fn the_table_of_the_reference() {
 #[test]
 fn backwards_it_runs_as_forwards() {
     let mut rig = Rig::new(config(L1, 0.0, None), config(WIDE, 0.0, None));
-    let cam = rig.select(&up_and_back(), RELATIVE);
-    let cam_in = rig.cam_in(cam);
-    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.follow(&up_and_back(), RELATIVE);
     rig.run(-200.0);
     let mut ends = Vec::new();
     for n in 1..=5600_u32 {
@@ -87,15 +84,10 @@ fn a_period_that_is_no_part_of_the_turn_stays_exact() {
         snap: 1e18,
     };
     let mut rig = Rig::new(config(fast, 0.0, Some(1000.0)), config(faster, 0.0, None));
-    let cam = rig.select(&up_and_back(), RELATIVE);
-    let cam_in = rig.cam_in(cam);
-    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.follow(&up_and_back(), RELATIVE);
     rig.run(1e5);
     // `CAM_SCANS=3610000` for a million periods.
-    let scans = std::env::var("CAM_SCANS")
-        .ok()
-        .and_then(|scans| scans.parse().ok());
-    for _ in 0..scans.unwrap_or(100_000) {
+    for _ in 0..given("CAM_SCANS", 100_000_u64) {
         let before = rig.slave().cam_ends();
         rig.step();
         assert!(rig.slave().cam_ends() - before <= 1);
@@ -106,24 +98,19 @@ fn a_period_that_is_no_part_of_the_turn_stays_exact() {
     // The master has passed some 27,000 periods, and the slave is at the exact rest of its travel.
     let ends = rig.slave().cam_ends();
     assert!(ends > 27_000, "{ends}");
-    let master = rig.axes[MASTER].setpoint().position;
+    let master = rig.master();
     // Whole numbers first: with millions of periods the rest is still exact.
     let gone = i64::from(ends) * 360;
     let turns = [gone / 1000, gone / 1000 + 1];
     let rest = turns.map(|turns| (turns * 1000 - gone) as f64 + master);
     let rest = rest.into_iter().find(|rest| (0.0..360.0).contains(rest)).unwrap();
     let mut other = Rig::new(config(fast, 0.0, None), config(faster, 0.0, None));
-    let cam = other.select(&up_and_back(), RELATIVE);
-    let cam_in = other.cam_in(cam);
-    other.engage(cam_in, BufferMode::Aborting).unwrap();
+    other.follow(&up_and_back(), RELATIVE);
     other.command(
         MASTER,
         Command::MoveRelative {
             distance: rest,
-            dynamics: Dynamics {
-                velocity: 1e4,
-                ..Dynamics::default()
-            },
+            dynamics: Dynamics::at(1e4),
         },
     );
     other.steps(2000);
@@ -144,9 +131,7 @@ fn without_periods_it_ends_once_and_holds() {
         periodic: false,
         ..RELATIVE
     };
-    let cam = rig.select(&rows, once);
-    let cam_in = rig.cam_in(cam);
-    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.follow(&rows, once);
     rig.run(100.0);
     rig.steps(1500);
     assert_eq!((rig.at(), rig.slave().cam_ends()), (37.0, 1));
@@ -161,10 +146,7 @@ fn without_periods_it_ends_once_and_holds() {
         buffer_mode: BufferMode::Buffered.into(),
         ..standstill_axis::Request::aborting(Command::MoveRelative {
             distance: 3.0,
-            dynamics: Dynamics {
-                velocity: 50.0,
-                ..Dynamics::default()
-            },
+            dynamics: Dynamics::at(50.0),
         })
     };
     let scope = &mut standstill_axis::Scope::new(rig.scan, &mut rig.log);
@@ -228,15 +210,12 @@ fn scalings_stretch_and_mirror() {
             slave_scaling,
             ..rig.cam_in(cam)
         };
-        rig.engage(cam_in, BufferMode::Aborting).unwrap();
+        rig.follow_cam(cam_in);
         rig.command(
             MASTER,
             Command::MoveRelative {
                 distance: 180.0,
-                dynamics: Dynamics {
-                    velocity: 200.0,
-                    ..Dynamics::default()
-                },
+                dynamics: Dynamics::at(200.0),
             },
         );
         rig.steps(2000);
@@ -249,9 +228,7 @@ fn scalings_stretch_and_mirror() {
 #[test]
 fn the_slave_keeps_its_velocity_when_it_is_let_go() {
     let mut rig = Rig::new(config(L1, 0.0, None), config(WIDE, 0.0, None));
-    let cam = rig.select(&up_and_back(), RELATIVE);
-    let cam_in = rig.cam_in(cam);
-    let id = rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    let id = rig.follow(&up_and_back(), RELATIVE);
     rig.run(200.0);
     rig.steps(585);
     let out = rig.command(SLAVE, Command::CamOut);

@@ -222,10 +222,7 @@ fn schedule(seed: u64, is_plant: bool, met: &mut [[u32; 8]; MOTIONS.len()]) -> f
             let distance = -0.5_f64.copysign(axis.actual_position());
             let command = Command::MoveRelative {
                 distance,
-                dynamics: Dynamics {
-                    velocity: 50.0,
-                    ..Dynamics::default()
-                },
+                dynamics: Dynamics::at(50.0),
             };
             taken = axis.command(&Request::aborting(command), scope);
         });

@@ -3,13 +3,12 @@
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BlockDetection, Comms, Drive, DriveCommand, DriveFeedback,
     DriveOrder, DrivePosition, DriveReport, ErrorId, Homing, Limits, Log, Permission, Procedure, Scaling,
-    Scope, Standard, StartState, steps,
+    Scope, Standard, StartState,
 };
 use standstill_drives::cia402::{Cia402Drive, MotorLoad, NodeHoming, Reaction, Settings, TorqueScale};
 use standstill_drives::mechanism::{Gains, Mechanism, Plant, PlantDrive, Servo, Stops};
 use standstill_drives::switches::{Marker, Switches, Travel};
 pub use standstill_testkit::Random;
-use std::slice;
 
 const CYCLE: f64 = 0.001;
 
@@ -270,7 +269,7 @@ impl Rig {
         let scope = &mut Scope::new(self.scan, &mut self.log);
         self.axis.set_power(power, permitted, scope);
         during(&mut self.axis, scope);
-        steps::advance(slice::from_mut(&mut self.axis), scope);
+        self.axis.step_alone(scope);
         let command = self.axis.drive_command();
         let order = *self.axis.order();
         self.look_at_numbers(&command, &order);
