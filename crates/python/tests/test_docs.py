@@ -23,14 +23,16 @@ def blocks(language):
 
 @pytest.fixture(scope="module")
 def begun(tmp_path_factory):
-    """An empty folder in which the page's three commands were run, with the wheel in place of its name."""
+    """An empty folder in which the page's three commands were run, with the wheel that is tested."""
     wheel = os.environ.get("STANDSTILL_WHEEL")
     if wheel is None:
         pytest.skip("STANDSTILL_WHEEL names no wheel")
     folder = tmp_path_factory.mktemp("empty")
     commands = [line.removeprefix("$ ") for line in blocks("console")[0].splitlines() if line.startswith("$ ")]
     assert len(commands) <= 3
-    commands = [command.replace("pip install standstill", f"pip install --quiet {wheel}") for command in commands]
+    built = "pip install target/python/wheels/*.whl"
+    assert built in commands
+    commands = [command.replace(built, f"pip install --quiet {wheel}") for command in commands]
     # Nothing of the environment of these tests.
     environment = {key: value for key, value in os.environ.items() if key not in ("PYTHONPATH", "VIRTUAL_ENV")}
     base = os.path.join(sys.base_prefix, "bin")
