@@ -3,7 +3,8 @@
 //! A block says which pins it has and which command it gives. Edges and results belong to
 //! `standstill-fb`, motion to `standstill-axis`. This crate has no names of scripts, no text and no heap.
 //!
-//! A new block is one file in the folder of its group and one line in [`registry`].
+//! A new block is one file in the folder of its group, its `pub mod` line in the `mod.rs` there, and one line in
+//! [`registry`]. `docs/contributing.md` names the other places that a new block touches; each has a test.
 #![no_std]
 #![forbid(unsafe_code)]
 

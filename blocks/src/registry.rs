@@ -158,6 +158,7 @@ pub fn find(name: &str) -> Option<&'static BlockInfo> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use standstill_fb::{Direction, Group};
     use std::collections::BTreeSet;
     use std::string::ToString;
     use std::vec::Vec;
@@ -178,31 +179,31 @@ mod tests {
 
     /// Covers: R3, R7
     #[test]
-    fn mc_blocks_have_one_axis_first_and_numbers_are_lreal() {
+    fn each_block_begins_with_the_axis_of_its_kind() {
         for info in REGISTRY.iter().filter(|info| info.name.starts_with("MC_")) {
-            let mut in_outs = info.pins_of(standstill_fb::Direction::InOut);
-            let first = in_outs.next().map(|pin| (pin.name, pin.ty.iec_name()));
-            // Blocks that read and write inputs and outputs have a reference to those instead.
-            let expected = match info.name {
-                "MC_ReadDigitalInput" => ("Input", "MC_INPUT_REF"),
-                "MC_ReadDigitalOutput" | "MC_WriteDigitalOutput" => ("Output", "MC_OUTPUT_REF"),
-                "MC_GearIn" | "MC_GearInPos" | "MC_PhasingAbsolute" | "MC_PhasingRelative"
-                | "MC_CamTableSelect" | "MC_CamIn" => ("Master", "AXIS_REF"),
-                "MC_GearOut" | "MC_CamOut" => ("Slave", "AXIS_REF"),
-                "MC_CombineAxes" => ("Master1", "AXIS_REF"),
-                _ => ("Axis", "AXIS_REF"),
-            };
-            assert_eq!(first, Some(expected), "{}", info.name);
-            let others: Vec<_> = in_outs
+            let in_outs: Vec<_> = info.pins_of(Direction::InOut).collect();
+            let of_drive = in_outs
+                .iter()
+                .any(|pin| matches!(pin.ty.iec_name(), "MC_INPUT_REF" | "MC_OUTPUT_REF"));
+            let axes: Vec<_> = in_outs
+                .iter()
                 .filter(|pin| pin.ty.iec_name() == "AXIS_REF")
                 .map(|pin| pin.name)
                 .collect();
-            let expected: &[&str] = match expected.0 {
-                "Master" => &["Slave"],
-                "Master1" => &["Master2", "Slave"],
-                _ => &[],
+            // A coupling has its masters first and ends with its slave.
+            let expected: &[&[&str]] = match info.group {
+                Group::MultiAxis => &[&["Master", "Slave"], &["Master1", "Master2", "Slave"], &["Slave"]],
+                // Blocks that read and write inputs and outputs have a reference to those instead; a cam switch has both.
+                Group::Administrative if of_drive => &[&[], &["Axis"]],
+                Group::Administrative | Group::SingleAxis | Group::Homing | Group::Standard => &[&["Axis"]],
             };
-            assert_eq!(others, expected, "{}", info.name);
+            assert!(expected.contains(&axes.as_slice()), "{}: {axes:?}", info.name);
+            let first = in_outs.first().map(|pin| pin.ty.iec_name());
+            let is_first = match axes.is_empty() {
+                true => matches!(first, Some("MC_INPUT_REF" | "MC_OUTPUT_REF")),
+                false => first == Some("AXIS_REF"),
+            };
+            assert!(is_first, "{}: {first:?}", info.name);
             for pin in info.pins().filter(|pin| !pin.unit.is_empty()) {
                 assert_eq!(pin.ty.iec_name(), "LREAL", "{}.{}", info.name, pin.name);
             }

@@ -110,8 +110,8 @@ pub fn first_not_off<P: Planner>(axes: &[Axis<P>]) -> Option<(AxisId, AxisState)
     Some((on.id(), on.state()))
 }
 
-/// The code of a motion step, for axes with the planner that all use, is made here. In builds that are optimised little, crates
-/// that move axes take it instead of each making a copy.
+/// Compiles the motion step for `Standard` once, here. In builds that are optimised little, crates that move axes use this
+/// code instead of compiling a copy each.
 #[cfg(all(debug_assertions, not(test)))]
 #[used]
 static ADVANCE: fn(&mut [Axis<standstill_planner::Standard>], &mut Scope<'_>) = advance;

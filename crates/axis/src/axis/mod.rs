@@ -21,7 +21,7 @@
 //! | --- | --- |
 //! | [`accept`], [`queued`], [`update`], [`retrigger`] | commands: taken or refused, administrative ones that wait, new values, replaced ones |
 //! | [`dynamics`], [`factors`], [`parameters`] | limits from pins, the override, parameters by number |
-//! | [`step`], [`replan`], [`blend`], [`run`], [`turn`], [`inside`], [`guard`] | the motion step and hand-over, changes of the owner's motion while it runs, the velocity at its end, chains as one motion, turns between commands, take-overs within the limits, no step of the set-point |
+//! | [`step`], [`replan`], [`blend`], [`through`], [`run`], [`turn`], [`inside`], [`guard`] | the motion step and hand-over, changes of the owner's motion while it runs, the velocity at its end, ends that are passed on a ramp, chains as one motion, turns between commands, take-overs within the limits, no step of the set-point |
 //! | [`superimposed`] | a second motion on top |
 //! | [`coupling`] | slaves |
 //! | [`profile`], [`torque`], [`jog`], [`homing`] | curves through points, torques, MC_Jog, the search for the reference |
@@ -494,9 +494,11 @@ impl<P: Planner> Axis<P> {
         self.fates.find(id).unwrap_or(Fate::Failed(ErrorId::FateLost))
     }
 
-    /// The future behaviour of the axis: everything except positions, results of ended commands and the
-    /// configuration. Two axes of equal outlook and set-point behave alike from now on, unless a shaper still holds
-    /// past motion.
+    /// The future behaviour of an axis without masters, probes and outputs: everything except positions, results of
+    /// ended commands and the configuration. Two such axes of equal outlook and set-point behave alike from now on,
+    /// unless a shaper still holds past motion, limits were lowered in motion, or a shift of the coordinates is due. Not
+    /// in it: couplings, probes, cam tracks, the filter of actual positions, the limits in force before a change, and
+    /// the shift of coordinates that is due.
     pub fn outlook(&self) -> Outlook {
         let mut waiting = [None; QUEUE_MAX];
         for (slot, entry) in waiting.iter_mut().zip(self.queue.iter()) {
