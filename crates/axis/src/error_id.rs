@@ -123,7 +123,7 @@ error_ids! {
         "Give positions of the axis, FirstOnPosition not above LastOnPosition (except on modulo axes), AxisDirection 0 to 2, CamSwitchMode 0 or 1, in time mode a Duration above 0.";
     CamTrackInvalid = 134, "A TrackNumber is not from 1 to 32, or the Hysteresis of a track is NaN, infinite or negative.",
         "Number tracks from 1 to 32, and give a Hysteresis of 0 or above.";
-    TableUnknown = 135, "The reference at the pin is no table of this runtime, or the table has too many records.",
+    TableUnknown = 135, "The reference at the pin is not a table of this runtime, or the table has too many records.",
         "Take the reference from Machine::add_table; the page of the block has the largest number of records.";
     ParameterNumberInvalid = 140, "ParameterNumber is not the number of a parameter.",
         "Give a number from 1 to 17, or 1000 or 1001 to read.";
@@ -153,7 +153,7 @@ error_ids! {
         "The record in the log names the row and the field, or what is missing in the store; the size of the store is set up with the machine (cams).";
     CamNotSmooth = 154, "A derivative of the cam jumps that must be continuous for the limits of the slave, or by its cam_continuity.",
         "The record in the log names the row, the derivative and the jump. Use mcCamRest7 or mcCamThrough for slaves with a snap limit, mcCamRest5 for those with a jerk limit; without periods begin and end level. With a lower coupling.cam_continuity the slave stops at such rows.";
-    CamUnknown = 155, "CamTableID is no cam: it was never selected, is not complete yet, or was selected again since.",
+    CamUnknown = 155, "CamTableID is not a cam: it was never selected, is not complete yet, or was selected again since.",
         "Wire CamTableID of MC_CamTableSelect and wait for its Done.";
     SyncPositionInvalid = 156, "MasterSyncPosition, SlaveSyncPosition, MasterStartDistance or SwitchAt is NaN or further from 0 than 1e15, on a modulo axis not in its first turn, or not in the cam.",
         "Give finite positions; on a modulo axis at least 0 and less than the length of a turn, on a cam between its first and its last row, and a distance shorter than a turn, or than the period of a cam.";

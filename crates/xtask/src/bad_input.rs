@@ -4,6 +4,18 @@ use crate::{Generated, NOTICE, read};
 use standstill_axis::ErrorId;
 use std::fmt::Write;
 
+/// The columns of the table `states`.
+pub const STATES: [&str; 8] = [
+    "Disabled",
+    "Standstill",
+    "Homing",
+    "Stopping",
+    "DiscreteMotion",
+    "ContinuousMotion",
+    "ErrorStop",
+    "switching off",
+];
+
 pub fn page() -> Generated {
     let mut text = format!(
         "{NOTICE}# Bad input\n\n\
@@ -11,7 +23,7 @@ pub fn page() -> Generated {
          block that has no row. *ok*: accepted. *clamp*: lowered to the axis limit and recorded; an axis set to\n\
          `above_limit` `error` refuses instead. A number is the [ErrorID](error-ids.md) in the call that sees\n\
          the value. The axis and other instances stay as they are; blocks with Execute show the error until\n\
-         Execute falls and take good values at the next edge, blocks with Enable mend as soon as the value does.\n\n\
+         Execute falls and take good values at the next edge, blocks with Enable recover as soon as the value is good.\n\n\
          An `Axis` that does not exist is error {} of every block; blocks with Enable then need a new edge, too.\n\n\
          The window of MC_TouchProbe is not read without WindowOnly; its rows are with it, and with the pin that is not\n\
          named at 0, if first, or at the largest number. MC_PhasingAbsolute and MC_PhasingRelative find their slave in gear.\n\n\
@@ -28,11 +40,13 @@ pub fn page() -> Generated {
     rows(&mut text, &pins, 3);
     text.push_str("\n## Undefined enumeration numbers\n\n| block | pin | any |\n| --- | --- | --- |\n");
     rows(&mut text, &pins, 1);
-    text.push_str(
+    let _ = write!(
+        text,
         "\n## States\n\n\
          The last column is the ramp on the way to Disabled, in state Stopping.\n\n\
-         | block | BufferMode | Disabled | Standstill | Homing | Stopping | DiscreteMotion | ContinuousMotion | ErrorStop | switching off |\n\
+         | block | BufferMode | {} |\n\
          | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
+        STATES.join(" | ")
     );
     rows(&mut text, &table("states"), 8);
     Generated {
@@ -41,8 +55,8 @@ pub fn page() -> Generated {
     }
 }
 
-/// The rows of a table, split into words.
-fn table(name: &str) -> Vec<Vec<String>> {
+/// The rows of the table `pins` or `states`, split into words.
+pub fn table(name: &str) -> Vec<Vec<String>> {
     read(&format!("blocks/tests/bad_input/{name}.txt"))
         .lines()
         .filter(|line| !line.starts_with('#'))

@@ -1,17 +1,27 @@
 //! `docs/blocks/`: one page per block and an index, from the registry.
 
+use crate::guides::guides;
 use crate::pictures::Picture;
-use crate::{Generated, NOTICE, Requirements};
+use crate::{Faults, Generated, NOTICE, Requirements, bad_input};
+use standstill_axis::ErrorId;
 use standstill_blocks::REGISTRY;
 use standstill_fb::{BlockInfo, Direction, Pin, PinType, Value};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
-pub fn pages(requirements: &Requirements, pictures: &BTreeMap<String, Picture>) -> Vec<Generated> {
+pub fn pages(
+    requirements: &Requirements,
+    pictures: &BTreeMap<String, Picture>,
+    faults: &Faults,
+) -> Vec<Generated> {
+    let seen = faults.by_block();
+    let guides = guides();
     let mut files: Vec<_> = REGISTRY
         .iter()
         .map(|info| {
-            let mut page = page(info);
+            let more = guides.get(info.name).map_or("", String::as_str);
+            let mut page = page(info, more);
+            errors(&mut page.text, info, &seen, faults);
             if let Some(picture) = pictures.get(info.name) {
                 in_time(&mut page.text, picture);
             }
@@ -30,9 +40,62 @@ fn in_time(text: &mut String, picture: &Picture) {
     let file = file.rsplit('/').next().unwrap_or_default();
     let _ = write!(
         text,
-        "\n## In time\n\n![{title}]({file})\n\n{title}.\n\nDrawn from [the script](../../{script}); run it with\n\n    \
-         cargo run --release -- run {script}\n"
+        "\n## In time\n\n![{title}]({file})\n\n{title}.\n\nDrawn from [the script](../../{script}); run it in the folder of the \
+         repository with\n\n    standstill run {script}\n"
     );
+}
+
+/// The ErrorIDs that tests see at the block: with bad input, and in scan scripts.
+fn errors(text: &mut String, info: &BlockInfo, seen: &BTreeMap<(String, u16), String>, faults: &Faults) {
+    if info.pin("ErrorID").is_none() {
+        return;
+    }
+    let mut found: BTreeMap<u16, BTreeSet<String>> = BTreeMap::new();
+    for pin in info.pins().filter(|pin| matches!(pin.ty, PinType::Axis(_))) {
+        let number = ErrorId::AxisUnknown.number();
+        found.entry(number).or_default().insert(format!("`{}`", pin.name));
+    }
+    let of_block = |table| {
+        let rows = bad_input::table(table).into_iter();
+        rows.filter(|row| row.first().is_some_and(|block| block == info.name))
+    };
+    for row in of_block("pins") {
+        for cell in row.iter().skip(2).filter_map(|cell| cell.parse().ok()) {
+            found.entry(cell).or_default().insert(format!("`{}`", row[1]));
+        }
+    }
+    for row in of_block("states") {
+        for (cell, state) in row.iter().skip(2).zip(bad_input::STATES) {
+            if let Ok(number) = cell.parse() {
+                found.entry(number).or_default().insert(state.into());
+            }
+        }
+    }
+    for ((block, number), script) in seen {
+        if block == info.name {
+            let places = found.entry(*number).or_default();
+            if places.is_empty() {
+                places.insert(format!("[a script](../../scan-tests/{script}.scan.json)"));
+            }
+        }
+    }
+    if found.is_empty() {
+        return;
+    }
+    text.push_str(
+        "\n## Errors\n\nThe ErrorIDs that this block shows in the tests. The last column names the pins with a bad value, \
+         or the states\nof the axis, in which it does so ([bad input](../bad-input.md)); for other errors, a script in which \
+         it does so.\n\n| ErrorID | cause | seen with |\n| ---: | --- | --- |\n",
+    );
+    for (number, places) in found {
+        let places: Vec<_> = places.into_iter().collect();
+        let (anchor, cause) = faults.entry(number);
+        let _ = writeln!(
+            text,
+            "| [{number}](../faults.md#{anchor}) | {cause} | {} |",
+            places.join(", ")
+        );
+    }
 }
 
 /// The rules of the block, and the differences of vendors.
@@ -88,13 +151,12 @@ fn index() -> Generated {
     }
 }
 
-fn page(info: &BlockInfo) -> Generated {
-    let mut text = format!(
-        "{NOTICE}# {}\n\n{}\n\nGroup: {}.\n",
-        info.name,
-        info.doc,
-        info.group.name()
-    );
+fn page(info: &BlockInfo, more: &str) -> Generated {
+    let mut text = format!("{NOTICE}# {}\n\n{}\n", info.name, info.doc);
+    if !more.is_empty() {
+        let _ = write!(text, "\nMore: {more}.\n");
+    }
+    let _ = write!(text, "\nGroup: {}.\n", info.group.name());
     let kinds = [
         ("In_outs", Direction::InOut),
         ("Inputs", Direction::Input),

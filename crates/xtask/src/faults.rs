@@ -8,7 +8,7 @@ mod golden;
 use crate::{Generated, NOTICE, read};
 use golden::{Event, Golden, goldens};
 use standstill_axis::ErrorId;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 /// The errors of one hundred, with its title and introduction.
@@ -159,6 +159,49 @@ impl Faults {
         found
     }
 
+    /// The anchor of an error in the guide, and its cause.
+    pub(crate) fn entry(&self, number: u16) -> (String, &'static str) {
+        let id = errors().find(|id| id.number() == number);
+        let id = id.unwrap_or_else(|| panic!("{number} is not an ErrorID in use"));
+        (format!("{number}-{}", id.name().to_lowercase()), id.cause())
+    }
+
+    /// The errors that goldens show at the pin `ErrorID` of each block, with the first script that shows it.
+    pub(crate) fn by_block(&self) -> BTreeMap<(String, u16), String> {
+        let mut found = BTreeMap::new();
+        for (script, golden) in &self.goldens {
+            let types = golden::blocks(script);
+            for event in &golden.events {
+                let Some(block) = types.get(&event.subject) else {
+                    continue;
+                };
+                let numbers = event
+                    .text
+                    .split(' ')
+                    .filter_map(|word| word.strip_prefix("ErrorID="));
+                for number in numbers
+                    .filter_map(|number| number.parse().ok())
+                    .filter(|it| *it != 0)
+                {
+                    found
+                        .entry((block.clone(), number))
+                        .or_insert_with(|| script.clone());
+                }
+            }
+        }
+        found
+    }
+
+    /// The words with which notes of goldens begin, such as `refused`; a changed pin or state is not a note.
+    pub fn words_of_events(&self) -> BTreeSet<String> {
+        let events = self.goldens.values().flat_map(|golden| &golden.events);
+        let words = events.filter_map(|event| event.text.split([' ', ':']).next());
+        words
+            .filter(|word| !word.is_empty() && word.chars().all(|letter| letter.is_ascii_lowercase()))
+            .map(str::to_owned)
+            .collect()
+    }
+
     /// The page.
     pub fn page(&self) -> Generated {
         let mut text = format!(
@@ -285,7 +328,7 @@ fn section(head: &str) -> Section {
 
 fn count(word: &str) -> u16 {
     word.parse()
-        .unwrap_or_else(|_| panic!("faults.txt: `{word}` is no number"))
+        .unwrap_or_else(|_| panic!("faults.txt: `{word}` is not a number"))
 }
 
 #[cfg(test)]

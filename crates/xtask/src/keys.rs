@@ -1,7 +1,7 @@
 //! The tables of keys of axes and drives in the page on scan scripts, from the tables that the reader and
 //! the schema use.
 
-use crate::{Generated, read};
+use crate::{Generated, read, replace_part};
 use standstill_axis::keys::{AXIS, Holds, Object};
 use standstill_drives::keys::{CIA402, IDEAL, PLANT};
 use std::fmt::Write;
@@ -29,13 +29,8 @@ pub fn page() -> Generated {
         ("cia402", rows(&CIA402, &travel)),
         ("plant", rows(&PLANT, &travel)),
     ] {
-        let (open, close) = (format!("<!-- keys: {name}, generated -->\n"), "<!-- end -->\n");
-        let place = text.find(&open).map(|at| at + open.len());
-        let place = place.unwrap_or_else(|| panic!("{PAGE} has no `{}`", open.trim()));
-        let end = text.get(place..).and_then(|rest| rest.find(close));
-        let end = place + end.unwrap_or_else(|| panic!("{PAGE}: nothing ends the keys of {name}"));
         let table = format!("\n| key | meaning | if absent |\n| --- | --- | --- |\n{rows}\n");
-        text.replace_range(place..end, &table);
+        replace_part(PAGE, &mut text, &format!("keys: {name}"), &table);
     }
     Generated {
         path: PAGE.to_owned(),

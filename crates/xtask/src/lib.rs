@@ -8,9 +8,11 @@ mod bad_input;
 mod blocks;
 pub mod book;
 mod compliance;
+mod continuous_update;
 mod error_ids;
 mod faults;
 mod front;
+mod guides;
 mod keys;
 mod packages;
 mod pictures;
@@ -21,6 +23,7 @@ mod vibration;
 
 pub use compliance::Compliance;
 pub use faults::Faults;
+pub use guides::problems as problems_of_guides;
 pub use packages::Package;
 pub use requirements::Requirements;
 use std::path::{Path, PathBuf};
@@ -39,12 +42,14 @@ pub struct Generated {
 pub fn generated() -> Vec<Generated> {
     let requirements = Requirements::read();
     let pictures = pictures::pictures();
-    let mut files = blocks::pages(&requirements, &pictures);
+    let faults = Faults::read();
+    let mut files = blocks::pages(&requirements, &pictures, &faults);
     files.extend(pictures.values().map(pictures::Picture::drawn));
     files.extend(packages::readmes());
     files.push(error_ids::page());
-    files.push(Faults::read().page());
+    files.push(faults.page());
     files.push(keys::page());
+    files.push(continuous_update::page());
     files.push(bad_input::page());
     files.extend(Compliance::read().pages());
     files.extend(states::pages());
@@ -93,6 +98,20 @@ fn slashed(path: &Path) -> String {
     let path = path.strip_prefix(root()).unwrap_or(path);
     let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
     parts.join("/")
+}
+
+/// Replaces the generated part of a page that else is written by hand: between `<!-- NAME, generated -->` and
+/// `<!-- end -->`.
+///
+/// # Panics
+/// If the page has no such part.
+fn replace_part(page: &str, text: &mut String, name: &str, part: &str) {
+    let (open, close) = (format!("<!-- {name}, generated -->\n"), "<!-- end -->\n");
+    let place = text.find(&open).map(|at| at + open.len());
+    let place = place.unwrap_or_else(|| panic!("{page} has no `{}`", open.trim()));
+    let end = text.get(place..).and_then(|rest| rest.find(close));
+    let end = place + end.unwrap_or_else(|| panic!("{page}: nothing ends the part `{name}`"));
+    text.replace_range(place..end, part);
 }
 
 /// The first line of every generated page.

@@ -168,6 +168,12 @@ fn every_block_has_a_timing_picture() {
 }
 
 #[test]
+fn every_block_has_a_guide_or_the_word_none() {
+    let problems = standstill_xtask::problems_of_guides();
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+#[test]
 fn every_requirement_has_a_test_or_a_stated_gap() {
     let problems = Requirements::read().problems();
     assert!(problems.is_empty(), "{}", problems.join("\n"));
@@ -184,6 +190,31 @@ fn the_compliance_statement_is_true() {
 fn every_error_is_shown_by_a_trace_or_has_a_reason() {
     let problems = Faults::read().problems();
     assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+#[test]
+fn the_glossary_has_every_word_that_an_event_begins_with() {
+    let glossary = fs::read_to_string(root().join("docs/glossary.md")).unwrap();
+    let (_, table) = glossary
+        .split_once("## Words in the events of a run")
+        .expect("the section of the events");
+    let cells = table
+        .lines()
+        .filter_map(|line| line.strip_prefix("| ")?.split(" | ").next());
+    let known: BTreeSet<&str> = cells
+        .flat_map(|cell| cell.split(", "))
+        .filter_map(|event| event.split([' ', ':']).next())
+        .collect();
+    let words = Faults::read().words_of_events();
+    assert!(words.len() > 15, "{words:?}");
+    let missing: Vec<_> = words
+        .iter()
+        .filter(|word| !known.contains(word.as_str()))
+        .collect();
+    assert!(
+        missing.is_empty(),
+        "docs/glossary.md, *Words in the events of a run*, has no row for {missing:?}"
+    );
 }
 
 /// Checks that `cargo package` itself does not make; the rest is a step of `.ci/run`.

@@ -24,12 +24,7 @@ impl Compliance {
                     PinType::Enum(_) => name == "ENUM",
                     ty => ty.iec_name() == name,
                 });
-                let rows = self.blocks.iter().flat_map(|block| &block.rows);
-                let instead: BTreeSet<_> = rows
-                    .filter(|row| row.standard == *name)
-                    .filter_map(|row| row.here)
-                    .filter(|here| here != name)
-                    .collect();
+                let instead = self.used_instead(name);
                 let remark = match instead.is_empty() {
                     false => Vec::from_iter(instead).join(", "),
                     true if supported => String::new(),
@@ -41,6 +36,15 @@ impl Compliance {
                     remark,
                 }
             })
+            .collect()
+    }
+
+    /// The types that pins have here whose type is this one in the standard.
+    fn used_instead(&self, name: &str) -> BTreeSet<&str> {
+        let rows = self.blocks.iter().flat_map(|block| &block.rows);
+        rows.filter(|row| row.standard == name)
+            .filter_map(|row| row.here)
+            .filter(|here| *here != name)
             .collect()
     }
 
@@ -63,7 +67,7 @@ impl Compliance {
                         let fields: Vec<_> = info.fields.iter().map(|field| field.name).collect();
                         format!("array of {}", fields.join(", "))
                     }
-                    _ => String::new(),
+                    _ => Vec::from_iter(self.used_instead(name)).join(", "),
                 };
                 let remark = self.standard.remark(name).map(|remark| remark.text.clone());
                 TypeRow {

@@ -1,6 +1,7 @@
 //! Goldens, as far as the fault guide needs them.
 
 use crate::{files_below, read, root, slashed};
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// A line of a golden's events.
@@ -44,6 +45,20 @@ pub fn goldens() -> BTreeMap<String, Golden> {
         }
     }
     found
+}
+
+/// The instances of a script with the names of their blocks; those of included files and of programs are left out.
+pub fn blocks(script: &str) -> BTreeMap<String, String> {
+    let text = read(&format!("scan-tests/{script}.scan.json"));
+    let script: Value = serde_json::from_str(&text).unwrap_or_default();
+    let blocks = script["blocks"].as_array().into_iter().flatten();
+    blocks
+        .filter_map(|block| {
+            let (name, of_type) = (block["name"].as_str()?, block["type"].as_str()?);
+            let info = standstill_blocks::registry::find(of_type)?;
+            Some((name.into(), info.name.into()))
+        })
+        .collect()
 }
 
 /// Events are below a line `events`, up to an empty line: scan, subject, text.
