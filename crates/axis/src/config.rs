@@ -701,9 +701,16 @@ impl fmt::Display for ConfigError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::NotPositive { key, value } => {
+                let absent = match key.rsplit('.').next() {
+                    Some("jerk" | "snap" | "max_deviation" | "max_following_error" | "power_timeout") => {
+                        "; leave it out for no limit"
+                    }
+                    Some("deceleration") => "; leave it out for its default",
+                    _ => "",
+                };
                 write!(
                     f,
-                    "{key} is {value:?}: it must be a finite number above 0; leave an optional one out for no limit"
+                    "{key} is {value:?}: it must be a finite number above 0{absent}"
                 )
             }
             Self::NotFinite { key, value } => write!(f, "{key} is {value:?}: it must be a finite number"),

@@ -1,7 +1,7 @@
 //! The drive of an axis.
 
-use super::json::Node;
-use super::value::Fields;
+use super::json::{Json, Node};
+use super::value::{Fields, wrong_type};
 use super::{Reader, shape};
 use crate::error::{Code, Diagnostic};
 use crate::model::{Cia402Setup, DriveSetup, IdealDriveSetup, PlantSetup};
@@ -32,6 +32,12 @@ impl Reader {
         let Some(node) = axis.get("drive") else {
             return Some(DriveSetup::default());
         };
+        if let Json::Text(name) = &node.json
+            && DriveKind::ALL.iter().any(|(known, _)| known == name)
+        {
+            let help = format!("write \"drive\": {{{name:?}: {{}}}}");
+            return self.refuse(wrong_type(node, "`drive`", "an object").help(help));
+        }
         let fields = self.fields(node, &shape::DRIVE)?;
         let mut kinds = fields.iter().filter_map(|(key, node)| {
             let (_, kind) = DriveKind::ALL.iter().find(|(name, _)| *name == key.text)?;

@@ -38,6 +38,14 @@ pub(super) fn key<'a>(key: &str, mut known: impl Iterator<Item = &'a str>) -> Op
         .then(|| format!("`{meant}` is what it is called here"))
 }
 
+/// A required key with a value, for a reader who does not know its form.
+pub(super) fn example(key: &str) -> Option<&'static str> {
+    match key {
+        "limits" => Some("\"limits\": {\"velocity\": 100, \"acceleration\": 1000}"),
+        _ => None,
+    }
+}
+
 /// The remedy for logic in a string where a wire or a signal is expected.
 pub(super) fn logic(text: &str) -> Option<String> {
     let words: Vec<&str> = text.split_whitespace().collect();

@@ -435,7 +435,7 @@ impl Reader {
 
     fn scan_number(&mut self, fields: &Fields<'_>) -> Option<u64> {
         let node = self.require(fields, "scans", "a script")?;
-        let scans = self.scans(node, "`scans`")?;
+        let scans = self.scans_of(node, "`scans`", 1..=SCANS_MAX as i64)?;
         let end_ns = i64::try_from(scans)
             .ok()
             .and_then(|scans| scans.checked_mul(self.cycle_ns.unwrap_or(1)));

@@ -139,7 +139,8 @@ impl Reader {
         let node = fields.get(key);
         if node.is_none() {
             let message = format!("{what} needs the key `{key}`");
-            self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
+            let help = hints::example(key).map(|example| format!("for example {example}"));
+            self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message).maybe_help(help));
         }
         node
     }
@@ -291,6 +292,17 @@ impl Reader {
 
     /// A whole number within `range`.
     pub(super) fn whole(&mut self, node: &Node, what: &str, range: RangeInclusive<i64>) -> Option<i64> {
+        self.whole_of(node, what, range.clone(), range)
+    }
+
+    /// A whole number within `range`; an error says `told`, the range after later checks.
+    fn whole_of(
+        &mut self,
+        node: &Node,
+        what: &str,
+        range: RangeInclusive<i64>,
+        told: RangeInclusive<i64>,
+    ) -> Option<i64> {
         let value = self.number(node, what)?;
         // Casts saturate, and the range check below is on the float, so every wrong value is found.
         let (low, high) = (*range.start() as f64, *range.end() as f64);
@@ -298,14 +310,21 @@ impl Reader {
             return Some(value as i64);
         }
         let message = format!(
-            "{what} is {}: it must be a whole number from {low} to {high}",
-            number_text(value)
+            "{what} is {}: it must be a whole number from {} to {}",
+            number_text(value),
+            told.start(),
+            told.end()
         );
         self.refuse(Diagnostic::new(Code::BadValue, node.span, message))
     }
 
     /// A scan number or a count of scans: a whole number, or a TIME literal that is a multiple of the cycle.
     pub(super) fn scans(&mut self, node: &Node, what: &str) -> Option<u64> {
+        self.scans_of(node, what, 0..=WHOLE_MAX as i64)
+    }
+
+    /// As [`Self::scans`]; an error says `told`, the range after later checks.
+    pub(super) fn scans_of(&mut self, node: &Node, what: &str, told: RangeInclusive<i64>) -> Option<u64> {
         let Json::Text(_) = &node.json else {
             if !matches!(&node.json, Json::Number(_) | Json::Map(_)) {
                 return self.refuse(
@@ -314,7 +333,7 @@ impl Reader {
                 );
             }
             return self
-                .whole(node, what, 0..=WHOLE_MAX as i64)
+                .whole_of(node, what, 0..=WHOLE_MAX as i64, told)
                 .map(i64::unsigned_abs);
         };
         let ns = self.time_literal(node, what)?;
