@@ -444,38 +444,45 @@ impl<P: Planner> Axis<P> {
     /// The state of command `id`. Bounded by the queue and the fates kept.
     #[inline]
     pub fn fate(&self, id: CommandId) -> Fate {
-        if let Some(owner) = &self.owner
-            && owner.id == id
-        {
-            // A stop at rest has completed.
-            if self.stop_held {
-                return Fate::Done;
-            }
-            if let Work::Release(_) = owner.work {
-                return if self.is_released(owner) {
-                    Fate::Done
-                } else {
-                    Fate::Active { reached: false }
-                };
-            }
-            if !self.goal_reached() {
-                return if owner.passed && self.profile_is_over() {
-                    Fate::Done
-                } else {
-                    Fate::Active { reached: false }
-                };
-            }
-            return match owner.work.manner().ending {
-                Ending::RunsOn if !owner.paused => Fate::Done,
-                Ending::Follows => Fate::Active {
-                    reached: self.is_in_gear(),
-                },
-                ending => Fate::Active {
-                    reached: ending == Ending::Holds && !self.is_held_up(),
-                },
+        match &self.owner {
+            Some(owner) if owner.id == id => self.fate_of_owner(owner),
+            _ => self.fate_of_other(id),
+        }
+    }
+
+    #[inline]
+    fn fate_of_owner(&self, owner: &Entry) -> Fate {
+        if let Work::Release(_) = owner.work {
+            return if self.is_released(owner) {
+                Fate::Done
+            } else {
+                Fate::Active { reached: false }
             };
         }
-        self.fate_of_other(id)
+        if self.goal_reached() {
+            return self.fate_at_goal(owner);
+        }
+        if owner.passed && self.profile_is_over() {
+            Fate::Done
+        } else {
+            Fate::Active { reached: false }
+        }
+    }
+
+    /// The state of the owner once its motion has reached its goal.
+    #[inline(never)]
+    fn fate_at_goal(&self, owner: &Entry) -> Fate {
+        match owner.work.manner().ending {
+            // A stop at rest has completed.
+            _ if self.stop_held => Fate::Done,
+            Ending::RunsOn if !owner.paused => Fate::Done,
+            Ending::Follows => Fate::Active {
+                reached: self.is_in_gear(),
+            },
+            ending => Fate::Active {
+                reached: ending == Ending::Holds && !self.is_held_up(),
+            },
+        }
     }
 
     /// The state of a command that is not the owner.

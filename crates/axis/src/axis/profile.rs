@@ -322,6 +322,7 @@ impl<P: Planner> Axis<P> {
 
     /// Whether the owner is an endless profile that has reached its end. It has completed, and keeps its
     /// velocity.
+    #[inline(never)]
     pub(super) fn profile_is_over(&self) -> bool {
         let runs_on = |owner: &&Entry| owner.work.manner().ending == Ending::RunsOn && !owner.paused;
         let owner = self.owner.as_ref().filter(runs_on);
