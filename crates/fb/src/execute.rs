@@ -99,6 +99,12 @@ impl ExecuteCore {
         self.status(execute, context)
     }
 
+    /// Whether `execute` differs from that of the last call.
+    #[inline]
+    pub(crate) fn is_edge(&self, execute: bool) -> bool {
+        execute != self.executed
+    }
+
     /// Whether `execute` rises in this call and gives a command.
     #[inline]
     pub(crate) fn rises<P: Planner>(&mut self, execute: bool, context: &Context<'_, P>) -> bool {
@@ -119,7 +125,7 @@ impl ExecuteCore {
     }
 
     /// What the block shows in a call, after the command of a rising edge was given.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn status<P: Planner>(&mut self, execute: bool, context: &Context<'_, P>) -> Phase {
         let phase = match self.command {
             Some((axis, id)) => match context.axes.get(axis.index()) {
@@ -149,6 +155,7 @@ impl ExecuteCore {
 
     /// Whether the command runs on an axis that ignores edges while an instance is Busy. MC_Stop never
     /// ignores an edge: its Execute is a lock.
+    #[inline(never)]
     fn ignores_edges<P: Planner>(&self, context: &Context<'_, P>) -> bool {
         let Some((axis, id)) = self.command else {
             return false;
@@ -161,6 +168,8 @@ impl ExecuteCore {
     }
 
     /// Gives the command of a rising edge, as [`ExecuteCore::scan`] says.
+    // Not inlined: most calls give no command, and would save registers for it.
+    #[inline(never)]
     pub(crate) fn start<P: Planner>(
         &mut self,
         context: &mut Context<'_, P>,

@@ -79,7 +79,7 @@ impl UpdateCore<Command> {
         context: &mut Context<'_, P>,
         values: impl Fn() -> Command,
     ) -> Phase {
-        self.scan(pins, context, values, |axis, command, replaces, scope| {
+        self.scan(pins, context, values, move |axis, command, replaces, scope| {
             let request = Request {
                 command,
                 buffer_mode,
@@ -108,8 +108,8 @@ impl<V: Values> UpdateCore<V> {
         self.scan_among(
             pins,
             context,
-            |_| values(),
-            |context, given, replaces| {
+            move |_| values(),
+            move |context, given, replaces| {
                 let (axis, scope) = context.axis(pins.axis)?;
                 issue(axis, given, replaces, scope)
             },
@@ -125,41 +125,45 @@ impl<V: Values> UpdateCore<V> {
         values: impl Fn(&Context<'_, P>) -> V,
         issue: impl FnOnce(&mut Context<'_, P>, V, Option<CommandId>) -> Result<CommandId, ErrorId>,
     ) -> Phase {
-        if self.seen.is_some() {
-            self.update(pins, context, &values);
+        if (self.execute.is_edge(pins.execute) || self.seen.is_some())
+            && let Err(error) = self.give(pins, context, values, issue)
+        {
+            return self.execute.fail(error);
         }
+        // After that, so that its effect shows in the same call.
+        self.execute.status(pins.execute, context)
+    }
+
+    /// Gives the command of a rising edge, or changed values to the command that runs.
+    // Not inlined: in most calls there is nothing to give.
+    #[inline(never)]
+    fn give<P: Planner>(
+        &mut self,
+        pins: Move,
+        context: &mut Context<'_, P>,
+        values: impl Fn(&Context<'_, P>) -> V,
+        issue: impl FnOnce(&mut Context<'_, P>, V, Option<CommandId>) -> Result<CommandId, ErrorId>,
+    ) -> Result<(), ErrorId> {
         if self.execute.rises(pins.execute, context) {
+            self.seen = None;
             let seen = &mut self.seen;
-            let started = self.execute.start(context, |context, replaces| {
+            return self.execute.start(context, |context, replaces| {
                 let given = values(context);
                 let id = issue(context, given, replaces)?;
                 *seen = pins.continuous_update.then_some(given);
                 Ok((pins.axis, id))
             });
-            if let Err(error) = started {
-                return self.execute.fail(error);
-            }
         }
-        self.execute.status(pins.execute, context)
-    }
-
-    /// Changes are passed before the status is read, so that their effect shows in the same call.
-    fn update<P: Planner>(
-        &mut self,
-        pins: Move,
-        context: &mut Context<'_, P>,
-        values: &impl Fn(&Context<'_, P>) -> V,
-    ) {
-        let values = values(context);
         let running = self.execute.running(pins.execute, context);
         let (Some((axis, id)), Some(seen), true) = (running, &mut self.seen, pins.continuous_update) else {
             self.seen = None;
-            return;
+            return Ok(());
         };
-        if seen.is_same(&values) {
-            return;
+        let given = values(context);
+        if !seen.is_same(&given) {
+            *seen = given;
+            given.apply(axis, id, context);
         }
-        *seen = values;
-        values.apply(axis, id, context);
+        Ok(())
     }
 }
