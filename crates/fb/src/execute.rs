@@ -12,6 +12,12 @@ use standstill_axis::{AxisId, AxisState, CommandId, EdgeWhileBusy, ErrorId, Fate
 pub struct Phase(Option<Fate>);
 
 impl Phase {
+    /// The fate of the command; `None` if the block shows nothing.
+    #[inline]
+    pub fn fate(self) -> Option<Fate> {
+        self.0
+    }
+
     /// `Done`.
     #[inline]
     pub fn is_done(self) -> bool {

@@ -27,6 +27,6 @@ pub use pins::{
     axis_number, numbered_axis,
 };
 #[doc(hidden)]
-pub use standstill_axis::{Dynamics, ErrorId};
+pub use standstill_axis::{Dynamics, ErrorId, Fate};
 pub use table::{Record, Table, TableInfo, TableOf, TableRef};
 pub use update::{Move, UpdateCore, Values};

@@ -55,13 +55,24 @@ macro_rules! pin_group {
         impl From<$crate::Phase> for Outputs {
             #[inline]
             fn from(phase: $crate::Phase) -> Self {
-                Self {
-                    busy: phase.is_busy(),
-                    active: phase.is_active(),
-                    command_aborted: phase.is_aborted(),
-                    error: phase.is_error(),
-                    error_id: phase.error_id(),
-                    ..Self::default()
+                let none = Self::default();
+                match phase.fate() {
+                    None | Some($crate::Fate::Done) => none,
+                    Some($crate::Fate::Waiting) => Self { busy: true, ..none },
+                    Some($crate::Fate::Active { .. }) => Self {
+                        busy: true,
+                        active: true,
+                        ..none
+                    },
+                    Some($crate::Fate::Aborted) => Self {
+                        command_aborted: true,
+                        ..none
+                    },
+                    Some($crate::Fate::Failed(error_id)) => Self {
+                        error: true,
+                        error_id,
+                        ..none
+                    },
                 }
             }
         }
