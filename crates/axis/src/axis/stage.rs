@@ -197,9 +197,13 @@ impl Power {
     /// the last scan has; others take effect at the end of the scan if no other was called after them
     /// (V9b).
     pub fn hear(&mut self, wish: Wish) -> bool {
-        let obeyed = *self.decider.get_or_insert(wish.instance) == wish.instance;
-        self.overruled = if obeyed { None } else { Some(wish) };
-        obeyed
+        if *self.decider.get_or_insert(wish.instance) == wish.instance {
+            self.overruled = None;
+            true
+        } else {
+            self.overruled = Some(wish);
+            false
+        }
     }
 
     /// Whether a request is left to decide at the end of the scan.
