@@ -6,6 +6,7 @@
 
 use super::commands::ROUNDING;
 use super::{Axis, Motion};
+use crate::ErrorId;
 use standstill_planner::{Excess, Limits, Planner, Setpoint};
 
 /// The same at the end of a plan, whose last scan may be longer by this part.
@@ -14,26 +15,74 @@ pub(super) const LAST_SCAN: f64 = 1.0 / 2048.0;
 /// The largest error of a position, relative to the largest position in its computation.
 pub(super) const RESOLVED: f64 = 8.0 * f64::EPSILON;
 
+/// The largest changes of a set-point from one scan to the next: of position (u), velocity (u/s) and acceleration
+/// (u/s^2).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Steps {
+    position: f64,
+    velocity: f64,
+    acceleration: f64,
+}
+
+impl Steps {
+    /// What `limits` allow in a `scan` (s).
+    #[inline]
+    pub fn within(limits: &Limits, scan: f64) -> Self {
+        // `f64::max` would also check for NaN; no limit is NaN.
+        let (up, down) = (limits.acceleration, limits.deceleration);
+        let steepest = if up > down { up } else { down };
+        Self {
+            position: limits.velocity * scan,
+            velocity: steepest * scan,
+            acceleration: limits.jerk * scan,
+        }
+    }
+
+    /// Whether the changes from `last` to `next` are smaller than these, plus rounding; so they are finite. The
+    /// rounding includes that of a position of magnitude `coarsest` (u): an earlier position of the plan, or its end.
+    #[inline(always)]
+    pub fn allow(&self, last: &Setpoint, next: &Setpoint, coarsest: f64) -> bool {
+        let resolved = RESOLVED * (last.position.abs() + next.position.abs() + coarsest);
+        (next.position - last.position).abs() < self.position + resolved
+            && (next.velocity - last.velocity).abs() < self.velocity
+            && (next.acceleration - last.acceleration).abs() < self.acceleration
+    }
+}
+
 impl<P: Planner> Axis<P> {
-    /// Whether `next` may follow the set-point last published.
+    /// Why `next` may not follow the set-point last published; none if it may.
     ///
-    /// Cost: three comparisons for a set-point within the limits in force. Any other is checked against
+    /// Cost: four comparisons for a set-point within the limits in force. Any other is checked against
     /// three more sets of limits: those the plan took over from, those of the axis, and the recorded
     /// unavoidable excess.
     #[inline(always)]
-    pub(super) fn is_step(&self, next: Setpoint) -> bool {
-        self.is_usual_step(&next) || self.is_wider_step(next)
+    pub(super) fn fault_of(&self, next: Setpoint) -> Option<ErrorId> {
+        if self.is_usual_step(&next) {
+            None
+        } else {
+            self.fault_of_wider_step(next)
+        }
     }
 
-    /// The same within the limits in force, which is enough for nearly all set-points.
+    /// Whether `next` is finite and within the limits in force, which is so for nearly all set-points.
     #[inline(always)]
     fn is_usual_step(&self, next: &Setpoint) -> bool {
-        let scan = (1.0 + ROUNDING) * self.planner.cycle();
-        steps_within(self.mover.setpoint(), next, self.mover.in_force(), scan, 0.0)
+        let last = self.mover.setpoint();
+        self.mover.steps().allow(last, next, 0.0) && (next.jerk + next.snap).abs() <= f64::MAX
     }
 
     #[cold]
     #[inline(never)]
+    fn fault_of_wider_step(&self, next: Setpoint) -> Option<ErrorId> {
+        if !next.is_finite() {
+            Some(ErrorId::SetpointBroken)
+        } else if !self.is_wider_step(next) {
+            Some(ErrorId::SetpointStep)
+        } else {
+            None
+        }
+    }
+
     fn is_wider_step(&self, next: Setpoint) -> bool {
         let layer = self
             .mover
@@ -61,26 +110,6 @@ impl<P: Planner> Axis<P> {
         let scan = (1.0 + slack) * self.planner.cycle();
         // The positions of a plan may be computed from its end, at any distance.
         let coarsest = self.mover.coarsest().max(self.mover.end_of_plan().abs());
-        steps_within(self.mover.setpoint(), &next, &widest, scan, coarsest)
+        Steps::within(&widest, scan).allow(self.mover.setpoint(), &next, coarsest)
     }
-}
-
-/// Whether position, velocity and acceleration change from `last` to `next` in a `scan` (s) by at most what `limits`
-/// allow, plus rounding. The rounding includes that of a position of magnitude `coarsest` (u): an earlier position of
-/// the plan, or its end.
-#[inline(always)]
-pub(super) fn steps_within(
-    last: &Setpoint,
-    next: &Setpoint,
-    limits: &Limits,
-    scan: f64,
-    coarsest: f64,
-) -> bool {
-    let resolved = RESOLVED * (last.position.abs() + next.position.abs() + coarsest);
-    // `f64::max` would also check for NaN; no limit is NaN.
-    let (up, down) = (limits.acceleration, limits.deceleration);
-    let steepest = if up > down { up } else { down };
-    (next.position - last.position).abs() <= limits.velocity * scan + resolved
-        && (next.velocity - last.velocity).abs() <= steepest * scan
-        && (next.acceleration - last.acceleration).abs() <= limits.jerk * scan
 }

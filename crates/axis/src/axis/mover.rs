@@ -7,6 +7,8 @@
 mod motion;
 mod shaping;
 
+use super::commands::ROUNDING;
+use super::guard::Steps;
 use super::superimposed::Layer;
 use crate::{AxisConfig, ConfigError};
 use core::mem::offset_of;
@@ -27,9 +29,11 @@ pub(super) struct Mover<P: Plan> {
     setpoint: Setpoint,
     /// The last velocity that was not zero (u/s): its sign is mcCurrentDirection.
     last_velocity: f64,
+    /// What the limits of the present motion allow in a scan.
+    steps: Steps,
+    motion: Motion<P>,
     /// Limits of the present motion, for the command that takes over from it.
     in_force: Limits,
-    motion: Motion<P>,
     /// Limits of the motion before. They are needed to plan the present one anew.
     before: Limits,
     /// The largest magnitude (u) that a shift of coordinates gave to positions of the plan in progress; see
@@ -37,6 +41,8 @@ pub(super) struct Mover<P: Plan> {
     coarsest: f64,
     /// The shaper between the motion and the published set-point.
     shaping: Option<Shaping>,
+    /// The sample time, and a little for rounding (s).
+    scan: f64,
     /// A second motion on top of it.
     layer: Option<Layer<P>>,
 }
@@ -77,9 +83,11 @@ impl<P: Plan> Mover<P> {
     /// [`ConfigError::Vibration`] names the mode.
     pub fn new(config: &AxisConfig, cycle: f64, holds: bool) -> Result<Self, ConfigError> {
         let shaping = Shaping::new(&config.vibration, cycle, config.position)?;
+        let scan = (1.0 + ROUNDING) * cycle;
         Ok(Self {
             setpoint: Setpoint::at_rest(config.position),
             last_velocity: 1.0,
+            steps: Steps::within(&config.limits, scan),
             in_force: config.limits,
             is_watched: false,
             motion: if holds { Motion::Hold } else { Motion::Follow },
@@ -87,6 +95,7 @@ impl<P: Plan> Mover<P> {
             shaping,
             before: config.limits,
             coarsest: 0.0,
+            scan,
             layer: None,
         })
     }
@@ -141,8 +150,13 @@ impl<P: Plan> Mover<P> {
         self.layer.as_mut()
     }
 
-    /// The limits of the present motion.
+    /// What the limits of the present motion allow in a scan.
     #[inline(always)]
+    pub fn steps(&self) -> &Steps {
+        &self.steps
+    }
+
+    /// The limits of the present motion.
     pub fn in_force(&self) -> &Limits {
         &self.in_force
     }
@@ -195,7 +209,8 @@ impl<P: Plan> Mover<P> {
 
     /// Starts `motion` within `limits`.
     pub fn start(&mut self, motion: Motion<P>, limits: Limits) {
-        (self.motion, self.in_force) = (motion, limits);
+        self.motion = motion;
+        self.keep(limits);
     }
 
     /// The same for a motion that is planned in the present coordinates.
@@ -207,6 +222,7 @@ impl<P: Plan> Mover<P> {
     /// From now on the motion keeps `limits`.
     pub fn keep(&mut self, limits: Limits) {
         self.in_force = limits;
+        self.steps = Steps::within(&limits, self.scan);
     }
 
     /// The present motion takes over from one within `limits`.
@@ -216,25 +232,19 @@ impl<P: Plan> Mover<P> {
 
     /// Both the motion and the one before keep `limits`.
     pub fn keep_only(&mut self, limits: Limits) {
-        (self.in_force, self.before) = (limits, limits);
+        self.keep(limits);
+        self.before = limits;
     }
 
-    /// The next set-point of the plan; `None` without one.
+    /// Advances the plan by a scan and returns its set-point; `None` without one.
     #[inline(always)]
     pub fn next(&mut self) -> Option<Setpoint> {
         let Motion::Run { plan, elapsed, .. } = &mut self.motion else {
             return None;
         };
-        Some(plan.next(elapsed.wrapping_add(1)))
-    }
-
-    /// Advances the plan by a scan.
-    #[inline(always)]
-    pub fn count_scan(&mut self) {
-        if let Motion::Run { elapsed, .. } = &mut self.motion {
-            // Scans of 1 ms wrap after 10^8 years.
-            *elapsed = elapsed.wrapping_add(1);
-        }
+        // Scans of 1 ms wrap after 10^8 years.
+        *elapsed = elapsed.wrapping_add(1);
+        Some(plan.next(*elapsed))
     }
 
     /// The first set-point of the plan. The plan continues from there.

@@ -46,24 +46,13 @@ impl<P: Planner> Axis<P> {
         is_endless && self.queue.is_empty() && !self.is_held_up()
     }
 
-    /// The next set-point of the plan, if it may be published.
+    /// Advances the plan by a scan and publishes its set-point, if that may be published.
     // Inlined for the same reason as `Mover::publish`.
     #[inline(always)]
     fn step_along_plan(&mut self, scope: &mut Scope<'_>) {
-        if let Some(next) = self.mover.next() {
-            self.step_to(next, scope);
-        }
-    }
-
-    /// Advances the plan by a scan, to `next`.
-    // By value in all callers, so that the usual set-point needs no place in memory.
-    #[inline(always)]
-    fn step_to(&mut self, next: Setpoint, scope: &mut Scope<'_>) {
-        self.mover.count_scan();
-        if !next.is_finite() {
-            self.fail(ErrorId::SetpointBroken, scope);
-        } else if !self.is_step(next) {
-            self.fail(ErrorId::SetpointStep, scope);
+        let Some(next) = self.mover.next() else { return };
+        if let Some(error) = self.fault_of(next) {
+            self.fail(error, scope);
         } else if self.mover.is_watched() && self.would_leave(next) {
             self.fail(ErrorId::SoftwareLimitReached, scope);
         } else {
@@ -114,7 +103,7 @@ impl<P: Planner> Axis<P> {
         }
         self.trip(error, 0, Reaction::Ramp, scope);
         let ramp = self.mover.begin_plan();
-        let next = ramp.filter(|next| next.is_finite() && self.is_step(*next));
+        let next = ramp.filter(|next| self.fault_of(*next).is_none());
         if next.is_none() && ramp.is_some() {
             self.mover.hold();
         }

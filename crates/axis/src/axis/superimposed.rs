@@ -564,11 +564,14 @@ impl<P: Planner> Axis<P> {
         let Some(next) = self.mover.step_both(self.feedback.position()) else {
             return;
         };
-        if !next.is_finite() {
-            self.fail(ErrorId::SetpointBroken, scope);
-        } else if !self.is_following() && !self.is_step(next) {
+        let fault = if self.is_following() {
             // A set-point that follows the feedback belongs to no plan.
-            self.fail(ErrorId::SetpointStep, scope);
+            (!next.is_finite()).then_some(ErrorId::SetpointBroken)
+        } else {
+            self.fault_of(next)
+        };
+        if let Some(error) = fault {
+            self.fail(error, scope);
         } else if self.parameters.software_limits.is_some() && self.would_leave(next) {
             self.fail(ErrorId::SoftwareLimitReached, scope);
         } else {

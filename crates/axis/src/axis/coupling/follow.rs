@@ -1,7 +1,7 @@
 //! The motion step of a slave, after that of its master.
 
 use super::super::commands::ROUNDING;
-use super::super::guard::{LAST_SCAN, steps_within};
+use super::super::guard::{LAST_SCAN, Steps};
 use super::super::modulo::is_far;
 use super::super::power::Reaction;
 use super::super::{Axis, Motion};
@@ -670,7 +670,7 @@ impl<P: Planner> Axis<P> {
     /// Whether `next` is no further from the `last` set-point than the axis may move in a scan.
     fn is_step_behind(&self, last: &Setpoint, next: &Setpoint) -> bool {
         let scan = LONGEST * self.planner.cycle();
-        let fits = |limits: &Limits| steps_within(last, next, limits, scan, 0.0);
+        let fits = |limits: &Limits| Steps::within(limits, scan).allow(last, next, 0.0);
         let limits = &self.config.limits;
         fits(limits)
             || fits(
