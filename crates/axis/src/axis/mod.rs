@@ -73,8 +73,8 @@ mod update;
 use crate::fate::Fates;
 use crate::{
     AxisConfig, AxisEvent, AxisId, AxisState, BufferMode, CommandId, ConfigError, DIGITAL, DriveCommand,
-    DriveOrder, DrivePosition, DriveReport, DriveSignals, ErrorId, Event, Fate, QUEUE_MAX, Record, Scope,
-    StartState, state,
+    DriveOrder, DrivePosition, DriveReport, DriveRequest, DriveSignals, ErrorId, Event, Fate, QUEUE_MAX,
+    Record, Scope, StartState, state,
 };
 pub use commands::WorkKind;
 use commands::{Ending, Entry, Work};
@@ -235,8 +235,8 @@ pub struct Axis<P: Planner = Standard> {
     /// How little a scan must check.
     calm: Calm,
     state: AxisState,
-    /// Positions are taken and reported without conversion: no increments, no turns, no shift, and no measured values
-    /// that slaves could follow.
+    /// Positions are taken and published as they are: no increments, no turns, no shift, no shaper, and no measured
+    /// values that slaves could follow.
     is_plain: bool,
     /// The owner is MC_Stop, at rest, and held by its Execute.
     stop_held: bool,
@@ -287,7 +287,8 @@ impl<P: Planner> Axis<P> {
         let powered = config.start == StartState::Standstill;
         let mover = Mover::new(&config, planner.cycle(), powered)?;
         let measured = measured::Measured::new(&config);
-        let is_plain = config.scaling.is_none() && config.modulo.is_none() && !measured.is_there();
+        let is_plain =
+            config.scaling.is_none() && config.modulo.is_none() && !mover.is_shaped() && !measured.is_there();
         Ok(Self {
             id,
             config,
@@ -398,7 +399,9 @@ impl<P: Planner> Axis<P> {
     /// The end of a motion step: computes the published set-point.
     #[inline(always)]
     pub(crate) fn shape(&mut self, scope: &mut Scope<'_>) {
-        self.mover.shape(scope.history);
+        if !self.is_plain {
+            self.mover.shape(scope.history);
+        }
     }
 
     /// Whether the set-point is the actual position and not a planned one: the axis is not in operation.
@@ -561,23 +564,22 @@ impl<P: Planner> Axis<P> {
     /// The drive's command for this scan.
     #[inline(always)]
     pub fn drive_command(&mut self) -> DriveCommand {
-        let rename = if self.calm.is_any() {
-            None
+        let (request, rename) = if self.calm.is_any() {
+            (DriveRequest::Enable, None)
         } else {
-            self.frame.take_rename()
+            (self.drive_request(), self.frame.take_rename())
         };
-        // By reference: a processor that reads a pair of numbers just after they were written one by one has to wait.
-        let shaped;
-        let at = if self.mover.is_shaped() {
-            shaped = self.mover.commanded();
-            &shaped
+        let (position, velocity) = if self.is_plain {
+            let at = self.mover.setpoint();
+            (DrivePosition::Units(at.position), at.velocity)
         } else {
-            self.mover.setpoint()
+            let at = self.mover.commanded();
+            (self.position_at_drive(at.position), at.velocity)
         };
         DriveCommand {
-            request: self.drive_request(),
-            position: self.position_at_drive(at.position),
-            velocity: at.velocity,
+            request,
+            position,
+            velocity,
             rename,
         }
     }
@@ -586,9 +588,6 @@ impl<P: Planner> Axis<P> {
     // the scan's drive command.
     #[inline]
     fn position_at_drive(&self, position: f64) -> DrivePosition {
-        if self.is_plain {
-            return DrivePosition::Units(position);
-        }
         let position = position - self.frame.shift();
         match (&self.config.scaling, &self.modulo) {
             (None, None) => DrivePosition::Units(position),

@@ -40,9 +40,6 @@ impl<P: Planner> Axis<P> {
             && self.latch_usual(&feedback.position)
         {
             debug_assert_eq!(self.calm, self.calmness());
-            if !self.is_plain && self.is_measured() {
-                self.measure_actual(Some(feedback.position));
-            }
             self.signals = feedback.signals;
         } else {
             self.follow_change(feedback, scope);
@@ -51,15 +48,34 @@ impl<P: Planner> Axis<P> {
 
     /// Takes the actual position of an axis with nothing pending, whose earlier positions stay valid. Returns FALSE,
     /// and takes nothing, if a full check is needed.
-    // By reference, as in `drive_command`.
+    // By reference: a processor that reads a pair of numbers just after they were written one by one has to wait.
     #[inline(always)]
     fn latch_usual(&mut self, told: &DrivePosition) -> bool {
-        let position = match (told, &self.modulo) {
-            (DrivePosition::Units(units), _) if self.is_plain => *units,
-            (DrivePosition::Units(units), None) => *units,
-            (DrivePosition::Increments(increments), None) => self.position_at_increment(*increments),
-            (_, Some(_)) => return self.latch_round(*told),
+        match told {
+            DrivePosition::Units(units) if self.is_plain => self.latch_near(*units),
+            _ => self.latch_converted(told),
+        }
+    }
+
+    /// The same for a position that has to be converted, or that slaves may follow.
+    #[inline(never)]
+    fn latch_converted(&mut self, told: &DrivePosition) -> bool {
+        let is_usual = match (told, &self.modulo) {
+            (DrivePosition::Units(units), None) => self.latch_near(*units),
+            (DrivePosition::Increments(increments), None) => {
+                self.latch_near(self.position_at_increment(*increments))
+            }
+            (_, Some(_)) => self.latch_round(*told),
         };
+        if is_usual && self.is_measured() {
+            self.measure_actual(Some(*told));
+        }
+        is_usual
+    }
+
+    /// The same for a position (u) on an axis without turns.
+    #[inline(always)]
+    fn latch_near(&mut self, position: f64) -> bool {
         let is_usual = (position - self.feedback.position()).abs() <= USUAL_STEP;
         if is_usual {
             self.feedback.latch(position);
@@ -119,7 +135,6 @@ impl<P: Planner> Axis<P> {
     }
 
     /// [`Axis::latch_usual`] for a modulo axis, whose positions are never far apart.
-    #[inline(never)]
     fn latch_round(&mut self, told: DrivePosition) -> bool {
         if !told.is_finite() {
             return false;
@@ -132,7 +147,6 @@ impl<P: Planner> Axis<P> {
         true
     }
 
-    #[inline(never)]
     pub(super) fn position_at_increment(&self, increments: i64) -> f64 {
         match self.config.scaling {
             Some(scaling) => scaling.to_units(increments) + self.frame.shift(),
@@ -446,11 +460,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The request to the power stage in this scan.
-    #[inline]
     pub(super) fn drive_request(&self) -> DriveRequest {
-        if self.calm.is_any() {
-            return DriveRequest::Enable;
-        }
         let ramping = matches!(self.mover.motion(), Motion::Run { .. }) || !self.mover.is_through();
         if self.failure.reset().is_some() && self.is_resetting_drive() {
             DriveRequest::FaultReset
