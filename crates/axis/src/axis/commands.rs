@@ -368,7 +368,8 @@ impl Work {
     };
 
     /// The properties of this work.
-    #[inline]
+    // Inlined, so that a caller finds the property it asks for without the others.
+    #[inline(always)]
     pub const fn manner(&self) -> Manner {
         match *self {
             Self::Position(position) => Manner {
