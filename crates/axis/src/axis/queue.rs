@@ -3,7 +3,7 @@
 use super::commands::Entry;
 use crate::{CommandId, QUEUE_MAX};
 
-/// First in, first out; at most [`QUEUE_MAX`] entries.
+/// First in, first out; at most [`QUEUE_MAX`] entries, without gaps.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Queue {
     entries: [Option<Entry>; QUEUE_MAX],
@@ -59,11 +59,11 @@ impl Queue {
     }
 
     pub fn iter(&self) -> impl Iterator<Item = &Entry> {
-        self.entries.iter().flatten()
+        self.entries.iter().map_while(Option::as_ref)
     }
 
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut Entry> {
-        self.entries.iter_mut().flatten()
+        self.entries.iter_mut().map_while(Option::as_mut)
     }
 
     pub fn contains(&self, id: CommandId) -> bool {
