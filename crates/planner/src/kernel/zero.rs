@@ -34,6 +34,10 @@ pub fn zero(low: Point, high: Point, mut function: impl FnMut(f64) -> Point) -> 
         (high, low)
     };
     let mut best = new;
+    let is_found = |best: &Point| best.value.abs() <= best.noise;
+    if is_found(&best) {
+        return (best, 0);
+    }
     let mut part = by_slopes(&new, &old, &old).unwrap_or_else(|| new.value / (new.value - old.value));
     let narrow = f64::EPSILON * (high.at - low.at).abs();
     let mut wanted = PATIENCE * (high.at - low.at).abs();
@@ -41,7 +45,7 @@ pub fn zero(low: Point, high: Point, mut function: impl FnMut(f64) -> Point) -> 
         let width = old.at - new.at;
         // A step of less than this counts as no step.
         let least = 2.0 * f64::EPSILON * max(new.at.abs(), old.at.abs()) / width.abs();
-        if best.value.abs() <= best.noise || least >= 0.5 || width.abs() <= narrow {
+        if least >= 0.5 || width.abs() <= narrow {
             return (best, step - 1);
         }
         let point = function(new.at + width * min(max(part, least), 1.0 - least));
@@ -54,6 +58,9 @@ pub fn zero(low: Point, high: Point, mut function: impl FnMut(f64) -> Point) -> 
         new = point;
         if point.value.abs() < best.value.abs() {
             best = point;
+            if is_found(&best) {
+                return (best, step);
+            }
         }
         wanted *= core::f64::consts::FRAC_1_SQRT_2;
         part = if (old.at - new.at).abs() > wanted {

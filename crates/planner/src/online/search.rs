@@ -124,11 +124,16 @@ impl Stop {
         }
     }
 
-    /// The same as [`Stop::ahead`], if its start moves along a push with `input`.
+    /// The same as [`Stop::ahead`], if its start moves along a push with `input`: with the slope, except on the
+    /// target, where no root needs it.
     fn ahead_of(&self, at: f64, side: f64, input: f64) -> Point {
+        let ahead = self.ahead(at, side);
+        if self.beyond.abs() <= self.noise {
+            return ahead;
+        }
         Point {
             slope: side * self.ramp.speed_of_end(input),
-            ..self.ahead(at, side)
+            ..ahead
         }
     }
 }
