@@ -1,6 +1,7 @@
 //! Third order: `(x, v, a)` to `(target, 0, 0)` in least time.
 
 use super::root::{Intercept, Rising};
+use super::second::second_in_three;
 use super::{NOISE, Sides, Span, Spans, raised_to, second};
 use crate::math::{max, min, sqrt};
 
@@ -199,9 +200,9 @@ fn push_up<const N: usize>(spans: &mut Appended<'_, N>, distance: f64, start: St
     let brake = bounds.a.minus;
     let arrest = start.v + 0.5 * start.a * start.a.abs();
     let top = raised_to(arrest, bounds.v.plus);
-    let push = second(start.v, start.a, top, bounds.a);
+    let push = second_in_three(start.v, start.a, top, bounds.a);
     let mut state = start;
-    for span in push.iter() {
+    for span in push.iter().filter(|span| span.duration > 0.0) {
         let end = state.after(span.duration, span.input);
         let grows = span.input > 0.0 || (span.input == 0.0 && state.a > 0.0);
         // A stop that starts upwards first continues the push: nothing grows yet (R6).
