@@ -21,6 +21,7 @@ mod zero;
 pub use root::{MAX_STEPS, falling_root};
 pub use scale::Scale;
 pub use second::second;
+pub(crate) use second::second_in_three;
 pub use spans::{Span, Spans};
 pub use third::{Bounds, Profile, THIRD_SPANS, third};
 pub(crate) use third::{append_third, gain};

@@ -9,15 +9,13 @@ use crate::math::{max, sqrt};
 /// An `a` outside its bounds is brought inside first, at full input. Closed form; one square root.
 pub fn second(v: f64, a: f64, target: f64, rate: Sides) -> Spans<3> {
     let mut spans = Spans::new();
-    for span in second_in_three(v, a, target, rate) {
-        spans.push(span.duration, span.input);
-    }
+    spans.extend_from(&second_in_three(v, a, target, rate));
     spans
 }
 
 /// The same as [`second`], always as three spans, of which some may have no length: a list would go through memory.
 #[inline]
-pub(super) fn second_in_three(v: f64, a: f64, target: f64, rate: Sides) -> [Span; 3] {
+pub(crate) fn second_in_three(v: f64, a: f64, target: f64, rate: Sides) -> [Span; 3] {
     let change = target - v;
     // The change of `v` while `a` is brought to zero as fast as the input allows.
     let arrest = 0.5 * a * a.abs();

@@ -63,7 +63,12 @@ impl<const N: usize> Spans<N> {
 
     /// Appends all of `other`.
     pub fn extend<const M: usize>(&mut self, other: &Spans<M>) {
-        for span in other.iter() {
+        self.extend_from(other.as_slice());
+    }
+
+    /// Appends all of `other`.
+    pub(crate) fn extend_from(&mut self, other: &[Span]) {
+        for span in other {
             self.push(span.duration, span.input);
         }
     }

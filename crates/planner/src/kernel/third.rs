@@ -2,7 +2,7 @@
 
 use super::root::{Intercept, Rising};
 use super::second::second_in_three;
-use super::{NOISE, Sides, Span, Spans, raised_to, second};
+use super::{NOISE, Sides, Span, Spans, raised_to};
 use crate::math::{max, min, sqrt};
 
 /// Largest number of spans of a [`third`] profile: three of the push, a cruise, three of the stop.
@@ -54,7 +54,7 @@ impl State {
         }
     }
 
-    fn after_all<const N: usize>(self, spans: &Spans<N>) -> Self {
+    fn after_all(self, spans: &[Span]) -> Self {
         spans
             .iter()
             .fold(self, |state, span| state.after(span.duration, span.input))
@@ -67,29 +67,29 @@ impl State {
 /// closed forms, or one root of at most [`MAX_STEPS`](super::MAX_STEPS) steps (R4 to R10).
 pub fn third(x: f64, v: f64, a: f64, target: f64, bounds: &Bounds) -> Profile {
     let mut spans = Spans::new();
-    let stop = second(v, a, 0.0, bounds.a);
-    let steps = append_third(&mut spans, &stop, (x, v, a), target, bounds);
+    let stop = second_in_three(v, a, 0.0, bounds.a);
+    let gap = target - x - State { x: 0.0, v, a }.after_all(&stop).x;
+    let steps = append_third(&mut spans, (&stop, gap), (x, v, a), target, bounds);
     Profile { spans, steps }
 }
 
-/// Appends the spans of [`third`] to `spans`, with a known fastest `stop`: the path from `(v, a)` to `(0, 0)`.
-/// Returns the steps of root finding.
+/// Appends the spans of [`third`] to `spans`, with a known fastest `stop`: the path from `(v, a)` to `(0, 0)`,
+/// which ends short of the target by the `gap`. Returns the steps of root finding.
 pub(crate) fn append_third<const N: usize>(
     spans: &mut Spans<N>,
-    stop: &Spans<3>,
+    (stop, gap): (&[Span; 3], f64),
     (x, v, a): (f64, f64, f64),
     target: f64,
     bounds: &Bounds,
 ) -> u32 {
     let distance = target - x;
     let start = State { x: 0.0, v, a };
-    let gap = distance - start.after_all(stop).x;
-    let t = stop.duration();
+    let t = stop.iter().map(|span| span.duration).sum();
     // The input changes `a` by at most twice its bound, for any duration of the stop.
     let changed = min(t, a.abs() + 2.0 * max(bounds.a.plus, bounds.a.minus));
     let added_up = x.abs() + target.abs() + t * (v.abs() + t * (a.abs() + changed));
     if gap.abs() <= NOISE * added_up {
-        spans.extend(stop);
+        spans.extend_from(stop);
         0
     } else if gap > 0.0 {
         push_up(&mut Appended { spans, side: 1.0 }, distance, start, bounds)

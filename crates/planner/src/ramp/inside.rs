@@ -4,7 +4,7 @@
 //! Everything is in the kernel's units and mirrored so that the velocity is not negative.
 
 use super::path::{ROUNDING, zeros};
-use crate::kernel::{Bounds, ON_LIMIT, Sides, Spans, falling_root, second};
+use crate::kernel::{Bounds, ON_LIMIT, Sides, Span, Spans, falling_root, second, second_in_three};
 use crate::math::{max, min, sqrt};
 
 /// A state in the kernel's units.
@@ -25,7 +25,7 @@ impl State {
         }
     }
 
-    pub(super) fn after_all<const N: usize>(self, spans: &Spans<N>) -> Self {
+    pub(super) fn after_all(self, spans: &[Span]) -> Self {
         spans
             .iter()
             .fold(self, |state, span| state.after(span.duration, span.input))
@@ -109,7 +109,7 @@ pub(super) struct Lead {
     /// The state after it.
     pub(super) state: State,
     /// The arrest from there.
-    pub(super) arrest: Spans<3>,
+    pub(super) arrest: [Span; 3],
     /// The velocity at the end of the arrest.
     pub(super) rest: f64,
     /// Largest number of root steps.
@@ -324,7 +324,7 @@ fn hasten(state: State, limit: f64, goal: f64, low: f64, bounds: &Box4) -> (Span
         if bounds.turns && state.a < -bounds.a.plus {
             // It would be back at the acceleration of the other side before the velocity is inside.
             let release = second(state.a, state.j, -bounds.a.plus, Sides::both(bounds.jerk));
-            inside.min(state.after_all(&release).v)
+            inside.min(state.after_all(release.as_slice()).v)
         } else {
             inside
         }
@@ -345,8 +345,8 @@ fn hasten(state: State, limit: f64, goal: f64, low: f64, bounds: &Box4) -> (Span
 }
 
 /// The spans that bring acceleration and jerk to zero as soon as possible.
-fn arrest(state: State, jerk: f64) -> Spans<3> {
-    second(state.a, state.j, 0.0, Sides::both(jerk))
+fn arrest(state: State, jerk: f64) -> [Span; 3] {
+    second_in_three(state.a, state.j, 0.0, Sides::both(jerk))
 }
 
 /// The velocity at which they end.
@@ -385,7 +385,7 @@ fn push_down(state: State, low: f64, high: f64, bounds: &Bounds) -> (Spans<4>, u
         return (Spans::new(), 0);
     };
     let beyond = |time: f64| {
-        let state = state.after_all(&push.until::<4>(time));
+        let state = state.after_all(push.until::<4>(time).as_slice());
         let rest = arrested(state, bounds.a.plus);
         (top(state, rest) - high).min(rest - low)
     };

@@ -442,7 +442,13 @@ impl Ramps {
             steps
         } else {
             ramp.is_plain_stop = viable && goal == 0.0;
-            append_third(spans, &lead.arrest, (v, a, j), goal, &own(dips))
+            append_third(
+                spans,
+                (&lead.arrest, goal - lead.rest),
+                (v, a, j),
+                goal,
+                &own(dips),
+            )
         };
         ramp.steps = lead.steps.max(steps);
         // The acceleration that is reached while the jerk goes to zero as fast as it can.
