@@ -22,6 +22,7 @@ pub use root::{MAX_STEPS, falling_root};
 pub use scale::Scale;
 pub use second::second;
 pub(crate) use second::second_in_three;
+pub(crate) use spans::Appended;
 pub use spans::{Span, Spans};
 pub use third::{Bounds, Profile, THIRD_SPANS, third};
 pub(crate) use third::{append_third, gain};

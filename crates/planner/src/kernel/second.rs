@@ -9,7 +9,7 @@ use crate::math::{max, sqrt};
 /// An `a` outside its bounds is brought inside first, at full input. Closed form; one square root.
 pub fn second(v: f64, a: f64, target: f64, rate: Sides) -> Spans<3> {
     let mut spans = Spans::new();
-    spans.extend_from(&second_in_three(v, a, target, rate));
+    spans.towards(1.0).extend(&second_in_three(v, a, target, rate));
     spans
 }
 

@@ -63,14 +63,12 @@ impl<const N: usize> Spans<N> {
 
     /// Appends all of `other`.
     pub fn extend<const M: usize>(&mut self, other: &Spans<M>) {
-        self.extend_from(other.as_slice());
+        self.towards(1.0).extend(other.as_slice());
     }
 
-    /// Appends all of `other`.
-    pub(crate) fn extend_from(&mut self, other: &[Span]) {
-        for span in other {
-            self.push(span.duration, span.input);
-        }
+    /// The list, for appending the spans of a problem that is mirrored if `side` is -1.
+    pub(crate) const fn towards(&mut self, side: f64) -> Appended<'_, N> {
+        Appended { spans: self, side }
     }
 
     /// The spans in order of time.
@@ -150,20 +148,48 @@ impl<const N: usize> Spans<N> {
     /// The spans of the mirrored problem.
     #[must_use]
     pub fn mirrored(mut self) -> Self {
-        self.mirror();
-        self
-    }
-
-    /// The same as [`Spans::mirrored`], in place.
-    pub fn mirror(&mut self) {
         for span in self.list.iter_mut().take(self.len) {
             span.input = -span.input;
         }
+        self
     }
 
     /// Removes all spans.
     pub const fn clear(&mut self) {
         self.len = 0;
+    }
+}
+
+/// A list to which spans are appended, each with its input times `side`.
+///
+/// To mirror the list afterwards would take longer: the sign of a number is changed in a single byte, and a processor
+/// that reads the whole number next waits until that byte is in its cache.
+pub(crate) struct Appended<'a, const N: usize> {
+    spans: &'a mut Spans<N>,
+    side: f64,
+}
+
+impl<const N: usize> Appended<'_, N> {
+    /// The same for the mirrored problem.
+    pub(crate) const fn mirrored(&mut self) -> Appended<'_, N> {
+        self.spans.towards(-self.side)
+    }
+
+    /// Appends a span.
+    pub(crate) fn push(&mut self, duration: f64, input: f64) {
+        self.spans.push(duration, self.side * input);
+    }
+
+    /// Appends all of `other`.
+    pub(crate) fn extend(&mut self, other: &[Span]) {
+        for span in other {
+            self.push(span.duration, span.input);
+        }
+    }
+
+    /// Number of spans in the list.
+    pub(crate) const fn len(&self) -> usize {
+        self.spans.len()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::root::{Intercept, Rising};
 use super::second::second_in_three;
-use super::{NOISE, Sides, Span, Spans, raised_to};
+use super::{Appended, NOISE, Sides, Span, Spans, raised_to};
 use crate::math::{max, min, sqrt};
 
 /// Largest number of spans of a [`third`] profile: three of the push, a cruise, three of the stop.
@@ -69,14 +69,14 @@ pub fn third(x: f64, v: f64, a: f64, target: f64, bounds: &Bounds) -> Profile {
     let mut spans = Spans::new();
     let stop = second_in_three(v, a, 0.0, bounds.a);
     let gap = target - x - State { x: 0.0, v, a }.after_all(&stop).x;
-    let steps = append_third(&mut spans, (&stop, gap), (x, v, a), target, bounds);
+    let steps = append_third(&mut spans.towards(1.0), (&stop, gap), (x, v, a), target, bounds);
     Profile { spans, steps }
 }
 
 /// Appends the spans of [`third`] to `spans`, with a known fastest `stop`: the path from `(v, a)` to `(0, 0)`,
 /// which ends short of the target by the `gap`. Returns the steps of root finding.
 pub(crate) fn append_third<const N: usize>(
-    spans: &mut Spans<N>,
+    spans: &mut Appended<'_, N>,
     (stop, gap): (&[Span; 3], f64),
     (x, v, a): (f64, f64, f64),
     target: f64,
@@ -89,18 +89,13 @@ pub(crate) fn append_third<const N: usize>(
     let changed = min(t, a.abs() + 2.0 * max(bounds.a.plus, bounds.a.minus));
     let added_up = x.abs() + target.abs() + t * (v.abs() + t * (a.abs() + changed));
     if gap.abs() <= NOISE * added_up {
-        spans.extend_from(stop);
+        spans.extend(stop);
         0
     } else if gap > 0.0 {
-        push_up(&mut Appended { spans, side: 1.0 }, distance, start, bounds)
+        push_up(spans, distance, start, bounds)
     } else {
         let mirrored = State { x: 0.0, v: -v, a: -a };
-        push_up(
-            &mut Appended { spans, side: -1.0 },
-            -distance,
-            mirrored,
-            &bounds.mirrored(),
-        )
+        push_up(&mut spans.mirrored(), -distance, mirrored, &bounds.mirrored())
     }
 }
 
@@ -166,17 +161,7 @@ fn between_switches(t: f64, x: f64) -> f64 {
     -t * (0.5 * x + t / 6.0)
 }
 
-/// A list of spans, to which those of a problem are appended. The problem is mirrored if `side` is -1.
-struct Appended<'a, const N: usize> {
-    spans: &'a mut Spans<N>,
-    side: f64,
-}
-
 impl<const N: usize> Appended<'_, N> {
-    fn push(&mut self, duration: f64, input: f64) {
-        self.spans.push(duration, self.side * input);
-    }
-
     /// The downward stop from `a` whose squared depth without a bound is `drop` (R5).
     fn stop(&mut self, a: f64, drop: f64, brake: f64) {
         if drop > brake * brake {

@@ -4,7 +4,7 @@
 //! Everything is in the kernel's units and mirrored so that the velocity is not negative.
 
 use super::path::{ROUNDING, zeros};
-use crate::kernel::{Bounds, ON_LIMIT, Sides, Span, Spans, falling_root, second, second_in_three};
+use crate::kernel::{Appended, Bounds, ON_LIMIT, Sides, Span, Spans, falling_root, second, second_in_three};
 use crate::math::{max, min, sqrt};
 
 /// A state in the kernel's units.
@@ -141,7 +141,7 @@ impl Lead {
     #[cold]
     pub(super) fn come_inside<const N: usize>(
         &mut self,
-        spans: &mut Spans<N>,
+        spans: &mut Appended<'_, N>,
         goal: f64,
         (low, range): (f64, Sides),
         bounds: &Box4,
@@ -170,13 +170,13 @@ impl Lead {
 
     fn add<const N: usize, const M: usize>(
         &mut self,
-        spans: &mut Spans<N>,
+        spans: &mut Appended<'_, N>,
         more: &Spans<M>,
         steps: u32,
         jerk: f64,
     ) {
         if !more.is_empty() {
-            spans.extend(more);
+            spans.extend(more.as_slice());
             *self = Self {
                 steps: self.steps.max(steps),
                 ..Self::none(self.state.led(more), jerk)

@@ -3,7 +3,9 @@
 use super::inside::{self, Box4, LEAD_SPANS, Lead, State};
 use super::slope::{Box3, Slope};
 use super::turn::TURN_SPANS;
-use crate::kernel::{Bounds, ON_LIMIT, Profile, Scale, Sides, Spans, append_third, gain, second, third};
+use crate::kernel::{
+    Bounds, ON_LIMIT, Profile, Scale, Sides, Spans, append_third, gain, second_in_three, third,
+};
 use crate::{DirectedLimits, Order, Setpoint};
 
 /// Largest number of spans of a ramp: getting inside the limits, then a ramp that may turn.
@@ -246,6 +248,7 @@ impl Ramps {
     pub(crate) fn lay(&self, ramp: &mut Ramp, start: &Setpoint, goal: f64, heading: f64, course: Course) {
         #[cfg(feature = "count")]
         super::count::add();
+        // Mirrored so that the motion starts forwards. Its spans are mirrored back as they are appended.
         let state = State {
             v: heading * start.velocity,
             a: heading * start.acceleration,
@@ -260,12 +263,9 @@ impl Ramps {
         ramp.spans.clear();
         ramp.is_plain_stop = false;
         match self.order {
-            Order::Two => self.second_order(ramp, state.v, goal, range.plus, course),
-            Order::Three => self.third_order(ramp, state, goal, range, course),
-            Order::Four => self.fourth_order(ramp, state, goal, range, course),
-        }
-        if heading < 0.0 {
-            ramp.spans.mirror();
+            Order::Two => self.second_order(ramp, heading, state.v, goal, range.plus, course),
+            Order::Three => self.third_order(ramp, heading, state, goal, range, course),
+            Order::Four => self.fourth_order(ramp, heading, state, goal, range, course),
         }
     }
 
@@ -356,8 +356,16 @@ impl Ramps {
     }
 
     /// Order 2: one straight line, or two if the velocity must come inside its limit first (R12).
-    fn second_order(&self, ramp: &mut Ramp, velocity: f64, goal: f64, limit: f64, course: Course) {
-        let spans = &mut ramp.spans;
+    fn second_order(
+        &self,
+        ramp: &mut Ramp,
+        heading: f64,
+        velocity: f64,
+        goal: f64,
+        limit: f64,
+        course: Course,
+    ) {
+        let spans = &mut ramp.spans.towards(heading);
         let sides = self.sides(goal, false);
         ramp.viable = velocity <= limit && velocity >= 0.0;
         ramp.steps = 0;
@@ -370,7 +378,7 @@ impl Ramps {
         ramp.lead = spans.len();
         let change = goal - velocity;
         if goal < 0.0 && self.splits(course) {
-            spans.extend(&self.turning(&setpoint(velocity, 0.0, 0.0), goal).0);
+            spans.extend(self.turning(&setpoint(velocity, 0.0, 0.0), goal).0.as_slice());
         } else if change > 0.0 {
             spans.push(change / sides.plus, sides.plus);
         } else {
@@ -379,7 +387,15 @@ impl Ramps {
     }
 
     /// Order 3: `(velocity, acceleration)` to `(goal, 0)` (R3).
-    fn third_order(&self, ramp: &mut Ramp, start: State, goal: f64, range: Sides, course: Course) {
+    fn third_order(
+        &self,
+        ramp: &mut Ramp,
+        heading: f64,
+        start: State,
+        goal: f64,
+        range: Sides,
+        course: Course,
+    ) {
         let start = Slope {
             v: start.v,
             a: start.a,
@@ -397,19 +413,27 @@ impl Ramps {
         ramp.steps = steps;
         let state = start.after_all(&lead);
         let dips = goal >= 0.0 && state.rest() < 0.0;
-        ramp.spans.extend(&lead);
+        let spans = &mut ramp.spans.towards(heading);
+        spans.extend(lead.as_slice());
         if self.splits(course) && (dips || goal < 0.0) {
             let (turning, steps) = self.turning(&setpoint(state.v, state.a, 0.0), goal);
-            ramp.spans.extend(&turning);
+            spans.extend(turning.as_slice());
             ramp.steps = ramp.steps.max(steps);
         } else {
-            ramp.spans
-                .extend(&second(state.v, state.a, goal, self.sides(goal, dips)));
+            spans.extend(&second_in_three(state.v, state.a, goal, self.sides(goal, dips)));
         }
     }
 
     /// Order 4: `(velocity, acceleration, jerk)` to `(goal, 0, 0)` (R4 to R10).
-    fn fourth_order(&self, ramp: &mut Ramp, start: State, goal: f64, range: Sides, course: Course) {
+    fn fourth_order(
+        &self,
+        ramp: &mut Ramp,
+        heading: f64,
+        start: State,
+        goal: f64,
+        range: Sides,
+        course: Course,
+    ) {
         let may_turn = goal < 0.0 || course == Course::Free;
         let bounds = Box4 {
             a: Sides {
@@ -427,7 +451,7 @@ impl Ramps {
             a: Sides::both(self.jerk),
         };
         let low = if may_turn { -range.minus } else { 0.0 };
-        let spans = &mut ramp.spans;
+        let spans = &mut ramp.spans.towards(heading);
         let mut lead = Lead::none(start, self.jerk);
         let viable = lead.is_viable(low, range.plus, &bounds);
         if !viable {
@@ -438,7 +462,7 @@ impl Ramps {
         let State { v, a, j } = lead.state;
         let steps = if self.splits(course) && (dips || goal < 0.0) {
             let (turning, steps) = self.turning(&setpoint(v, a, j), goal);
-            spans.extend(&turning);
+            spans.extend(turning.as_slice());
             steps
         } else {
             ramp.is_plain_stop = viable && goal == 0.0;
