@@ -6,7 +6,7 @@
 //! with buffered moves. Set-points are checked independently, by their backward differences. The numbers are seeded;
 //! a failing case prints its own.
 //!
-//! `cargo test -p standstill-axis --test all chains:: -- --nocapture` prints the tables of `docs/buffering.md`.
+//! `cargo test -p standstill-tests --test axis chains:: -- --nocapture` prints the tables of `docs/buffering.md`.
 
 use crate::differences::Watch;
 use standstill_axis::{

@@ -53,10 +53,10 @@ pub const CRATES: [(&str, &str); 3] = [
     ("crates/fb", "../mutant-hook"),
 ];
 
-/// The crates whose tests run for points that the scripts do not detect, and a test of theirs that takes too long
-/// for this: the search through all states.
-const TESTED: [&str; 6] = ["axis", "fb", "blocks", "drives", "scan", "soak"];
-const TOO_LONG: &str = "search";
+/// The packages whose tests run for points that the scripts do not detect, and programs of theirs that do not: the search
+/// through all states takes too long for this, and the others test crates above.
+const TESTED: [&str; 7] = ["axis", "fb", "blocks", "drives", "scan", "soak", "tests"];
+const NOT_RUN: [&str; 3] = ["search", "script", "trace"];
 
 pub struct Copy {
     pub root: PathBuf,
@@ -178,7 +178,8 @@ impl Copy {
         let tests = messages(&done.stdout).filter_map(|message| {
             let program = message["executable"].as_str()?.into();
             let folder = Path::new(message["manifest_path"].as_str()?).parent()?.into();
-            let asked = message["profile"]["test"].as_bool()? && message["target"]["name"] != TOO_LONG;
+            let is_test = message["profile"]["test"].as_bool()?;
+            let asked = is_test && !NOT_RUN.contains(&message["target"]["name"].as_str()?);
             asked.then_some(Test { program, folder })
         });
         Ok(tests.collect())

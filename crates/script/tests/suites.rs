@@ -297,7 +297,7 @@ fn the_scripts_of_the_suite_are_in_the_canonical_layout() {
 /// command renews them.
 #[test]
 fn goldens_of_version_1_are_met_and_say_how_they_are_renewed() {
-    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/version_1");
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("../script/tests/version_1");
     let folder = Folder::new("version_1");
     for entry in fs::read_dir(&kept).expect("it is there") {
         let file = entry.expect("readable").path();

@@ -72,12 +72,19 @@ fn every_file_of_tests_is_part_of_a_program() {
     let crates = fs::read_dir(root().join("crates"))
         .unwrap()
         .map(|entry| entry.unwrap().path());
+    let together = fs::read_to_string(root().join("crates/tests/Cargo.toml")).unwrap();
     for folder in crates {
         let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
         if !manifest.contains("autotests = false") {
             continue;
         }
         let main = fs::read_to_string(folder.join("tests/main.rs")).unwrap();
+        let name = folder.file_name().unwrap().to_str().unwrap();
+        assert!(
+            manifest.contains("\npath = \"tests/main.rs\"\n")
+                || together.contains(&format!("\npath = \"../{name}/tests/main.rs\"\n")),
+            "neither {name} nor crates/tests builds its tests"
+        );
         for entry in fs::read_dir(folder.join("tests")).unwrap() {
             let path = entry.unwrap().path();
             let name = path.file_stem().unwrap().to_str().unwrap();

@@ -1,7 +1,7 @@
 """Least numbers of scans until a slave is on the law of its gear, by linear programming: makes lock_times.json.
 
     python3 lock_times.py draw SEED > cases.json
-    STANDSTILL_CASES=$PWD/cases.json cargo test -p standstill-axis --test all runs_for -- --ignored
+    STANDSTILL_CASES=$PWD/cases.json cargo test -p standstill-tests --test axis runs_for -- --ignored
     python3 lock_times.py solve cases.json > lock_times.json      (needs SciPy)
 
 The run in the middle tells where the slave starts and where the master is in each scan; nothing of how the slave moves

@@ -1,7 +1,7 @@
 //! Random cams, masters and limits, checked by independent arithmetic. The limits of the slave hold in every scan, a
 //! slave on the curve is on it, and in sync it is at its master's place. A slave that can get in step does.
 //!
-//! `CAM_EPISODES=100000 cargo test -p standstill-axis --test all --release on_cam::random` plays this number of
+//! `CAM_EPISODES=100000 cargo test -p standstill-tests --test axis --release on_cam::random` plays this number of
 //! episodes, from `CAM_FIRST` on. With `CAM_LOOK` set it prints cam, limits and events of each, and stops at the
 //! first snap above its limit.
 
