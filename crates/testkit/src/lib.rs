@@ -1,9 +1,12 @@
-//! Random numbers for tests: all come from a seed and are the same on every machine.
+//! Random numbers for tests: all come from a seed and are the same on every machine. Also validators of other projects.
 
 #![no_std]
 
 #[cfg(not(target_os = "none"))]
 extern crate std;
+
+#[cfg(not(target_os = "none"))]
+pub mod peers;
 
 /// Whether `STANDSTILL_SEARCH` is in the environment, as in `.ci/run`: then long tests run in full.
 #[cfg(not(target_os = "none"))]

@@ -7,4 +7,8 @@ use libfuzzer_sys::fuzz_target;
 #[path = "../../../st/tests/damage/play.rs"]
 mod play;
 
-fuzz_target!(|bytes: &[u8]| play::play(bytes));
+fn is_valid(module: &[u8]) {
+    wasmparser::validate(module).expect("a valid module");
+}
+
+fuzz_target!(|bytes: &[u8]| play::play(bytes, is_valid));

@@ -21,6 +21,10 @@ fn programs() -> Vec<Vec<u8>> {
     paths.iter().map(|path| fs::read(path).unwrap()).collect()
 }
 
+fn is_valid(module: &[u8]) {
+    standstill_testkit::peers::module(module).expect("a valid module");
+}
+
 fn damaged(random: &mut Random, programs: &[Vec<u8>]) -> Vec<u8> {
     let mut text = programs[random.place(programs.len())].clone();
     for _ in 0..=random.place(5) {
@@ -55,7 +59,7 @@ fn damaged(random: &mut Random, programs: &[Vec<u8>]) -> Vec<u8> {
 fn no_damage_to_a_program_leads_to_a_panic() {
     let programs = programs();
     assert!(programs.len() > 10);
-    programs.iter().for_each(|program| play::play(program));
+    programs.iter().for_each(|program| play::play(program, is_valid));
     let first = given("STANDSTILL_ST_SEED", 0);
     for seed in first..first + given("STANDSTILL_ST_DAMAGE", cases(3000)) {
         // In a longer run this line shows the progress.
@@ -64,7 +68,7 @@ fn no_damage_to_a_program_leads_to_a_panic() {
         }
         let text = damaged(&mut Random(seed), &programs);
         let shown = String::from_utf8_lossy(&text).into_owned();
-        let result = std::panic::catch_unwind(|| play::play(&text));
+        let result = std::panic::catch_unwind(|| play::play(&text, is_valid));
         assert!(result.is_ok(), "seed {seed}\n{shown}");
     }
 }
