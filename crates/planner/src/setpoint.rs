@@ -31,6 +31,7 @@ impl Setpoint {
     }
 
     /// At a constant `velocity` (u/s), at `position` (u).
+    #[inline]
     pub const fn at_velocity(position: f64, velocity: f64) -> Self {
         Self {
             velocity,
@@ -46,6 +47,7 @@ impl Setpoint {
     }
 
     /// The same motion at position 0, where positions have the finest resolution.
+    #[inline]
     #[must_use]
     pub const fn at_origin(&self) -> Self {
         self.moved_to(0.0)

@@ -38,6 +38,7 @@ pub struct Lead<'a, Plan> {
 
 impl<'a, Plan> Lead<'a, Plan> {
     /// A whole plan, as it is.
+    #[inline]
     pub const fn whole(plan: &'a Plan) -> Self {
         Self {
             plan,
