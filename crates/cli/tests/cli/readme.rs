@@ -101,11 +101,19 @@ fn the_mistake_is_reported_as_shown() {
 }
 
 #[test]
-fn the_run_command_runs() {
-    let console = blocks("console").remove(0);
-    let line = console.lines().find(|line| line.contains("-- run ")).unwrap();
-    let (build, script) = line.split_once(" -- run ").unwrap();
-    assert_eq!(build, "$ cargo run -r -p standstill-cli --no-default-features");
-    let output = standstill(&root(), &["run", script]);
-    assert_eq!(output.status, 0);
+fn the_run_commands_run() {
+    let console = blocks("console").concat();
+    let lines = console.lines().filter_map(|line| line.split_once(" -- run "));
+    let (builds, scripts): (Vec<_>, Vec<_>) = lines.unzip();
+    assert_eq!(
+        builds,
+        [
+            "$ cargo run -r -p standstill-cli --no-default-features",
+            "$ cargo run --release"
+        ]
+    );
+    for script in scripts {
+        let output = standstill(&root(), &["run", script]);
+        assert_eq!(output.status, 0, "{script}");
+    }
 }
