@@ -83,7 +83,6 @@ impl McJog {
         inputs: &Inputs,
         context: &mut Context<'_, P>,
     ) -> Result<Given, ErrorId> {
-        let replaces = self.given.map(|given| given.id);
         let (axis, scope) = context.axis(inputs.axis)?;
         let dynamics = Dynamics {
             velocity: inputs.velocity,
@@ -97,13 +96,7 @@ impl McJog {
             distance: inputs.distance,
             dynamics,
         };
-        let id = axis.command(
-            &Request {
-                replaces,
-                ..Request::aborting(command)
-            },
-            scope,
-        )?;
+        let id = axis.command(&Request::aborting(command), scope)?;
         Ok(Given {
             axis: inputs.axis,
             id,
@@ -130,6 +123,12 @@ impl McJog {
         let Some(forward) = self.held else {
             return self.release(context);
         };
+        if self.given.is_some_and(|given| given.axis != inputs.axis) {
+            // This press moves another axis, and no button holds the motion of the one before.
+            let released = self.release(context);
+            self.given = None;
+            released?;
+        }
         match self.press(forward, inputs, context) {
             Ok(given) => {
                 self.given = Some(given);
