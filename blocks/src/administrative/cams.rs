@@ -115,8 +115,12 @@ pub struct Sample {
     pub velocity: f64,
     /// Length of a turn (u) of a modulo axis.
     pub turn: Option<f64>,
-    /// Changes whenever the coordinates are moved. Positions before and after a move cannot be compared.
+    /// Position and velocity are those of the set-point, which are exact.
+    pub is_set: bool,
+    /// Changes whenever the coordinates are moved.
     pub coordinates: u32,
+    /// By how much all moves of the coordinates together have moved positions (u).
+    pub moved: f64,
 }
 
 impl Sample {
@@ -137,7 +141,17 @@ impl Sample {
         }
     }
 
-    /// The signed distance (u) since `before`. On a modulo axis several distances fit the positions; this is the
+    /// The sample `before` in the coordinates of this one.
+    fn in_these_coordinates(&self, before: Self) -> Self {
+        Self {
+            position: before.position + (self.moved - before.moved),
+            coordinates: self.coordinates,
+            moved: self.moved,
+            ..before
+        }
+    }
+
+    /// The signed distance (u) since `before`, which has the same coordinates. On a modulo axis several distances fit the positions; this is the
     /// one nearest to the prediction from the velocities.
     fn way_since(&self, before: &Self) -> f64 {
         let way = self.position - before.position;
@@ -174,18 +188,25 @@ impl Cams {
         tracks: &mut [CamTrack],
         now: &Sample,
     ) -> u32 {
-        let before = self.before.replace(*now);
-        let comparable = before.filter(|before| before.coordinates == now.coordinates);
-        let way = comparable.map_or(0.0, |before| now.way_since(&before));
+        let known = self.before.replace(*now);
+        let is_renamed = known.is_some_and(|before| before.coordinates != now.coordinates);
+        let was_renamed = core::mem::replace(&mut self.is_renamed, is_renamed);
+        let before = now.in_these_coordinates(known.unwrap_or(*now));
+        let is_still = now.velocity == 0.0 && before.velocity == 0.0;
+        let way = if is_renamed && is_still {
+            0.0
+        } else {
+            now.way_since(&before)
+        };
         let heading = if now.velocity != 0.0 { now.velocity } else { way };
-        // The scan after a new name differs from it by rounding, which is no motion.
-        let was_renamed = core::mem::replace(&mut self.is_renamed, before.is_some() && comparable.is_none());
-        if heading != 0.0 && !(was_renamed || self.is_renamed) {
+        // After a new name positions differ by rounding, which is no motion.
+        let is_certain = now.is_set && now.velocity != 0.0;
+        if heading != 0.0 && (is_certain || !(was_renamed || is_renamed)) {
             self.forward = Some(heading > 0.0);
         }
         let motion = Motion {
             now,
-            before: &comparable.unwrap_or(*now),
+            before: &before,
             way,
             forward: self.forward,
         };
@@ -195,8 +216,8 @@ impl Cams {
             if mask & bit == 0 {
                 continue;
             }
-            if comparable.is_none() {
-                // The coordinates were moved, so the old switching points mean nothing.
+            if known.is_none() || is_renamed {
+                // The coordinates were moved, or the axis is another, so the old switching points mean nothing.
                 (track.point, track.held_at) = (None, None);
             }
             let option = options.get(index).copied().unwrap_or_default();

@@ -49,6 +49,8 @@ pins! {
 pub struct McDigitalCamSwitch {
     core: EnableCore,
     cams: Cams,
+    /// The axis that `cams` has followed.
+    followed: AxisId,
     /// The outputs this instance writes, and their axis.
     owned: (AxisId, u32),
     /// The error last recorded. It is recorded once and not in every call.
@@ -81,7 +83,9 @@ fn sample<P: Planner>(axis: &Axis<P>, inputs: &Inputs, now_ns: i64) -> Result<Sa
         position,
         velocity,
         turn: axis.config().modulo,
+        is_set: inputs.value_source.get() == Some(ValueSource::Set),
         coordinates: axis.coordinates(),
+        moved: axis.coordinates_total(),
     })
 }
 
@@ -138,6 +142,10 @@ impl Block for McDigitalCamSwitch {
             Reading::Off | Reading::Recoverable(_) | Reading::Failed(_) => 0,
         };
         self.take(outputs, tracks, context);
+        if core::mem::replace(&mut self.followed, inputs.axis) != inputs.axis {
+            // The way from the place of one axis to that of the other is no motion.
+            self.cams = Cams::default();
+        }
         match working {
             Reading::Valid((switches, options, sample)) => {
                 if let Some(axis) = context.axes.get_mut(outputs.index()) {

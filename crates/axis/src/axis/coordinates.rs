@@ -80,9 +80,15 @@ impl<P: Planner> Axis<P> {
     }
 
     /// A number that grows with each shift of the coordinates (MC_SetPosition, MC_Home), and wraps. Positions taken
-    /// at different numbers can't be compared.
+    /// at different numbers can only be compared with [`Axis::coordinates_total`].
     pub fn coordinates(&self) -> u32 {
         self.frame.moves()
+    }
+
+    /// The sum of all shifts of the coordinates (u). A place has grown by as much as this has since, except for
+    /// rounding and, on a modulo axis, whole turns.
+    pub fn coordinates_total(&self) -> f64 {
+        self.frame.total()
     }
 
     fn move_coordinates(
@@ -125,7 +131,7 @@ impl<P: Planner> Axis<P> {
             self.mover.call_as_before(names);
             return Err(error);
         }
-        self.frame.count_move();
+        self.frame.count_move(by);
         self.rename_places();
         self.feedback.shift(by);
         self.homing.shift(by);
@@ -205,7 +211,7 @@ impl<P: Planner> Axis<P> {
         if by != 0.0 {
             self.tell_moved(by, &mut self.owner_scope(scope));
         }
-        self.frame.count_move();
+        self.frame.count_move(by);
         self.rename_places();
         self.rename_actual(self.mover.setpoint().position, position);
         self.stir();

@@ -9,6 +9,8 @@ pub(super) struct Frame {
     rename: Option<f64>,
     /// The number of shifts of the coordinates.
     moves: u32,
+    /// The sum of all shifts (u).
+    total: f64,
     /// The last scan with a shift, and the sum of its shifts (u).
     moved: (u64, f64),
 }
@@ -40,15 +42,20 @@ impl Frame {
         self.rename.take()
     }
 
-    /// A number that grows with each shift of the coordinates, and wraps. Positions taken at different numbers can't
-    /// be compared.
+    /// A number that grows with each shift of the coordinates, and wraps.
     pub fn moves(&self) -> u32 {
         self.moves
     }
 
-    /// Counts a shift of the coordinates. Positions from before it can't be compared with later ones.
-    pub fn count_move(&mut self) {
+    /// The sum of all shifts of the coordinates (u).
+    pub fn total(&self) -> f64 {
+        self.total
+    }
+
+    /// Counts a shift of the coordinates by `by` (u).
+    pub fn count_move(&mut self, by: f64) {
         self.moves = self.moves.wrapping_add(1);
+        self.total += by;
     }
 
     /// The shift of the coordinates in `scan` (u), if that is the last scan with a shift; otherwise 0.

@@ -80,7 +80,7 @@ impl<P: Planner> Axis<P> {
         let actual = self.shown_place(self.feedback.position() + by);
         let step = actual - self.mover.setpoint().position;
         self.tell_moved(step, &mut self.owner_scope(scope));
-        self.frame.count_move();
+        self.frame.count_move(step);
         self.feedback = Feedback::new(actual);
         self.measured.rename();
         self.mover.stand_at(actual);
