@@ -478,7 +478,7 @@ impl<P: Planner> Axis<P> {
         match owner.work.manner().ending {
             // A stop at rest has completed.
             _ if self.stop_held => Fate::Done,
-            Ending::RunsOn if !owner.paused => Fate::Done,
+            Ending::RunsOn if self.profile_is_over() => Fate::Done,
             Ending::Follows => Fate::Active {
                 reached: self.is_in_gear(),
             },

@@ -146,6 +146,7 @@ impl<P: Planner> Axis<P> {
         {
             self.note_passing(&mut owner);
             self.own(owner);
+            self.note_end_of_profile();
         }
         self.pause_noted(error, scope);
     }
@@ -206,7 +207,9 @@ impl<P: Planner> Axis<P> {
         match self.continue_paused(owner, scope) {
             Ok(()) | Err(ErrorId::PositiveBarred | ErrorId::NegativeBarred) => {}
             Err(error) if self.mover.setpoint().is_at_rest() && !self.is_superimposing() => {
-                self.refuse_plan(&owner, error, &mut self.owner_scope(scope));
+                if !self.profile_is_over() {
+                    self.refuse_plan(&owner, error, &mut self.owner_scope(scope));
+                }
                 self.end_owner(Fate::Failed(error));
                 self.mover.hold();
                 // ContinuousMotion has a transition to Standstill only through a halt.

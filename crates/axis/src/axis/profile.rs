@@ -321,15 +321,15 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Whether the owner is an endless profile that has reached its end. It has completed, and keeps its
-    /// velocity.
+    /// velocity unless its direction is barred.
     #[inline(never)]
     pub(super) fn profile_is_over(&self) -> bool {
-        let runs_on = |owner: &&Entry| owner.work.manner().ending == Ending::RunsOn && !owner.paused;
+        let runs_on = |owner: &&Entry| owner.work.manner().ending == Ending::RunsOn;
         let owner = self.owner.as_ref().filter(runs_on);
-        owner.is_some_and(|owner| owner.passed || self.goal_reached())
+        owner.is_some_and(|owner| owner.passed || (!owner.paused && self.goal_reached()))
     }
 
-    /// Something is superimposed on the owner: a profile that is over stays so while that is in the shaper.
+    /// The owner brakes, or something is superimposed on it: a profile that is over stays so meanwhile.
     pub(super) fn note_end_of_profile(&mut self) {
         let is_over = self.profile_is_over();
         if let Some(owner) = &mut self.owner {
