@@ -43,10 +43,12 @@ impl Block for McReset {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let phase = self.core.scan(inputs.execute, context, |context, _| {
-            let (axis, scope) = context.axis(inputs.axis)?;
-            axis.reset(scope).map(|id| (inputs.axis, id))
-        });
+        let phase = self
+            .core
+            .scan(inputs.execute, inputs.axis, context, |context, _| {
+                let (axis, scope) = context.axis(inputs.axis)?;
+                axis.reset(scope)
+            });
         Outputs {
             done: phase.is_done(),
             busy: phase.is_busy(),

@@ -44,11 +44,12 @@ impl Block for McSetPosition {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let phase = self.core.scan(inputs.execute, context, |context, _| {
-            let (axis, scope) = context.axis(inputs.axis)?;
-            axis.set_position(inputs.position, inputs.relative, inputs.execution_mode, scope)
-                .map(|id| (inputs.axis, id))
-        });
+        let phase = self
+            .core
+            .scan(inputs.execute, inputs.axis, context, |context, _| {
+                let (axis, scope) = context.axis(inputs.axis)?;
+                axis.set_position(inputs.position, inputs.relative, inputs.execution_mode, scope)
+            });
         Outputs {
             done: phase.is_done(),
             ..phase.into()

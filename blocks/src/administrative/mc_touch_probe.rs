@@ -61,26 +61,28 @@ impl Block for McTouchProbe {
         let given = &mut self.given;
         // A command still waits for the probe after a refused edge. The core forgets it, so the block
         // keeps it here.
-        let phase = self.core.scan(inputs.execute, context, |context, _| {
-            let held = given.filter(|(axis, _)| *axis == inputs.axis).map(|(_, id)| id);
-            let (axis, scope) = context.axis(inputs.axis)?;
-            let request = TouchProbe {
-                trigger: inputs.trigger_input,
-                window: inputs
-                    .window_only
-                    .then_some((inputs.first_position, inputs.last_position)),
-                replaces: held,
-            };
-            let id = axis.touch_probe(&request, scope)?;
-            // The Axis pin may have changed since.
-            if let Some((elsewhere, id)) = given.replace((inputs.axis, id))
-                && elsewhere != inputs.axis
-                && let Ok((axis, ..)) = context.axis(elsewhere)
-            {
-                axis.forget_probe(id);
-            }
-            Ok((inputs.axis, id))
-        });
+        let phase = self
+            .core
+            .scan(inputs.execute, inputs.axis, context, |context, _| {
+                let held = given.filter(|(axis, _)| *axis == inputs.axis).map(|(_, id)| id);
+                let (axis, scope) = context.axis(inputs.axis)?;
+                let request = TouchProbe {
+                    trigger: inputs.trigger_input,
+                    window: inputs
+                        .window_only
+                        .then_some((inputs.first_position, inputs.last_position)),
+                    replaces: held,
+                };
+                let id = axis.touch_probe(&request, scope)?;
+                // The Axis pin may have changed since.
+                if let Some((elsewhere, id)) = given.replace((inputs.axis, id))
+                    && elsewhere != inputs.axis
+                    && let Ok((axis, ..)) = context.axis(elsewhere)
+                {
+                    axis.forget_probe(id);
+                }
+                Ok(id)
+            });
         if phase.is_done()
             && let Some((axis, id)) = self.given.take()
             && let Some(position) = context

@@ -44,16 +44,17 @@ impl Block for McWriteBoolParameter {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let phase = self.core.scan(inputs.execute, context, |context, _| {
-            let (axis, scope) = context.axis(inputs.axis)?;
-            axis.write_parameter(
-                inputs.parameter_number,
-                ParameterValue::Bool(inputs.value),
-                inputs.execution_mode,
-                scope,
-            )
-            .map(|command| (inputs.axis, command))
-        });
+        let phase = self
+            .core
+            .scan(inputs.execute, inputs.axis, context, |context, _| {
+                let (axis, scope) = context.axis(inputs.axis)?;
+                axis.write_parameter(
+                    inputs.parameter_number,
+                    ParameterValue::Bool(inputs.value),
+                    inputs.execution_mode,
+                    scope,
+                )
+            });
         Outputs {
             done: phase.is_done(),
             ..phase.into()

@@ -44,11 +44,10 @@ impl Block for McWriteDigitalOutput {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let phase = self.core.scan(inputs.execute, context, |context, _| {
-            let id = inputs.output.into();
-            let (axis, scope) = context.axis(id)?;
+        let output = inputs.output.into();
+        let phase = self.core.scan(inputs.execute, output, context, |context, _| {
+            let (axis, scope) = context.axis(output)?;
             axis.write_output(inputs.output_number, inputs.value, inputs.execution_mode, scope)
-                .map(|command| (id, command))
         });
         Outputs {
             done: phase.is_done(),

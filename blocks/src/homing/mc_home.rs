@@ -45,17 +45,19 @@ impl Block for McHome {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let phase = self.core.scan(inputs.execute, context, |context, replaces| {
-            let (axis, scope) = context.axis(inputs.axis)?;
-            let request = Request {
-                command: Command::Home {
-                    position: inputs.position,
-                },
-                buffer_mode: inputs.buffer_mode,
-                replaces,
-            };
-            axis.command(&request, scope).map(|id| (inputs.axis, id))
-        });
+        let phase = self
+            .core
+            .scan(inputs.execute, inputs.axis, context, |context, replaces| {
+                let (axis, scope) = context.axis(inputs.axis)?;
+                let request = Request {
+                    command: Command::Home {
+                        position: inputs.position,
+                    },
+                    buffer_mode: inputs.buffer_mode,
+                    replaces,
+                };
+                axis.command(&request, scope)
+            });
         Outputs {
             done: phase.is_done(),
             ..phase.into()

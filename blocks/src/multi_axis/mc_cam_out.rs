@@ -43,14 +43,16 @@ impl Block for McCamOut {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let phase = self.core.scan(inputs.execute, context, |context, replaces| {
-            let (axis, scope) = context.slave(inputs.slave)?;
-            let request = Request {
-                replaces,
-                ..Request::aborting(Command::CamOut)
-            };
-            axis.command(&request, scope).map(|id| (inputs.slave, id))
-        });
+        let phase = self
+            .core
+            .scan(inputs.execute, inputs.slave, context, |context, replaces| {
+                let (axis, scope) = context.slave(inputs.slave)?;
+                let request = Request {
+                    replaces,
+                    ..Request::aborting(Command::CamOut)
+                };
+                axis.command(&request, scope)
+            });
         Outputs {
             done: phase.is_done(),
             busy: phase.is_busy(),

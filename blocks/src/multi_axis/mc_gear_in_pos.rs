@@ -80,35 +80,36 @@ impl Block for McGearInPos {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let phase = self.core.scan(inputs.execute, context, |context, replaces| {
-            let request = Request {
-                command: Command::GearIn {
-                    followed: Followed {
-                        master: context.master(inputs.master),
-                        numerator: inputs.ratio_numerator,
-                        denominator: inputs.ratio_denominator.into(),
-                        source: inputs.master_value_source,
+        let phase = self
+            .core
+            .scan(inputs.execute, inputs.slave, context, |context, replaces| {
+                let request = Request {
+                    command: Command::GearIn {
+                        followed: Followed {
+                            master: context.master(inputs.master),
+                            numerator: inputs.ratio_numerator,
+                            denominator: inputs.ratio_denominator.into(),
+                            source: inputs.master_value_source,
+                        },
+                        sync: Some(SyncPoint {
+                            master: inputs.master_sync_position,
+                            slave: inputs.slave_sync_position,
+                            mode: inputs.sync_mode,
+                            start_distance: inputs.master_start_distance,
+                        }),
+                        dynamics: Dynamics {
+                            velocity: inputs.velocity,
+                            acceleration: inputs.acceleration,
+                            deceleration: inputs.deceleration,
+                            jerk: inputs.jerk,
+                            snap: inputs.snap,
+                        },
                     },
-                    sync: Some(SyncPoint {
-                        master: inputs.master_sync_position,
-                        slave: inputs.slave_sync_position,
-                        mode: inputs.sync_mode,
-                        start_distance: inputs.master_start_distance,
-                    }),
-                    dynamics: Dynamics {
-                        velocity: inputs.velocity,
-                        acceleration: inputs.acceleration,
-                        deceleration: inputs.deceleration,
-                        jerk: inputs.jerk,
-                        snap: inputs.snap,
-                    },
-                },
-                buffer_mode: inputs.buffer_mode,
-                replaces,
-            };
-            let id = couple(context.axes, inputs.slave, &request, &mut context.scope)?;
-            Ok((inputs.slave, id))
-        });
+                    buffer_mode: inputs.buffer_mode,
+                    replaces,
+                };
+                couple(context.axes, inputs.slave, &request, &mut context.scope)
+            });
         let slave = context.axes.get(inputs.slave.index());
         let slave = slave.filter(|_| phase.is_active());
         let deviation = slave.map(|slave| slave.deviation());

@@ -70,23 +70,25 @@ impl Block for McPhasingAbsolute {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let phase = self.core.scan(inputs.execute, context, |context, _| {
-            let (slave, scope) = context.slave(inputs.slave)?;
-            let request = PhaseShift {
-                master: inputs.master,
-                shift: inputs.phase_shift,
-                is_relative: false,
-                dynamics: Dynamics {
-                    velocity: inputs.velocity,
-                    acceleration: inputs.acceleration,
-                    deceleration: inputs.deceleration,
-                    jerk: inputs.jerk,
-                    snap: inputs.snap,
-                },
-                buffer_mode: inputs.buffer_mode,
-            };
-            slave.shift_phase(&request, scope).map(|id| (inputs.slave, id))
-        });
+        let phase = self
+            .core
+            .scan(inputs.execute, inputs.slave, context, |context, _| {
+                let (slave, scope) = context.slave(inputs.slave)?;
+                let request = PhaseShift {
+                    master: inputs.master,
+                    shift: inputs.phase_shift,
+                    is_relative: false,
+                    dynamics: Dynamics {
+                        velocity: inputs.velocity,
+                        acceleration: inputs.acceleration,
+                        deceleration: inputs.deceleration,
+                        jerk: inputs.jerk,
+                        snap: inputs.snap,
+                    },
+                    buffer_mode: inputs.buffer_mode,
+                };
+                slave.shift_phase(&request, scope)
+            });
         let slave = context.axes.get(inputs.slave.index());
         if let Some(slave) = slave.filter(|_| phase.is_busy() || self.was_busy) {
             self.shift = slave.phase_of(inputs.master);

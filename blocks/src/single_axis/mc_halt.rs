@@ -46,23 +46,25 @@ impl Block for McHalt {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let phase = self.core.scan(inputs.execute, context, |context, replaces| {
-            let (axis, scope) = context.axis(inputs.axis)?;
-            let request = Request {
-                command: Command::Halt {
-                    dynamics: Dynamics {
-                        velocity: 0.0,
-                        acceleration: 0.0,
-                        deceleration: inputs.deceleration,
-                        jerk: inputs.jerk,
-                        snap: inputs.snap,
+        let phase = self
+            .core
+            .scan(inputs.execute, inputs.axis, context, |context, replaces| {
+                let (axis, scope) = context.axis(inputs.axis)?;
+                let request = Request {
+                    command: Command::Halt {
+                        dynamics: Dynamics {
+                            velocity: 0.0,
+                            acceleration: 0.0,
+                            deceleration: inputs.deceleration,
+                            jerk: inputs.jerk,
+                            snap: inputs.snap,
+                        },
                     },
-                },
-                buffer_mode: inputs.buffer_mode,
-                replaces,
-            };
-            axis.command(&request, scope).map(|id| (inputs.axis, id))
-        });
+                    buffer_mode: inputs.buffer_mode,
+                    replaces,
+                };
+                axis.command(&request, scope)
+            });
         Outputs {
             done: phase.is_done(),
             ..phase.into()

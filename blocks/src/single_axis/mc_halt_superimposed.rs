@@ -54,18 +54,19 @@ impl Block for McHaltSuperimposed {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let phase = self.core.scan(inputs.execute, context, |context, _| {
-            let (axis, scope) = context.axis(inputs.axis)?;
-            let dynamics = Dynamics {
-                velocity: 0.0,
-                acceleration: 0.0,
-                deceleration: inputs.deceleration,
-                jerk: inputs.jerk,
-                snap: inputs.snap,
-            };
-            let id = axis.halt_superimposed(&dynamics, scope)?;
-            Ok((inputs.axis, id))
-        });
+        let phase = self
+            .core
+            .scan(inputs.execute, inputs.axis, context, |context, _| {
+                let (axis, scope) = context.axis(inputs.axis)?;
+                let dynamics = Dynamics {
+                    velocity: 0.0,
+                    acceleration: 0.0,
+                    deceleration: inputs.deceleration,
+                    jerk: inputs.jerk,
+                    snap: inputs.snap,
+                };
+                axis.halt_superimposed(&dynamics, scope)
+            });
         Outputs {
             done: phase.is_done(),
             busy: phase.is_busy(),

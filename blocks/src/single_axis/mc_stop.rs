@@ -54,24 +54,27 @@ impl Block for McStop {
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let lock = &mut self.lock;
-        let phase = self.core.scan(inputs.execute, context, |context, replaces| {
-            let (axis, scope) = context.axis(inputs.axis)?;
-            let request = Request {
-                command: Command::Stop {
-                    dynamics: Dynamics {
-                        velocity: 0.0,
-                        acceleration: 0.0,
-                        deceleration: inputs.deceleration,
-                        jerk: inputs.jerk,
-                        snap: inputs.snap,
+        let phase = self
+            .core
+            .scan(inputs.execute, inputs.axis, context, |context, replaces| {
+                let (axis, scope) = context.axis(inputs.axis)?;
+                let request = Request {
+                    command: Command::Stop {
+                        dynamics: Dynamics {
+                            velocity: 0.0,
+                            acceleration: 0.0,
+                            deceleration: inputs.deceleration,
+                            jerk: inputs.jerk,
+                            snap: inputs.snap,
+                        },
                     },
-                },
-                buffer_mode: BufferMode::Aborting.into(),
-                replaces,
-            };
-            axis.command(&request, scope)
-                .map(|id| *lock.insert((inputs.axis, id)))
-        });
+                    buffer_mode: BufferMode::Aborting.into(),
+                    replaces,
+                };
+                let id = axis.command(&request, scope)?;
+                *lock = Some((inputs.axis, id));
+                Ok(id)
+            });
         if !inputs.execute
             && let Some((axis, id)) = self.lock.take()
             && let Some(axis) = context.axes.get_mut(axis.index())

@@ -104,14 +104,14 @@ impl<R: Point> ProfileCore<R> {
             self.follow(axis, id, pins, shape, context);
         }
         let (given, seen, continuous) = (&mut self.given, &mut self.seen, &mut self.continuous);
-        self.execute.scan(pins.execute, context, |context, _| {
+        self.execute.scan(pins.execute, pins.axis, context, |context, _| {
             let tables = context.tables;
             let (axis, scope) = context.axis(pins.axis)?;
             let id = shape
                 .read(tables, |profile| axis.profile(profile, pins.buffer_mode, scope))
                 .unwrap_or_else(|| Err(unknown(axis, R::PIN, scope)))?;
             (*given, *seen, *continuous) = (Some(*shape), Some(*shape), pins.continuous_update);
-            Ok((pins.axis, id))
+            Ok(id)
         })
     }
 

@@ -87,18 +87,18 @@ impl ExecuteCore {
         self.phase
     }
 
-    /// One call. At a rising edge (R8) `issue` gives the command. Its argument is the command the
-    /// instance held before, which a retrigger replaces silently (R32). It returns the place where the
-    /// status of the new command is read.
+    /// One call. At a rising edge (R8) `issue` gives the command to `axis`. Its argument is the command the
+    /// instance held there before, which a retrigger replaces silently (R32).
     #[inline]
     pub fn scan<P: Planner>(
         &mut self,
         execute: bool,
+        axis: AxisId,
         context: &mut Context<'_, P>,
-        issue: impl FnOnce(&mut Context<'_, P>, Option<CommandId>) -> Result<(AxisId, CommandId), ErrorId>,
+        issue: impl FnOnce(&mut Context<'_, P>, Option<CommandId>) -> Result<CommandId, ErrorId>,
     ) -> Phase {
         if self.rises(execute, context)
-            && let Err(error) = self.start(context, issue)
+            && let Err(error) = self.start(axis, context, issue)
         {
             return self.fail(error);
         }
@@ -178,21 +178,25 @@ impl ExecuteCore {
     #[inline(never)]
     pub(crate) fn start<P: Planner>(
         &mut self,
+        axis: AxisId,
         context: &mut Context<'_, P>,
-        issue: impl FnOnce(&mut Context<'_, P>, Option<CommandId>) -> Result<(AxisId, CommandId), ErrorId>,
+        issue: impl FnOnce(&mut Context<'_, P>, Option<CommandId>) -> Result<CommandId, ErrorId>,
     ) -> Result<(), ErrorId> {
-        let Some((axis, held)) = self.command.take() else {
-            self.command = Some(issue(context, None)?);
+        let Some((before, held)) = self.command.take() else {
+            self.command = Some((axis, issue(context, None)?));
             return Ok(());
         };
         // A waiting command gives up its place first, even if the new command is then refused (R97).
-        let waited = context.axis(axis).is_ok_and(|(holder, _)| holder.withdraw(held));
-        let issued = issue(context, Some(held));
-        let new = issued.ok().filter(|(given_to, _)| *given_to == axis);
-        if let Ok((holder, scope)) = context.axis(axis) {
-            holder.replaced(held, waited, new.map(|(_, id)| id), scope);
+        let waited = context
+            .axis(before)
+            .is_ok_and(|(holder, _)| holder.withdraw(held));
+        // Each axis numbers its own commands.
+        let issued = issue(context, (axis == before).then_some(held));
+        let new = issued.ok().filter(|_| axis == before);
+        if let Ok((holder, scope)) = context.axis(before) {
+            holder.replaced(held, waited, new, scope);
         }
-        self.command = Some(issued?);
+        self.command = Some((axis, issued?));
         Ok(())
     }
 }

@@ -147,11 +147,11 @@ impl<V: Values> UpdateCore<V> {
         if self.execute.rises(pins.execute, context) {
             self.seen = None;
             let seen = &mut self.seen;
-            return self.execute.start(context, |context, replaces| {
+            return self.execute.start(pins.axis, context, |context, replaces| {
                 let given = values(context);
                 let id = issue(context, given, replaces)?;
                 *seen = pins.continuous_update.then_some(given);
-                Ok((pins.axis, id))
+                Ok(id)
             });
         }
         let running = self.execute.running(pins.execute, context);
