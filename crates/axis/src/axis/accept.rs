@@ -56,11 +56,17 @@ impl<P: Planner> Axis<P> {
                 self.start_beside(scope);
             }
             Start::Now => {
+                let in_force = *self.mover.in_force();
+                if self.mover.has_not_moved(scope.scan) {
+                    // The axis still moves within the limits of the motion before.
+                    self.mover.keep(*self.mover.before());
+                }
                 self.aim(&mut entry, self.mover.setpoint().position);
                 let asked = entry.limits;
-                let motion = self
-                    .plan_for(&mut entry)
-                    .map_err(|error| self.refuse_plan(&entry, error, scope))?;
+                let motion = self.plan_for(&mut entry).map_err(|error| {
+                    self.mover.keep(in_force);
+                    self.refuse_plan(&entry, error, scope)
+                })?;
                 let before = self.limits_before(&entry.limits);
                 let kept = self.lend_following(&entry, mode);
                 self.end_all(Fate::Aborted, Fate::Aborted);
@@ -522,7 +528,7 @@ impl<P: Planner> Axis<P> {
         scope: &mut Scope<'_>,
     ) {
         self.enter(entry.work.manner().start);
-        self.mover.take_over_from(before);
+        self.mover.taken_over_in(scope.scan, before);
         self.record_slowed(&entry, &mut scope.with(entry.instance));
         self.adopt(entry, motion, scope);
         if matches!(entry.work, Work::Home(_)) {

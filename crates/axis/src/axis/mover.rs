@@ -36,6 +36,8 @@ pub(super) struct Mover<P: Plan> {
     in_force: Limits,
     /// Limits of the motion before. They are needed to plan the present one anew.
     before: Limits,
+    /// The last scan in which a command took over.
+    taken_over: Option<u64>,
     /// The largest magnitude (u) that a shift of coordinates gave to positions of the plan in progress; see
     /// [`guard`](super::guard).
     coarsest: f64,
@@ -94,6 +96,7 @@ impl<P: Plan> Mover<P> {
             is_shaped: shaping.is_some(),
             shaping,
             before: config.limits,
+            taken_over: None,
             coarsest: 0.0,
             scan,
             layer: None,
@@ -228,6 +231,17 @@ impl<P: Plan> Mover<P> {
     /// The present motion takes over from one within `limits`.
     pub fn take_over_from(&mut self, limits: Limits) {
         self.before = limits;
+    }
+
+    /// A command takes over in `scan` from a motion within `limits`.
+    pub fn taken_over_in(&mut self, scan: u64, limits: Limits) {
+        self.taken_over = Some(scan);
+        self.take_over_from(limits);
+    }
+
+    /// Whether the plan in progress belongs to a command that took over in this scan, and has moved nothing yet.
+    pub fn has_not_moved(&self, scan: u64) -> bool {
+        self.taken_over == Some(scan) && matches!(self.motion, Motion::Run { elapsed: 0, .. })
     }
 
     /// Both the motion and the one before keep `limits`.
