@@ -293,6 +293,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Whether the owner passes its end, and in motion.
+    #[inline(never)]
     pub(super) fn passes_in_motion(&self) -> bool {
         self.passes_on() && !self.mover.base().is_at_rest()
     }

@@ -453,7 +453,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    #[inline]
+    // Inlined into its block; what is seldom asked is not.
+    #[inline(always)]
     fn fate_of_owner(&self, owner: &Entry) -> Fate {
         if let Work::Release(_) = owner.work {
             return if self.is_released(owner) {
@@ -606,7 +607,7 @@ impl<P: Planner> Axis<P> {
 
     /// Whether the motion has reached its goal. A motion that holds or is in gear has; one that follows the feedback has
     /// not.
-    #[inline]
+    #[inline(always)]
     fn goal_reached(&self) -> bool {
         match self.mover.motion() {
             Motion::Run { elapsed, scans, .. } => elapsed >= scans && self.is_goal_published(),

@@ -168,6 +168,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Whether the torque ordered last is the commanded one, and nothing limits it (R40).
+    #[inline(never)]
     pub(super) fn torque_is_held(&self, torque: f64) -> bool {
         let goal = self.owner.as_ref().map(torque_of);
         let limited = self.beside.report.torque.is_some_and(|report| report.limited);
