@@ -231,14 +231,15 @@ impl Counted {
             *total = total.wrapping_add(sum);
             sum = *total;
         }
-        self.out.rotate_right(1);
-        self.out[0] = sum;
+        let [o0, o1, o2, o3, o4, _] = self.out;
+        self.out = [sum, o0, o1, o2, o3, o4];
         self.place += i128::from(sum);
     }
 
-    /// A place in the ring of steps, whose length is above 0.
+    /// A place in the ring of steps, for an `index` below twice its length.
     fn in_ring(&self, index: usize) -> usize {
-        index.checked_rem(AVERAGES * self.length as usize).unwrap_or(0)
+        let ring = AVERAGES * self.length as usize;
+        if index < ring { index } else { index - ring }
     }
 
     /// Whether the axis has not moved for as long as the filter remembers.
