@@ -612,28 +612,44 @@ impl<P: Planner> Axis<P> {
             _ => true,
         };
         if reached {
-            layer.added = Setpoint::at_rest(layer.added.position);
-            let stopped = layer.moves();
-            layer.motion = Motion::Hold;
-            match layer.command {
-                Some(command) if !command.halting && (command.runs() || command.adds == Adds::Halt) => {
-                    self.end_superimposed_command(Fate::Done);
-                }
-                // It is at rest now, so more may fit.
-                Some(_) if stopped => layer.try_soon(),
-                Some(_) | None => {}
-            }
+            self.reach_added();
         }
         self.try_again(scope);
         if was_busy && matches!(self.mover.motion(), Motion::Run { .. }) {
             self.end_of_superimposed(scope);
         }
-        let still = !matches!(self.mover.motion(), Motion::Run { .. });
+        if !matches!(self.mover.motion(), Motion::Run { .. }) {
+            self.leave_added(was_busy, scope);
+        }
+    }
+
+    /// The added motion has come to its end.
+    #[inline(never)]
+    fn reach_added(&mut self) {
+        let Some(layer) = self.mover.layer_mut() else {
+            return;
+        };
+        layer.added = Setpoint::at_rest(layer.added.position);
+        let stopped = layer.moves();
+        layer.motion = Motion::Hold;
+        match layer.command {
+            Some(command) if !command.halting && (command.runs() || command.adds == Adds::Halt) => {
+                self.end_superimposed_command(Fate::Done);
+            }
+            // It is at rest now, so more may fit.
+            Some(_) if stopped => layer.try_soon(),
+            Some(_) | None => {}
+        }
+    }
+
+    /// The owner does not move by a plan. With no command superimposed, nor in this scan, there is one motion again.
+    #[inline(never)]
+    fn leave_added(&mut self, was_busy: bool, scope: &mut Scope<'_>) {
         // A paused owner continues to its end later. That end has moved by the added distance.
         let keeps = |layer: &Layer<P::Plan>| self.is_paused() && layer.added.position != layer.taken;
         let kept = self.mover.layer().is_some_and(keeps);
         let is_idle = self.mover.layer().is_some_and(|layer| layer.command.is_none());
-        if still && is_idle && (was_busy || !kept) {
+        if is_idle && (was_busy || !kept) {
             if !kept {
                 self.mover.drop_layer();
             }

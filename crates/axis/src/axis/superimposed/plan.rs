@@ -315,8 +315,15 @@ impl<P: Planner> Axis<P> {
         if !command.lacks_room() || !due {
             return;
         }
-        // The planner accepts again what it accepted before. If not, or while the direction is barred,
-        // nothing changes.
+        self.try_now(scope);
+    }
+
+    /// Tries the command. The planner accepts again what it accepted before. If not, or while the direction is barred,
+    /// nothing changes.
+    #[inline(never)]
+    fn try_now(&mut self, scope: &mut Scope<'_>) {
+        let Some(layer) = self.mover.layer() else { return };
+        let Some(command) = &layer.command else { return };
         let mut search = layer.search;
         if let Ok(proposed) = self.propose(layer, command, &mut search) {
             if let Some(layer) = self.mover.layer_mut() {
