@@ -67,11 +67,16 @@ impl Scaling {
         let (units, fraction) = self.split(position);
         match divided(units, self.increments, self.units) {
             Some((whole, rest)) => whole.saturating_add(rounded(self.rest_of(rest, fraction))),
-            None => {
-                let (whole, rest) = divided_wide(units, self.increments, self.units);
-                nearest(whole, self.rest_of(rest, fraction))
-            }
+            None => self.increments_wide(units, fraction),
         }
+    }
+
+    /// The same where the product takes more than 64 bits.
+    #[cold]
+    #[inline(never)]
+    fn increments_wide(&self, units: i64, fraction: f64) -> i64 {
+        let (whole, rest) = divided_wide(units, self.increments, self.units);
+        nearest(whole, self.rest_of(rest, fraction))
     }
 
     /// The distance of `position` (u) from the offset, with the sign of the drive: whole units and the
