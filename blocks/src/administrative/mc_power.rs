@@ -47,6 +47,8 @@ impl Block for McPower {
     type Inputs = Inputs;
     type Outputs = Outputs;
 
+    // One of the two blocks that nearly every axis calls in every scan.
+    #[inline(always)]
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let (axis, scope) = match context.axis(inputs.axis) {
             Ok(found) => found,
@@ -58,16 +60,22 @@ impl Block for McPower {
             negative: inputs.enable_negative,
         };
         axis.set_power(inputs.enable, permitted, scope);
-        let error = axis.power_error().filter(|_| inputs.enable);
-        Outputs {
-            status: axis.is_powered(),
-            valid: inputs.enable && error.is_none(),
-            error: error.is_some(),
-            error_id: error.unwrap_or_default(),
+        let status = axis.is_powered();
+        match axis.power_error().filter(|_| inputs.enable) {
+            Some(error) => Outputs {
+                status,
+                ..refused(error)
+            },
+            None => Outputs {
+                status,
+                valid: inputs.enable,
+                ..Outputs::default()
+            },
         }
     }
 }
 
+#[cold]
 fn refused(error_id: ErrorId) -> Outputs {
     Outputs {
         error: true,

@@ -50,6 +50,8 @@ impl Block for McMoveAbsolute {
     type Inputs = Inputs;
     type Outputs = Outputs;
 
+    // One of the two blocks that nearly every axis calls in every scan.
+    #[inline(always)]
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let pins = Move {
             axis: inputs.axis,

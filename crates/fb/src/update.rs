@@ -117,7 +117,8 @@ impl<V: Values> UpdateCore<V> {
     }
 
     /// The same for a command that also reads other axes.
-    #[inline]
+    // Every block has its own copy, so it is inlined there.
+    #[inline(always)]
     pub fn scan_among<P: Planner>(
         &mut self,
         pins: Move,
