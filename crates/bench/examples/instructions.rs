@@ -32,7 +32,7 @@ fn one_operation<T>(run: impl FnOnce() -> T) {
 /// A name, and a function that runs the operation and returns how often it did.
 type Workload = (&'static str, fn() -> u64);
 
-const WORKLOADS: [Workload; 19] = [
+const WORKLOADS: [Workload; 20] = [
     ("trapezoid-sample", trapezoid_sample),
     ("idle-scan", idle_scan),
     ("scan-in-motion", scan_in_motion),
@@ -47,6 +47,9 @@ const WORKLOADS: [Workload; 19] = [
     }),
     ("scan-of-64-half-on-cams", || {
         scan_of_many(ManyAxes::on_cams().expect("valid"))
+    }),
+    ("scan-of-64-mixed", || {
+        scan_of_many(ManyAxes::in_motion(None).expect("valid"))
     }),
     ("plan-sample", plan_sample),
     ("plan", plan),
