@@ -312,10 +312,14 @@ impl Reader {
         let of = self.require(&fields, "of", "`near`")?;
         let text = self.text(of, "`of`")?;
         let (signal, other) = self.signal(text, of.span)?;
-        if other.is_numeric() {
+        if self.is_numeric(other) {
             return Some((text.to_owned(), signal, plus?));
         }
-        let message = format!("`of` takes a number, {} is {}", quoted(text), other.name());
+        let message = format!(
+            "`of` takes a number, {} is {}",
+            quoted(text),
+            self.kind_name(other)
+        );
         self.refuse(Diagnostic::new(Code::WrongType, of.span, message))
     }
 
