@@ -1,9 +1,8 @@
 //! Runs a program in Structured Text without a script, for a first test.
 
 use crate::model::Script;
-use crate::read::names::identifier_error;
 use crate::read::time::literal;
-use crate::read::{Terms, read_within};
+use crate::read::{Parsed, Terms, read_within};
 use crate::run::{Outcome, run_with};
 use crate::suite::{Allowed, SuiteError, included, program_file, shown};
 use serde_json::json;
@@ -40,10 +39,6 @@ pub fn run_bare(
     if let (Some(name), Some(members)) = (bare.program, program.as_object_mut()) {
         members.insert("program".to_owned(), json!(name));
     }
-    let key = path.file_stem().and_then(|stem| stem.to_str());
-    let key = key
-        .filter(|key| identifier_error(key).is_none())
-        .unwrap_or("cell");
     let mut script = json!({
         "standstill": 1,
         "title": shown(&path),
@@ -51,7 +46,6 @@ pub fn run_bare(
         "scans": bare.scans,
         "axes": {},
         "blocks": [],
-        "programs": { key: program },
         "expect": [],
     });
     let machine = bare
@@ -61,6 +55,7 @@ pub fn run_bare(
     if let (Some(machine), Some(members)) = (&machine, script.as_object_mut()) {
         members.insert("include".to_owned(), json!(machine));
     }
+    let name = "(the script for it)";
     let mut load = |inner: &str| match bare.axes {
         // The user has named the file. Files that it includes are checked as always.
         Some(path) if Some(inner) == machine.as_deref() => {
@@ -74,19 +69,19 @@ pub fn run_bare(
         let path = place.and_then(|place| bare.sources.get(place));
         path.map_or_else(|| Err("it was not given".to_owned()), |path| program_file(path))
     };
+    let stem = path.file_stem().and_then(|stem| stem.to_str());
+    let parsed = Parsed::new(&format!("{script:#}\n"), name, &mut load)?;
+    let key = parsed.free_name(stem.unwrap_or_default(), "cell");
+    if let Some(members) = script.as_object_mut() {
+        members.insert("programs".to_owned(), json!({ key: program }));
+    }
     let text = format!("{script:#}\n");
     let terms = Terms {
         guest_memory: allowed.guest_memory,
+        adds_main: true,
         ..Terms::default()
     };
-    let script = read_within(
-        &text,
-        "(the script for it)",
-        parameters,
-        &mut load,
-        &mut source,
-        terms,
-    )?;
+    let script = read_within(&text, name, parameters, &mut load, &mut source, terms)?;
     let outcome = run_with(&script, progress).map_err(|source| SuiteError::Run { path, source })?;
     Ok((script, outcome))
 }

@@ -156,6 +156,7 @@ impl Allowed {
             guest_memory: self.guest_memory,
             coverage,
             long: self.long,
+            ..Terms::default()
         }
     }
 }

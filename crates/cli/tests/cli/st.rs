@@ -78,6 +78,33 @@ fn a_program_runs_without_a_script() {
     }
 }
 
+/// A machine file knows nothing of the programs that are tried with it.
+#[test]
+fn a_program_without_a_script_gets_a_name_and_a_task_that_are_free() {
+    let place = scratch("st_run_free");
+    let text = "PROGRAM P\nVAR\n  Feeder : AXIS_REF;\n  Power : MC_Power;\nEND_VAR\nPower(Axis := Feeder, Enable := TRUE);\nEND_PROGRAM\n";
+    fs::write(place.join("feeder.st"), text).unwrap();
+    let axis = r#"{"limits": {"velocity": 1, "acceleration": 1}}"#;
+    let machine = format!(
+        r#"{{"standstill": 1, "axes": {{"Feeder": {axis}, "Cell": {axis}}}, "inputs": {{"cell2": false}},
+        "tasks": {{"slow": {{"interval": 10}}}}, "blocks": [{{"name": "t", "type": "TON", "task": "slow"}}]}}"#
+    );
+    fs::write(place.join("m.machine.json"), machine).unwrap();
+    let ended = typed(&place, "run feeder.st --axes m.machine.json --scans 20");
+    assert_eq!(ended.status, 0, "{}{}", ended.out, ended.err);
+    ended.prints("Disabled -> Standstill");
+    ended.prints("cell3   +Power.Enable");
+    fs::write(
+        place.join("tasks.st"),
+        format!(
+            "{text}CONFIGURATION C\n  TASK Main(INTERVAL := T#10ms, PRIORITY := 1);\n  PROGRAM I WITH Main : P;\nEND_CONFIGURATION\n"
+        ),
+    )
+    .unwrap();
+    let ended = typed(&place, "run tasks.st --axes m.machine.json --scans 20");
+    assert_eq!(ended.status, 0, "{}{}", ended.out, ended.err);
+}
+
 #[test]
 fn what_is_probably_not_meant_is_told_by_its_code() {
     let place = scratch("st_lint");

@@ -161,6 +161,8 @@ pub(crate) struct Terms {
     pub coverage: bool,
     /// Whether the rows of the run are dropped on the way. There may then be more cells than one trace can have.
     pub long: bool,
+    /// Whether a program has a task `main`, which runs in every scan, where the script's `tasks` do not name one.
+    pub adds_main: bool,
 }
 
 impl Default for Terms {
@@ -169,6 +171,7 @@ impl Default for Terms {
             guest_memory: GUEST_MEMORY,
             coverage: false,
             long: false,
+            adds_main: false,
         }
     }
 }
@@ -226,6 +229,27 @@ impl Parsed {
             files: files.read.into(),
             hash,
         })
+    }
+
+    /// A name for a program that nothing in the script has: the wanted one if it can be one, or `other`, with a number
+    /// behind it if need be.
+    pub(crate) fn free_name(&self, wanted: &str, other: &str) -> String {
+        let members = |key: &str| self.root.member(key).map_or(&[][..], Node::members);
+        let keys = ["axes", "inputs"]
+            .into_iter()
+            .flat_map(members)
+            .map(|(key, _)| key.text.as_str());
+        let blocks = match self.root.member("blocks").map(|node| &node.json) {
+            Some(Json::List(items)) => items.as_slice(),
+            _ => &[],
+        };
+        let blocks = blocks.iter().filter_map(|block| block.member("name")?.text());
+        let taken: BTreeSet<String> = keys.chain(blocks).map(str::to_ascii_uppercase).collect();
+        [wanted.to_owned(), other.to_owned()]
+            .into_iter()
+            .chain((2..).map(|number: u64| format!("{other}{number}")))
+            .find(|name| identifier_error(name).is_none() && !taken.contains(&name.to_ascii_uppercase()))
+            .unwrap_or_default()
     }
 
     /// The script with these parameters; arguments as for [`read_with_programs`].

@@ -15,13 +15,7 @@ impl Reader {
     pub(super) fn tasks(&mut self, fields: &Fields<'_>) -> Option<Vec<Task>> {
         let Some(node) = fields.get("tasks") else {
             self.task_places.insert(MAIN.to_ascii_uppercase(), 0);
-            return Some(vec![Task {
-                name: MAIN.to_owned(),
-                interval: Some(1),
-                priority: 0,
-                single: None,
-                watchdog: None,
-            }]);
+            return Some(vec![predefined()]);
         };
         let members = self.map(node, "`tasks`")?;
         let mut places: BTreeMap<String, Span> = BTreeMap::new();
@@ -39,6 +33,17 @@ impl Reader {
             tasks.push(self.task(&key.text, node));
         }
         tasks.into_iter().collect()
+    }
+
+    /// Adds a task `main` where there is none and the terms permit it.
+    pub(super) fn add_main(&mut self, tasks: &mut Option<Vec<Task>>) {
+        if let Some(tasks) = tasks
+            && self.terms.adds_main
+            && !self.task_places.contains_key(&MAIN.to_ascii_uppercase())
+        {
+            self.task_places.insert(MAIN.to_ascii_uppercase(), tasks.len());
+            tasks.push(predefined());
+        }
     }
 
     fn task(&mut self, name: &str, node: &Node) -> Option<Task> {
@@ -98,5 +103,16 @@ impl Reader {
             self.report(Diagnostic::new(Code::UnknownTask, span, message).maybe_help(help));
         }
         index
+    }
+}
+
+/// The task of a script without `tasks`.
+fn predefined() -> Task {
+    Task {
+        name: MAIN.to_owned(),
+        interval: Some(1),
+        priority: 0,
+        single: None,
+        watchdog: None,
     }
 }

@@ -291,9 +291,12 @@ impl Reader {
                 let message = "the CONFIGURATION of the sources says which tasks there are";
                 self.report(Diagnostic::new(Code::BadValue, node.span, message).help("leave `task` out"));
             }
-            let own = |reader: &mut Self, tasks: &Option<Vec<Task>>| {
+            let own = |reader: &mut Self, tasks: &mut Option<Vec<Task>>| {
                 let (name, span) = match task {
-                    None => (MAIN, key.span),
+                    None => {
+                        reader.add_main(tasks);
+                        (MAIN, key.span)
+                    }
                     Some(node) => (reader.text(node, "`task`")?, node.span),
                 };
                 reader.task_index(name, span, tasks.as_deref())
