@@ -276,11 +276,19 @@ impl Reader {
     /// The times at which the programs run. The tasks of a CONFIGURATION become tasks of the script, and its
     /// programs without one run after all of them.
     pub(super) fn program_calls(&mut self, fields: &Fields<'_>, tasks: &mut Option<Vec<Task>>) {
+        if self.replaces_main(fields) {
+            self.task_places.clear();
+            tasks.iter_mut().for_each(Vec::clear);
+        }
         for (index, (key, node)) in fields.members("programs").iter().enumerate() {
             if !matches!(node.json, Json::Map(_)) {
                 continue;
             }
             let task = node.member("task");
+            // A program that was refused is already reported.
+            if task.is_none() && self.programs.get(index).is_none_or(Option::is_none) {
+                continue;
+            }
             let text = self
                 .programs
                 .get(index)
@@ -306,7 +314,7 @@ impl Reader {
                     let index = if task.name.is_empty() {
                         None
                     } else {
-                        Some(self.configured_task(task, fields, key.span, tasks.as_mut())?)
+                        Some(self.configured_task(task, key.span, tasks.as_mut())?)
                     };
                     Some(Call {
                         task: index,
@@ -329,11 +337,27 @@ impl Reader {
         }
     }
 
+    /// Whether a TASK called `main` takes the place of the predefined one, which nobody uses.
+    fn replaces_main(&self, fields: &Fields<'_>) -> bool {
+        let blocks = fields.get("blocks").map(|node| &node.json);
+        let no_blocks = matches!(blocks, Some(Json::List(items)) if items.is_empty());
+        let programs: Option<Vec<&Symbols>> = self
+            .programs
+            .iter()
+            .flatten()
+            .map(|program| Some(&program.text.as_ref()?.symbols))
+            .map(|symbols| symbols.filter(|symbols| symbols.is_configured()))
+            .collect();
+        let is_main = |task: &st::Task| task.name.eq_ignore_ascii_case(MAIN);
+        fields.get("tasks").is_none()
+            && no_blocks
+            && programs.is_some_and(|all| all.iter().any(|symbols| symbols.tasks().iter().any(is_main)))
+    }
+
     /// The script's task that a TASK becomes.
     fn configured_task(
         &mut self,
         task: &st::Task,
-        fields: &Fields<'_>,
         span: Span,
         tasks: Option<&mut Vec<Task>>,
     ) -> Option<usize> {
@@ -360,21 +384,19 @@ impl Reader {
             });
             return Some(tasks.len() - 1);
         };
-        let there = tasks.get_mut(place)?;
-        let blocks = fields.get("blocks").map(|node| &node.json);
-        let nobody =
-            fields.get("tasks").is_none() && matches!(blocks, Some(Json::List(items)) if items.is_empty());
-        if nobody && there.interval == Some(1) {
-            // The predefined task; it has no part of the script.
-            (there.interval, there.priority) = (interval, priority);
-            return Some(place);
-        }
-        if there.interval != interval {
-            let message = format!(
-                "{title} runs every {}, the script's task of this name does not",
-                super::time::literal(interval_ns)
+        let there = tasks.get(place)?;
+        if (there.interval, there.priority) != (interval, priority) {
+            let shown = |scans: u64| super::time::literal(cycle.saturating_mul(scans.cast_signed()));
+            let other = there.interval.map_or_else(
+                || "no INTERVAL".to_owned(),
+                |scans| format!("INTERVAL {}", shown(scans)),
             );
-            let help = "say the same `interval` in `tasks`, or leave the task out there";
+            let message = format!(
+                "{title} has INTERVAL {} and PRIORITY {priority}, the task of this name that is there already has {other} and PRIORITY {}",
+                super::time::literal(interval_ns),
+                there.priority
+            );
+            let help = "give it another name, or say the same `interval` and `priority` in `tasks`";
             return self.refuse(Diagnostic::new(Code::BadTime, span, message).help(help));
         }
         Some(place)

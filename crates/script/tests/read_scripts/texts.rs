@@ -4,7 +4,7 @@ use super::cases::table;
 use standstill_script::{ScriptError, model::Script, read_with_programs};
 use std::fmt::Write;
 
-const FILES: [(&str, &str); 7] = [
+const FILES: [(&str, &str); 10] = [
     (
         "main.wat",
         r#"(module (memory (export "memory") 1) (func (export "plc_scan") (param i32 i64)))"#,
@@ -37,6 +37,27 @@ const FILES: [(&str, &str); 7] = [
         "PROGRAM P END_PROGRAM
          CONFIGURATION C RESOURCE R ON PLC
            TASK Fast(INTERVAL := T#3ms, PRIORITY := 1); PROGRAM A WITH Fast : P;
+         END_RESOURCE END_CONFIGURATION",
+    ),
+    (
+        "slow_main.st",
+        "PROGRAM P END_PROGRAM
+         CONFIGURATION C RESOURCE R ON PLC
+           TASK Main(INTERVAL := T#4ms, PRIORITY := 1); PROGRAM A WITH Main : P;
+         END_RESOURCE END_CONFIGURATION",
+    ),
+    (
+        "late_main.st",
+        "PROGRAM P END_PROGRAM
+         CONFIGURATION C RESOURCE R ON PLC
+           TASK Main(INTERVAL := T#2ms, PRIORITY := 1); PROGRAM A WITH Main : P;
+         END_RESOURCE END_CONFIGURATION",
+    ),
+    (
+        "other_main.st",
+        "PROGRAM P END_PROGRAM
+         CONFIGURATION C RESOURCE R ON PLC
+           TASK Main(INTERVAL := T#2ms, PRIORITY := 2); PROGRAM A WITH Main : P;
          END_RESOURCE END_CONFIGURATION",
     ),
     (
@@ -85,6 +106,28 @@ fn every_mistake_with_a_program_in_structured_text_is_told() {
         writeln!(messages, "# {}\n{error}\n", case.title).unwrap();
     }
     insta::assert_snapshot!(messages);
+}
+
+#[test]
+fn a_task_called_main_takes_the_place_of_a_predefined_one_that_nobody_uses() {
+    let tasks = |programs: &str, more: &str| {
+        let text =
+            GOOD.replacen(r#""c": {"st": "cell.st"}"#, programs, 1)
+                .replacen(r#""blocks": [],"#, more, 1);
+        let script = read(&text).unwrap_or_else(|error| panic!("{error}"));
+        let task = |task: &standstill_script::model::Task| (task.name.clone(), task.interval, task.priority);
+        script.tasks.iter().map(task).collect::<Vec<_>>()
+    };
+    let main = |interval, priority| ("Main".to_owned(), Some(interval), priority);
+    let none = r#""blocks": [],"#;
+    assert_eq!(tasks(r#""c": {"st": "slow_main.st"}"#, none), [main(2, 1)]);
+    let twice = r#""c": {"st": "late_main.st"}, "d": {"st": "late_main.st"}"#;
+    assert_eq!(tasks(twice, none), [main(1, 1)]);
+    let same = r#""blocks": [], "tasks": {"Main": {"interval": 2, "priority": 1}},"#;
+    assert_eq!(tasks(r#""c": {"st": "slow_main.st"}"#, same), [main(2, 1)]);
+    // In the script's own `main` then.
+    let both = r#""c": {"st": "cell.st"}, "d": {"st": "slow_main.st"}"#;
+    assert_eq!(tasks(both, same), [main(2, 1)]);
 }
 
 #[test]
