@@ -41,6 +41,14 @@ pub fn trace(path: Option<&Path>) -> Result<Vec<Written>, Failure> {
 /// Refuses two files in one place, by any paths, and a file in the place of one that is read. Call it before
 /// anything is written.
 pub fn checked<'a>(writes: &[Written], reads: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
+    if let Some(file) = writes.iter().find(|file| file.path.is_dir()) {
+        let message = format!(
+            "{} {} is a folder, and a file is wanted",
+            file.what,
+            shown(&file.path)
+        );
+        return Err(Failure::usage(&message));
+    }
     let placed: Vec<_> = writes
         .iter()
         .filter(|file| !is_special(&file.path))

@@ -123,6 +123,7 @@ pub(crate) fn lex_with_comments(
         start,
         told_space: false,
         told_names: BTreeSet::new(),
+        told_scl: false,
         comments: Vec::new(),
         found,
     };
@@ -149,6 +150,8 @@ struct Lexer<'a> {
     told_space: bool,
     /// Names with other letters that were reported.
     told_names: BTreeSet<&'a str>,
+    /// Whether a `#` before a name was reported.
+    told_scl: bool,
     comments: Vec<Span>,
     found: &'a mut Found,
 }
@@ -364,6 +367,16 @@ impl<'a> Lexer<'a> {
         self.at += 1;
         let span = self.span(from);
         let sign = char::from(byte);
+        if sign == '#' && (is_name_start(self.peek(0)) || self.peek(0) == b'"') {
+            if !self.told_scl {
+                self.told_scl = true;
+                let message = "`#` before a name is SCL, the dialect of Siemens";
+                let wrong = Diagnostic::error(Code::Syntax, span, message);
+                self.found
+                    .add(wrong.help("write the names without it, here and in the rest of the file"));
+            }
+            return None;
+        }
         let wrong = match sign {
             _ if byte < b' ' => Diagnostic::error(
                 Code::Syntax,

@@ -60,6 +60,31 @@ const ONE_MISTAKE: &[(&str, &str, &str)] = &[
         "",
     ),
     (
+        "PROGRAM P VAR n : INT; k : ARRAY [0..3] OF INT; END_VAR #n := #n + 1; k[#n] := 3; END_PROGRAM",
+        "SCL",
+        "without it",
+    ),
+    (
+        "DATA_BLOCK Data VAR n : INT; END_VAR BEGIN n := 3; END_DATA_BLOCK PROGRAM P END_PROGRAM",
+        "DATA_BLOCK of SCL",
+        "VAR_GLOBAL",
+    ),
+    (
+        "ORGANIZATION_BLOCK Cycle VAR_TEMP x : INT; END_VAR BEGIN x := 3; END_ORGANIZATION_BLOCK PROGRAM P END_PROGRAM",
+        "ORGANIZATION_BLOCK of SCL",
+        "PROGRAM",
+    ),
+    (
+        "PROGRAM P VAR_INPUT a, b : BOOL R_EDGE; END_VAR VAR n : INT; END_VAR IF a OR b THEN n := n + 1; END_IF; END_PROGRAM",
+        "R_EDGE",
+        "R_TRIG",
+    ),
+    (
+        "PROGRAM P VAR_INPUT a : BOOL F_EDGE := TRUE; END_VAR VAR n : INT; END_VAR IF a THEN n := n + 1; END_IF; END_PROGRAM",
+        "F_EDGE",
+        "F_TRIG",
+    ),
+    (
         "TYPE E : ( a, 5, c ); END_TYPE PROGRAM P VAR e : E; END_VAR e := E.c; e := E#c; e := c; END_PROGRAM",
         "the name of an element is expected, not `5`",
         "",

@@ -724,6 +724,14 @@ fn one_address_is_one_variable() {
             "PROGRAM P VAR a AT {one} : WORD; b AT {two} : BYTE; END_VAR a := b; END_PROGRAM"
         ))
     };
+    let whole = "`b` at %MB0 is a part of `a` at %MD0 in other systems; here they are apart".to_owned();
+    for pair in [
+        "a AT %MD0 : DWORD; b AT %MB0 : BYTE",
+        "b AT %MB0 : BYTE; a AT %MD0 : DWORD",
+    ] {
+        let text = format!("PROGRAM P VAR {pair}; END_VAR a := b; END_PROGRAM");
+        assert_eq!(told(&text), [("portability", whole.clone())], "{pair}");
+    }
     let apart = "`b` at %MB1 is a part of `a` at %MW0 in other systems; here they are apart".to_owned();
     assert_eq!(overlap("%MW0", "%MB1"), [("portability", apart)]);
     for (one, two) in [

@@ -195,6 +195,10 @@ const REFUSED: &[(&str, &str)] = &[
         "METHOD FB_Exit, FB_Reinit",
         "FUNCTION_BLOCK B METHOD FB_Exit : BOOL END_METHOD END_FUNCTION_BLOCK",
     ),
+    (
+        "R_EDGE, F_EDGE",
+        "PROGRAM P VAR_INPUT a : BOOL R_EDGE; END_VAR END_PROGRAM",
+    ),
     ("JMP and labels", "PROGRAM P JMP a; END_PROGRAM"),
     (
         "EN and ENO",

@@ -4,6 +4,7 @@ use super::Checker;
 use crate::error::{Code, Diagnostic};
 use crate::source::Span;
 use crate::types::{Member, MemberKind, Type, TypeId, UnitId};
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -78,7 +79,8 @@ impl Checker<'_> {
             .values()
             .filter_map(|it| Some((*it, it.bits.as_ref()?)))
             .collect();
-        parts.sort_by_key(|(_, bits)| (bits.area, bits.by_byte.start));
+        // A whole comes before its parts.
+        parts.sort_by_key(|(_, bits)| (bits.area, bits.by_byte.start, Reverse(bits.by_byte.end)));
         let mut furthest: Option<(&Located, &Bits)> = None;
         for (it, bits) in parts {
             if let Some((other, before)) = furthest

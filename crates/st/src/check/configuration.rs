@@ -135,7 +135,11 @@ impl<'a> Checker<'a> {
         let mut names: std::collections::BTreeMap<String, (usize, Span)> = std::collections::BTreeMap::new();
         for task in &configuration.tasks {
             let interval_ns = task.interval.as_ref().and_then(|it| self.interval(it));
-            let priority = task.priority.as_ref().and_then(|it| self.whole(it)).unwrap_or(0);
+            let priority = task
+                .priority
+                .as_ref()
+                .and_then(|it| self.priority(it))
+                .unwrap_or(0);
             if let Some((_, other)) = names.get(&task.name.key()) {
                 self.twice(&task.name, *other);
                 continue;
@@ -144,7 +148,7 @@ impl<'a> Checker<'a> {
             tasks.push(Task {
                 name: task.name.text.clone(),
                 interval_ns,
-                priority: i64::try_from(priority).unwrap_or(i64::MAX),
+                priority,
                 ..always()
             });
         }
@@ -216,6 +220,15 @@ impl<'a> Checker<'a> {
             let help = "use VAR_GLOBAL, or VAR if each instance shall have its own";
             self.error(Code::Unsupported, span, message, help);
         }
+    }
+
+    fn priority(&mut self, expression: &'a Expression) -> Option<i64> {
+        let priority = self.whole(expression)?;
+        if priority < 0 {
+            let message = "PRIORITY is 0 or more";
+            self.error(Code::OutOfRange, expression.span, message, "0 is the highest");
+        }
+        Some(i64::try_from(priority).unwrap_or(i64::MAX))
     }
 
     fn interval(&mut self, expression: &'a Expression) -> Option<i64> {

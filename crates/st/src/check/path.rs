@@ -309,6 +309,19 @@ impl<'a> Checker<'a> {
         Named::Place(place, fixed)
     }
 
+    /// The members of a structure that has few, as a help.
+    fn few_members(&self, ty: TypeId) -> Option<String> {
+        const FEW: usize = 4;
+        let Type::Structure(structure) = self.types.get(ty) else {
+            return None;
+        };
+        let members = structure.members.list.iter();
+        let names: Vec<String> = members.map(|member| quoted(&member.name)).collect();
+        (1..=FEW)
+            .contains(&names.len())
+            .then(|| format!("it has {}", names.join(", ")))
+    }
+
     /// The key of a member, which may have another name in a dialect.
     pub(super) fn member_key(&self, unit: UnitId, name: &Ident) -> String {
         let info = self.unit(unit);
@@ -358,6 +371,7 @@ impl<'a> Checker<'a> {
             let guess = elsewhere.or(guess);
             let axis = matches!(self.types.get(place.ty), Type::Structure(it) if it.name == "AXIS_REF");
             let guess = guess.or_else(|| axis.then(|| OF_AN_AXIS.to_owned()));
+            let guess = guess.or_else(|| self.few_members(place.ty));
             let message = format!("{} has no member `{}`", self.type_name(place.ty), name.text);
             self.tell(Diagnostic::error(Code::UnknownMember, name.span, message).maybe_help(guess));
             return false;

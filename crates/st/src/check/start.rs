@@ -91,7 +91,7 @@ impl<'a> Checker<'a> {
                 self.tell(Diagnostic::error(Code::UnknownMember, name.span, message).maybe_help(guess));
                 continue;
             };
-            let (kind, of) = (member.kind, member.ty);
+            let (kind, of, constant) = (member.kind, member.ty, member.constant);
             if !matches!(
                 kind,
                 MemberKind::Field | MemberKind::Input | MemberKind::Output | MemberKind::Var
@@ -102,6 +102,16 @@ impl<'a> Checker<'a> {
                     name.span,
                     message,
                     "first values are given to inputs",
+                );
+                continue;
+            }
+            if constant && kind == MemberKind::Var {
+                let message = format!("`{}` is a CONSTANT of {}", name.text, self.type_name(ty));
+                self.error(
+                    Code::NotWritable,
+                    name.span,
+                    message,
+                    "an instance cannot change it; make it a VAR_INPUT",
                 );
                 continue;
             }

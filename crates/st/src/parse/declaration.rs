@@ -13,6 +13,15 @@ use crate::syntax::{
 pub(super) const ACTION: &str =
     "write a METHOD of a FUNCTION_BLOCK, or put the statements where it is called";
 
+/// What begins at the top of a file of SCL only, and its replacement.
+const SCL: [(&str, &str); 2] = [
+    (
+        "DATA_BLOCK",
+        "write VAR_GLOBAL .. END_VAR, or an instance of a FUNCTION_BLOCK in VAR",
+    ),
+    ("ORGANIZATION_BLOCK", "write PROGRAM .. END_PROGRAM"),
+];
+
 /// Whether a section of variables begins with it.
 fn opens_section(word: Word) -> bool {
     skip::is_section(word) && word != Word::EndVar && word != Word::EndStruct
@@ -39,15 +48,21 @@ impl Parser<'_> {
                 }
                 return;
             }
-            let message = format!(
-                "a PROGRAM, FUNCTION_BLOCK, FUNCTION, TYPE or VAR_GLOBAL begins here, not {}",
-                self.shown()
-            );
-            self.tell_here(
-                Code::Syntax,
-                message,
-                "statements stand in a PROGRAM .. END_PROGRAM",
-            );
+            let of_siemens = SCL.iter().find(|(name, _)| self.is_name(name));
+            if let Some((name, instead)) = of_siemens {
+                let message = format!("{name} of SCL, the dialect of Siemens, is not supported");
+                self.tell(Diagnostic::error(Code::Unsupported, from, message).help(*instead));
+            } else {
+                let message = format!(
+                    "a PROGRAM, FUNCTION_BLOCK, FUNCTION, TYPE or VAR_GLOBAL begins here, not {}",
+                    self.shown()
+                );
+                self.tell_here(
+                    Code::Syntax,
+                    message,
+                    "statements stand in a PROGRAM .. END_PROGRAM",
+                );
+            }
             items.push(Self::unknown_item(from));
             self.skip_to_item();
             self.pass_end();
@@ -590,6 +605,13 @@ impl Parser<'_> {
         }
         let mut initial = None;
         let spec = self.type_spec(&mut initial);
+        for (word, block) in [("R_EDGE", "R_TRIG"), ("F_EDGE", "F_TRIG")] {
+            if self.is_name(word) {
+                let span = self.next();
+                let instead = format!("call an instance of {block} with the input as its CLK, and use its Q");
+                self.unsupported(span, word, &instead);
+            }
+        }
         if self.token() == Token::Equal {
             self.tell_here(
                 Code::Syntax,
