@@ -207,7 +207,7 @@ fn config(limits: Limits, vibration: [Option<VibrationMode>; 2]) -> AxisConfig {
 }
 
 /// A random command from any state.
-fn stir(twins: &mut Twins, random: &mut Random, limits: &Limits) -> [CommandId; 2] {
+fn disturb(twins: &mut Twins, random: &mut Random, limits: &Limits) -> [CommandId; 2] {
     let dynamics = dynamics(random, limits);
     let here = twins.axes[1].setpoint().position;
     let way =
@@ -248,7 +248,7 @@ fn whatever_takes_over_the_rest_of_it_comes_out_first() {
         let second = (random.below(2) == 0).then(|| drawn_mode(&mut random));
         let mut twins = Twins::new(config(limits, [Some(drawn_mode(&mut random)), second]));
         for _ in 0..6 {
-            stir(&mut twins, &mut random, &limits);
+            disturb(&mut twins, &mut random, &limits);
             for _ in 0..random.log(1.0, 200.0) as u64 {
                 twins.judged_step();
             }
@@ -488,7 +488,7 @@ fn modes_are_read_and_written_by_number() {
     }
     // It shapes with the written values.
     twins.shapers = Shapers::new(&[Some(mode(6.0, 0.1, ShaperKind::Period)), None], CYCLE).expect("shapers");
-    let [id, _] = stir(&mut twins, &mut Random(5), &limits);
+    let [id, _] = disturb(&mut twins, &mut Random(5), &limits);
     twins.judged_step();
     assert_eq!(write(&mut twins, 1002, 12.0), Err(ErrorId::InMotion));
     twins.finish(id);

@@ -141,7 +141,7 @@ impl Rig {
     }
 
     /// A motion with limits of its own, followed for some of its scans.
-    fn stir(&mut self, random: &mut Random) {
+    fn disturb(&mut self, random: &mut Random) {
         let dynamics = self.dynamics(random);
         if random.one_in(2) {
             self.endless(dynamics, random);
@@ -189,7 +189,7 @@ fn for_each(stream: u64, mut one: impl FnMut(&mut Rig, &mut Random)) {
         let mut rig = Rig::new(limits);
         rig.number = number;
         for _ in 0..left.min(10) {
-            rig.stir(&mut random);
+            rig.disturb(&mut random);
             one(&mut rig, &mut random);
             left -= 1;
         }

@@ -112,9 +112,9 @@ fn late_scans_stay_on_the_grid_and_leave_no_mark_in_the_trace() {
     let mut clock = Scripted::new(late, takes);
     let (ended, outcome, timing, _) = paced(&script, &mut clock, OnOverrun::Continue, || None);
     assert_eq!(ended, Ended::Script);
-    let calm = run(&script).expect("a run");
-    assert_eq!(digest::whole(&outcome.trace), digest::whole(&calm.trace));
-    assert_eq!(outcome.trace.header_json(), calm.trace.header_json());
+    let undisturbed = run(&script).expect("a run");
+    assert_eq!(digest::whole(&outcome.trace), digest::whole(&undisturbed.trace));
+    assert_eq!(outcome.trace.header_json(), undisturbed.trace.header_json());
     assert_steps_of_single_scans(&outcome.trace);
 
     // The first scan is due a period after the start, the others on its grid; 2 and 1 periods are left out.
@@ -187,8 +187,8 @@ fn an_overrun_ramps_down_past_the_end_of_the_script_when_it_is_to_stop() {
         "{notes:?}"
     );
     // Up to there it is the run without a stop.
-    let calm = run(&script).expect("a run");
-    assert_eq!(positions(trace)[..14], positions(&calm.trace)[..14]);
+    let undisturbed = run(&script).expect("a run");
+    assert_eq!(positions(trace)[..14], positions(&undisturbed.trace)[..14]);
 }
 
 #[test]

@@ -50,7 +50,7 @@ impl<P: Planner> Axis<P> {
     /// Whether the next command in the buffer shifts the coordinates. It takes effect at the next latch, so that this
     /// scan still publishes its set-point.
     pub(super) fn queue_waits_for_shift(&mut self) -> bool {
-        self.stir();
+        self.end_routine();
         self.shift_due = self
             .queue
             .first()
@@ -148,7 +148,7 @@ impl<P: Planner> Axis<P> {
         if following {
             self.mover.stand_at(self.feedback.position());
         }
-        self.stir();
+        self.end_routine();
         if self.config.scaling.is_some() {
             self.frame.shift_by(by);
         } else {
@@ -214,7 +214,7 @@ impl<P: Planner> Axis<P> {
         self.frame.count_move(by);
         self.rename_places();
         self.rename_actual(self.mover.setpoint().position, position);
-        self.stir();
+        self.end_routine();
         if self.config.scaling.is_some() {
             self.frame.shift_by(position - self.mover.setpoint().position);
         } else {

@@ -643,7 +643,7 @@ impl<P: Planner> Axis<P> {
         if coupling.rung != Rung::Lost && (is_new || !coupling.rung.is_locked()) {
             coupling.rung = Rung::Due;
         }
-        self.stir();
+        self.end_routine();
     }
 
     /// The motion leaves the law for some time. The way onto it is searched once the motion may continue.

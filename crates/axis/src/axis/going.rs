@@ -1,7 +1,7 @@
 //! Scans in which an axis only continues. A host may omit calls of blocks that would do nothing new in them.
 
 use super::mover::Motion;
-use super::{Axis, Calm};
+use super::{Axis, Routine};
 use crate::Scope;
 use standstill_planner::Planner;
 
@@ -34,7 +34,7 @@ impl<P: Planner> Axis<P> {
     #[must_use]
     #[inline]
     pub fn going(&self) -> Going {
-        let is_plain = self.calm == Calm::Alone && !self.links().is_bound();
+        let is_plain = self.routine == Routine::Alone && !self.links().is_bound();
         if !is_plain || self.mover.is_watched() || self.is_held_up() {
             return Going::Unknown;
         }

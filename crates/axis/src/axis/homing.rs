@@ -188,7 +188,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn begin_homing(&mut self) {
         self.homing = self.first_search();
         self.beside.order.homing = self.homing.phase == Phase::Drive;
-        self.stir();
+        self.end_routine();
     }
 
     /// MC_Home no longer owns the axis.
@@ -196,7 +196,7 @@ impl<P: Planner> Axis<P> {
         self.homing = Search::default();
         self.beside.order.homing = false;
         self.beside.order.marker = false;
-        self.stir();
+        self.end_routine();
     }
 
     /// Whether a homing, or the rest of one, needs the feedback of every scan.

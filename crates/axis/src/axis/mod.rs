@@ -106,9 +106,10 @@ struct BesideMotion {
     cam_tracks: [CamTrack; DIGITAL as usize],
 }
 
-/// How little a scan must check, see [`Axis::calmness`]. `No` may be out of date; the others never are.
+/// Whether a scan is routine: it must check little, see [`Axis::find_routine`]. `No` may be out of date; the others
+/// never are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Calm {
+enum Routine {
     /// Something is pending, or may be.
     No,
     /// In operation with nothing pending, but something superimposed.
@@ -117,7 +118,7 @@ enum Calm {
     Alone,
 }
 
-impl Calm {
+impl Routine {
     #[inline]
     fn is_any(self) -> bool {
         self != Self::No
@@ -233,7 +234,7 @@ pub struct Axis<P: Planner = Standard> {
     /// Actual positions.
     feedback: Feedback,
     /// How little a scan must check.
-    calm: Calm,
+    routine: Routine,
     state: AxisState,
     /// Positions are taken and published as they are: no increments, no turns, no shift, no shaper, and no measured
     /// values that slaves could follow.
@@ -317,7 +318,7 @@ impl<P: Planner> Axis<P> {
             parameters: parameters::Parameters::new(&config),
             arrival: supervision::Arrival::default(),
             replan_due: false,
-            calm: Calm::No,
+            routine: Routine::No,
             measured,
             signals: DriveSignals::default(),
             links: coupling::Links::default(),
@@ -565,7 +566,7 @@ impl<P: Planner> Axis<P> {
     /// The drive's command for this scan.
     #[inline(always)]
     pub fn drive_command(&mut self) -> DriveCommand {
-        let (request, rename) = if self.calm.is_any() {
+        let (request, rename) = if self.routine.is_any() {
             (DriveRequest::Enable, None)
         } else {
             (self.drive_request(), self.frame.take_rename())
@@ -628,7 +629,7 @@ impl<P: Planner> Axis<P> {
 
     /// The one place where the state changes.
     fn enter(&mut self, event: AxisEvent) {
-        self.stir();
+        self.end_routine();
         match state::next(self.state, event) {
             Ok(next) => self.state = next,
             Err(_) => debug_assert!(false, "{:?} in {:?}", event, self.state),

@@ -448,7 +448,7 @@ impl<P: Planner> Axis<P> {
         }
         let limits_moved = self.parameters.software_limits != parameters.software_limits;
         self.parameters = parameters;
-        self.stir();
+        self.end_routine();
         if limits_moved {
             // The motion and the commands that wait were checked against the old limits.
             if self.mover.layer().is_some() {

@@ -4,7 +4,7 @@
 //! S10 to S14; iec61131-executor CI-5, CI-8.
 
 use super::stage::Wish;
-use super::{Axis, Calm, Motion, Permission};
+use super::{Axis, Motion, Permission, Routine};
 use crate::{
     AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Event, Fate,
     PowerOff, Scope,
@@ -31,7 +31,7 @@ impl<P: Planner> Axis<P> {
     pub fn follow_feedback(&mut self, feedback: &DriveFeedback, scope: &mut Scope<'_>) {
         // In most scans only the position changes.
         let on_switch = feedback.signals.limit_switch_positive | feedback.signals.limit_switch_negative;
-        if self.calm.is_any()
+        if self.routine.is_any()
             && feedback.enabled
             && feedback.voltage
             && !on_switch
@@ -39,7 +39,7 @@ impl<P: Planner> Axis<P> {
             && feedback.comms == Comms::Ok
             && self.latch_usual(&feedback.position)
         {
-            debug_assert_eq!(self.calm, self.calmness());
+            debug_assert_eq!(self.routine, self.find_routine());
             self.signals = feedback.signals;
         } else {
             self.follow_change(feedback, scope);
@@ -96,32 +96,32 @@ impl<P: Planner> Axis<P> {
     /// Whether the axis is in operation with nothing pending and nothing supervised. It then reacts only to its
     /// feedback, its requests to the drive stay the same, and its positions need no further checks.
     ///
-    /// Computed once when this state may begin; every event that ends it calls [`Axis::stir`]. This saves ten
+    /// Computed once when this state may begin; every event that ends it calls [`Axis::end_routine`]. This saves ten
     /// comparisons per scan.
-    fn calmness(&self) -> Calm {
+    fn find_routine(&self) -> Routine {
         let is_in_operation = !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
         let is_pending = self.failure.reset().is_some() || self.shift_due || self.frame.is_renaming();
         // After a hand-over from a torque, the axis withdraws its order in the next scan.
         let is_torque =
             matches!(self.mover.motion(), Motion::Torque { .. }) || self.beside.order.torque.is_some();
         let is_watched = self.parameters.lag.on || self.is_homing() || is_torque;
-        if !(self.power.is_calm()
+        if !(self.power.is_routine()
             && is_in_operation
             && !is_pending
             && self.feedback.is_whole()
             && !is_watched)
         {
-            Calm::No
+            Routine::No
         } else if self.mover.layer().is_some() {
-            Calm::Beside
+            Routine::Beside
         } else {
-            Calm::Alone
+            Routine::Alone
         }
     }
 
     /// Something is pending, or may be.
-    pub(super) fn stir(&mut self) {
-        self.calm = Calm::No;
+    pub(super) fn end_routine(&mut self) {
+        self.routine = Routine::No;
         self.unsettle();
     }
 
@@ -191,7 +191,7 @@ impl<P: Planner> Axis<P> {
             }
         }
         self.finish_reset();
-        self.calm = self.calmness();
+        self.routine = self.find_routine();
         self.unsettle();
     }
 
@@ -267,7 +267,7 @@ impl<P: Planner> Axis<P> {
         if self.power.hear(wish) {
             self.switch(wanted, permitted, scope);
         } else {
-            self.stir();
+            self.end_routine();
         }
     }
 
@@ -305,7 +305,7 @@ impl<P: Planner> Axis<P> {
 
     #[inline(never)]
     fn switch_to_off(&mut self, scope: &mut Scope<'_>) {
-        self.stir();
+        self.end_routine();
         self.power.let_return();
         let idle = matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
         if idle || self.power.is_going_off() {
@@ -399,7 +399,7 @@ impl<P: Planner> Axis<P> {
         }
         let id = self.new_id();
         self.failure.begin_reset(id);
-        self.stir();
+        self.end_routine();
         Ok(id)
     }
 

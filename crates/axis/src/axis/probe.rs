@@ -132,7 +132,7 @@ impl<P: Planner> Axis<P> {
     pub fn follow_report(&mut self) {
         if !self.beside.report.is_finite() {
             // The next latch is a full one.
-            self.stir();
+            self.end_routine();
         }
         if self.beside.probes.waiting.iter().any(Option::is_some) {
             self.follow_probes();

@@ -75,14 +75,14 @@ impl<P: Planner> Axis<P> {
 
     /// This scan has no fresh actual position.
     pub(super) fn latch_nothing(&mut self) {
-        self.stir();
+        self.end_routine();
         self.feedback.latch_nothing();
     }
 
     /// Shifts the coordinates without motion: from the next feedback on, the position `old` (u) has the value `name`
     /// (u).
     pub(super) fn rename_actual(&mut self, old: f64, name: f64) {
-        self.stir();
+        self.end_routine();
         self.feedback.rename(old, name);
         self.measured.shift(old, name);
     }

@@ -126,7 +126,7 @@ impl<P: Planner> Axis<P> {
             layer.pass_velocity(sum);
         }
         layer.try_soon();
-        self.stir();
+        self.end_routine();
         self.mover.lay(layer);
         Ok(Some(motion))
     }
@@ -223,7 +223,7 @@ impl<P: Planner> Axis<P> {
         }
         if matches!(motion, Motion::Torque { .. }) {
             // A torque that may continue, or has new values, must be checked in every scan.
-            self.stir();
+            self.end_routine();
         }
         let searches = matches!(motion, Motion::Geared);
         self.mover

@@ -117,7 +117,7 @@ impl Power {
     }
 
     /// Whether it is on as requested, with nothing pending.
-    pub fn is_calm(&self) -> bool {
+    pub fn is_routine(&self) -> bool {
         let is_as_wanted = self.on && self.wanted && self.stage == Stage::Ready && self.overruled.is_none();
         let is_well = self.voltage && self.fault.is_none() && self.comms == Comms::Ok;
         is_as_wanted && is_well

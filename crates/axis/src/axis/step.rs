@@ -3,7 +3,7 @@
 //! It follows all block calls of a scan, so its decisions show in the next scan (R70).
 
 use super::commands::{Ending, Entry, Work};
-use super::{Axis, Calm, Motion, power::Reaction};
+use super::{Axis, Motion, Routine, power::Reaction};
 use crate::{AxisEvent, AxisState, ErrorId, Fate, InstanceId, QUEUE_MAX, Scope};
 use standstill_planner::{Planner, Setpoint};
 
@@ -16,7 +16,7 @@ impl<P: Planner> Axis<P> {
     #[inline(always)]
     pub(crate) fn advance(&mut self, scope: &mut Scope<'_>) {
         // Before its goal a plan needs only its next set-point. So does an endless motion for which no command waits.
-        if self.calm == Calm::Alone && (self.mover.is_short_of_goal() || self.is_cruising()) {
+        if self.routine == Routine::Alone && (self.mover.is_short_of_goal() || self.is_cruising()) {
             self.step_along_plan(scope);
             if !self.is_plain && self.is_far_round() {
                 self.bring_back();

@@ -315,7 +315,7 @@ impl<P: Planner> Axis<P> {
             self.enter(AxisEvent::StartDiscrete);
         }
         self.end_superimposed_command(Fate::Aborted);
-        self.stir();
+        self.end_routine();
         let layer = self.mover.layer_or(layer);
         layer.command = Some(command);
         layer.search = search;
@@ -385,7 +385,7 @@ impl<P: Planner> Axis<P> {
             None
         };
         self.end_superimposed_command(Fate::Aborted);
-        self.stir();
+        self.end_routine();
         self.mover.layer_or(layer).command = Some(command);
         if !command.runs() {
             self.add(proposed, scope);
@@ -525,7 +525,7 @@ impl<P: Planner> Axis<P> {
         command.wait();
         command.progress = Progress::Waits;
         layer.try_soon();
-        self.stir();
+        self.end_routine();
         true
     }
 
@@ -551,7 +551,7 @@ impl<P: Planner> Axis<P> {
         self.mover.keep(self.limits_before(self.mover.in_force()));
         self.end_superimposed_command(fate);
         self.mover.drop_layer();
-        self.stir();
+        self.end_routine();
     }
 
     /// The motion step with a superimposed motion: both motions advance, and their sum is published.
@@ -653,7 +653,7 @@ impl<P: Planner> Axis<P> {
             if !kept {
                 self.mover.drop_layer();
             }
-            self.stir();
+            self.end_routine();
             if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
                 self.enter(AxisEvent::MotionDone);
                 self.hand_over(self.mover.setpoint().position, scope);
@@ -674,7 +674,7 @@ impl<P: Planner> Axis<P> {
         };
         if layer.added.position == layer.taken {
             self.mover.drop_layer();
-            self.stir();
+            self.end_routine();
         }
         self.arm_owner(scope);
     }

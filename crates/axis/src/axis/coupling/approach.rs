@@ -891,7 +891,7 @@ impl<P: Planner> Axis<P> {
         }
         let may_leave = self.may_leave_on_way(from);
         self.mover.watch(may_leave);
-        self.stir();
+        self.end_routine();
     }
 
     /// Starts `way`; the motion before was within `before`.

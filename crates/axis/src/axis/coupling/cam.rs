@@ -601,6 +601,6 @@ impl<P: Planner> Axis<P> {
             };
         }
         on_cam.rung = if is_lost { Rung::Lost } else { Rung::Due };
-        self.stir();
+        self.end_routine();
     }
 }

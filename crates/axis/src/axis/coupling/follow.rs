@@ -550,7 +550,7 @@ impl<P: Planner> Axis<P> {
         }
         self.mover.gear();
         self.mover.watch(self.parameters.software_limits.is_some());
-        self.stir();
+        self.end_routine();
         self.record_in_gear(scope);
         self.note_sync(view, scope);
     }
@@ -562,7 +562,7 @@ impl<P: Planner> Axis<P> {
         }
         self.leave_law();
         self.rest_superimposed();
-        self.stir();
+        self.end_routine();
         let event = Event::GearLost { what, value, limit };
         self.record(event, &mut self.owner_scope(scope));
     }

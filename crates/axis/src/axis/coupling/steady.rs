@@ -7,7 +7,7 @@
 
 use super::super::commands::ROUNDING;
 use super::super::modulo::Modulo;
-use super::super::{Axis, Calm, Motion};
+use super::super::{Axis, Motion, Routine};
 use super::follow::LONGEST;
 use super::view::{Course, Kind, KnownPart, Source};
 use super::{Coupling, Seen};
@@ -135,7 +135,7 @@ impl<P: Planner> Axis<P> {
         let is_locked = in_gear.is_some_and(|coupling| coupling.may_go_on(&limits, moves))
             || on_cam.is_some_and(|on_cam| on_cam.may_go_on(&limits, moves));
         is_locked
-            && self.calm == Calm::Alone
+            && self.routine == Routine::Alone
             && matches!(self.mover.motion(), Motion::Geared)
             && *self.mover.in_force() == limits
             && *self.mover.before() == limits

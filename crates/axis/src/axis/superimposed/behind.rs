@@ -21,7 +21,7 @@ impl<P: Planner> Axis<P> {
         layer.command = Some(command);
         layer.try_soon();
         self.mover.lay(layer);
-        self.stir();
+        self.end_routine();
     }
 
     /// Refuses a command that could not be added even if the master is at rest.
@@ -189,7 +189,7 @@ impl<P: Planner> Axis<P> {
             self.lay_layer_on_law(place);
         }
         self.add(proposed, scope);
-        self.stir();
+        self.end_routine();
         let next = self.next_switch_of_law(view);
         if let Some(layer) = self.mover.layer_mut() {
             layer.retry = match next {

@@ -295,7 +295,7 @@ impl<P: Planner> Axis<P> {
         }
         command.progress = Progress::Waits;
         layer.try_soon();
-        self.stir();
+        self.end_routine();
         self.mover.lay(layer);
         self.try_again(scope);
     }
@@ -419,7 +419,7 @@ impl<P: Planner> Axis<P> {
             layer.pass_velocity(*self.mover.setpoint());
         }
         layer.try_soon();
-        self.stir();
+        self.end_routine();
         self.mover.lay(layer);
         Ok(Some(motion))
     }

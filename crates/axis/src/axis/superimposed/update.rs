@@ -44,7 +44,7 @@ impl<P: Planner> Axis<P> {
         layer.command = Some(command);
         layer.try_soon();
         layer.search = search;
-        self.stir();
+        self.end_routine();
         self.mover.lay(layer);
         self.add(proposed, scope);
         Ok(())

@@ -432,7 +432,7 @@ impl<P: Planner> Axis<P> {
         self.bound_master_on_cam(&scope.cams);
         self.mover.gear();
         self.mover.watch(self.parameters.software_limits.is_some());
-        self.stir();
+        self.end_routine();
         self.record(Event::InSync, &mut self.owner_scope(scope));
         if !was_in_sync {
             self.note_sync_on_cam(scope);
@@ -454,7 +454,7 @@ impl<P: Planner> Axis<P> {
             }
         }
         self.rest_superimposed();
-        self.stir();
+        self.end_routine();
         let event = Event::SyncLost { what, value, limit };
         self.record(event, &mut self.owner_scope(scope));
     }
