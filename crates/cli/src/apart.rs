@@ -4,8 +4,8 @@ use crate::exit::Failure;
 use standstill_script::suite::shown;
 use standstill_trace::csv::meta_path;
 use standstill_trace::file::{can_save, folder_of, is_csv, is_special};
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 /// A file that a command writes, with the words that name it in a message.
 #[derive(Clone, Debug)]
@@ -42,12 +42,11 @@ pub fn trace(path: Option<&Path>) -> Result<Vec<Written>, Failure> {
 /// anything is written.
 pub fn checked<'a>(writes: &[Written], reads: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
     if let Some(file) = writes.iter().find(|file| file.path.is_dir()) {
-        let message = format!(
-            "{} {} is a folder, and a file is wanted",
-            file.what,
-            shown(&file.path)
-        );
-        return Err(Failure::usage(&message));
+        let error = io::Error::from(io::ErrorKind::IsADirectory);
+        return Err(Failure::io(
+            &format!("{} {}", file.what, shown(&file.path)),
+            &error,
+        ));
     }
     let placed: Vec<_> = writes
         .iter()

@@ -86,8 +86,8 @@ fn variables_of_a_program_lead_to_their_steps() {
     let found = standstill_script::run(&script.unwrap_or_else(|error| panic!("{error}"))).unwrap();
     let reasons: Vec<_> = found.why.iter().map(|reason| reason.text.as_str()).collect();
     for words in [
-        "steps[0] sets c.a when one is TRUE",
-        "steps[1] sets c.b when other is TRUE",
+        "steps[0] sets c.a when one TRUE",
+        "steps[1] sets c.b when other TRUE",
     ] {
         assert!(
             reasons.iter().any(|reason| reason.contains(words)),

@@ -111,8 +111,8 @@ fn a_folder_is_no_output() {
     fs::write(place.join("cell.st"), GOOD).unwrap();
     fs::create_dir_all(place.join("folder")).unwrap();
     let ended = typed(&place, "st build cell.st -o folder");
-    assert_eq!(ended.status, 2);
-    ended.complains("--output folder is a folder");
+    assert_eq!(ended.status, 4);
+    ended.complains("--output folder: is a directory");
     assert!(!place.join("folder.symbols.json").exists());
 }
 
