@@ -5,7 +5,7 @@ use standstill_script::suite::shown;
 use standstill_trace::csv::meta_path;
 use standstill_trace::file::{can_save, folder_of, is_csv, is_special};
 use std::path::{Path, PathBuf};
-use std::{fs, io};
+use std::fs;
 
 /// A file that a command writes, with the words that name it in a message.
 #[derive(Clone, Debug)]
@@ -41,13 +41,6 @@ pub fn trace(path: Option<&Path>) -> Result<Vec<Written>, Failure> {
 /// Refuses two files in one place, by any paths, and a file in the place of one that is read. Call it before
 /// anything is written.
 pub fn checked<'a>(writes: &[Written], reads: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
-    if let Some(file) = writes.iter().find(|file| file.path.is_dir()) {
-        let error = io::Error::from(io::ErrorKind::IsADirectory);
-        return Err(Failure::io(
-            &format!("{} {}", file.what, shown(&file.path)),
-            &error,
-        ));
-    }
     let placed: Vec<_> = writes
         .iter()
         .filter(|file| !is_special(&file.path))

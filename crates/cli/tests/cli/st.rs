@@ -106,17 +106,6 @@ fn a_program_without_a_script_gets_a_name_and_a_task_that_are_free() {
 }
 
 #[test]
-fn a_folder_is_no_output() {
-    let place = scratch("st_folder");
-    fs::write(place.join("cell.st"), GOOD).unwrap();
-    fs::create_dir_all(place.join("folder")).unwrap();
-    let ended = typed(&place, "st build cell.st -o folder");
-    assert_eq!(ended.status, 4);
-    ended.complains("--output folder: is a directory");
-    assert!(!place.join("folder.symbols.json").exists());
-}
-
-#[test]
 fn what_is_probably_not_meant_is_told_by_its_code() {
     let place = scratch("st_lint");
     let text = "PROGRAM Cell\nVAR\n  a, b : LREAL;\n  same : BOOL;\nEND_VAR\nsame := a = b;\nEND_PROGRAM\n";
