@@ -4,8 +4,8 @@ use crate::exit::Failure;
 use standstill_script::suite::shown;
 use standstill_trace::csv::meta_path;
 use standstill_trace::file::{can_save, folder_of, is_csv, is_special};
-use std::path::{Path, PathBuf};
 use std::fs;
+use std::path::{Path, PathBuf};
 
 /// A file that a command writes, with the words that name it in a message.
 #[derive(Clone, Debug)]

@@ -12,7 +12,7 @@ use standstill_axis::{
 };
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Context, Value};
-use standstill_script::model::Script;
+use standstill_script::model::{Action, Script};
 use standstill_script::{Session, Witness};
 
 /// What the rules know of an instance.
@@ -124,8 +124,8 @@ struct Rules {
     records: Vec<Record>,
     /// Number of coordinate moves of each axis at the last check.
     moves: Vec<u32>,
-    /// Programs call blocks, too.
-    has_guests: bool,
+    /// Blocks move axes that are not known here to be theirs: programs call them, or a step changes their axis.
+    has_others: bool,
     failure: Option<Failure>,
     seen: Seen,
 }
@@ -208,7 +208,7 @@ impl Rules {
             taken: 0,
             records: Vec::new(),
             moves: axes.iter().map(Axis::coordinates).collect(),
-            has_guests: !script.programs.is_empty(),
+            has_others: !script.programs.is_empty() || changes_axes(script),
             failure: None,
             seen: Seen::default(),
         }
@@ -478,9 +478,9 @@ impl Rules {
     }
 
     /// No motion without a block: an owner or a waiting command belongs to an instance, or is recorded as
-    /// orphaned. The instances of a guest are not known here.
+    /// orphaned.
     fn check_followed(&self, index: usize, axis: &Axis<Standard>) -> Result<(), Broken> {
-        if self.has_guests {
+        if self.has_others {
             return Ok(());
         }
         let instances = || {
@@ -586,6 +586,12 @@ impl Rules {
             self.fail(scan, Who::Axis(axis), broken);
         }
     }
+}
+
+/// Whether a step changes the axis of an instance.
+fn changes_axes(script: &Script) -> bool {
+    let mut actions = script.steps.iter().flat_map(|step| &step.actions);
+    actions.any(|action| matches!(action, Action::Set(_, Value::Axis(_))))
 }
 
 /// The error of a plan's jerk and snap by the rounding of positions: none, except on a curve, whose
