@@ -151,8 +151,8 @@ impl Sample {
         }
     }
 
-    /// The signed distance (u) since `before`, which has the same coordinates. On a modulo axis several distances fit the positions; this is the
-    /// one nearest to the prediction from the velocities.
+    /// The signed distance (u) since `before`, which has the same coordinates. On a modulo axis several distances fit
+    /// the positions; this is the one nearest to the prediction from the velocities.
     fn way_since(&self, before: &Self) -> f64 {
         let way = self.position - before.position;
         let Some(turn) = self.turn else { return way };

@@ -47,8 +47,7 @@ impl Block for McAbortTrigger {
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self
             .core
-            .scan(inputs.execute, inputs.axis, context, |context, _| {
-                let (axis, scope) = context.axis(inputs.axis)?;
+            .scan(inputs.execute, inputs.axis, context, |axis, _, scope| {
                 axis.abort_trigger(inputs.trigger_input, scope)
             });
         Outputs {

@@ -63,7 +63,7 @@ impl Block for McTouchProbe {
         // keeps it here.
         let phase = self
             .core
-            .scan(inputs.execute, inputs.axis, context, |context, _| {
+            .scan_among(inputs.execute, inputs.axis, context, |context, _| {
                 let held = given.filter(|(axis, _)| *axis == inputs.axis).map(|(_, id)| id);
                 let (axis, scope) = context.axis(inputs.axis)?;
                 let request = TouchProbe {

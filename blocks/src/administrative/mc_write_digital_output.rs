@@ -45,8 +45,7 @@ impl Block for McWriteDigitalOutput {
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let output = inputs.output.into();
-        let phase = self.core.scan(inputs.execute, output, context, |context, _| {
-            let (axis, scope) = context.axis(output)?;
+        let phase = self.core.scan(inputs.execute, output, context, |axis, _, scope| {
             axis.write_output(inputs.output_number, inputs.value, inputs.execution_mode, scope)
         });
         Outputs {

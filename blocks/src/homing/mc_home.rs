@@ -47,8 +47,7 @@ impl Block for McHome {
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self
             .core
-            .scan(inputs.execute, inputs.axis, context, |context, replaces| {
-                let (axis, scope) = context.axis(inputs.axis)?;
+            .scan(inputs.execute, inputs.axis, context, |axis, replaces, scope| {
                 let request = Request {
                     command: Command::Home {
                         position: inputs.position,

@@ -82,7 +82,7 @@ impl Block for McGearInPos {
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self
             .core
-            .scan(inputs.execute, inputs.slave, context, |context, replaces| {
+            .scan_among(inputs.execute, inputs.slave, context, |context, replaces| {
                 let request = Request {
                     command: Command::GearIn {
                         followed: Followed {

@@ -45,7 +45,7 @@ impl Block for McGearOut {
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self
             .core
-            .scan(inputs.execute, inputs.slave, context, |context, replaces| {
+            .scan_among(inputs.execute, inputs.slave, context, |context, replaces| {
                 let (axis, scope) = context.slave(inputs.slave)?;
                 let request = Request {
                     replaces,

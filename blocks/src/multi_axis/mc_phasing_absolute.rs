@@ -72,7 +72,7 @@ impl Block for McPhasingAbsolute {
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self
             .core
-            .scan(inputs.execute, inputs.slave, context, |context, _| {
+            .scan_among(inputs.execute, inputs.slave, context, |context, _| {
                 let (slave, scope) = context.slave(inputs.slave)?;
                 let request = PhaseShift {
                     master: inputs.master,

@@ -74,7 +74,7 @@ impl Block for McPhasingRelative {
         let start = &mut self.start;
         let phase = self
             .core
-            .scan(inputs.execute, inputs.slave, context, |context, _| {
+            .scan_among(inputs.execute, inputs.slave, context, |context, _| {
                 let (slave, scope) = context.slave(inputs.slave)?;
                 *start = slave.phase_of(inputs.master);
                 let request = PhaseShift {

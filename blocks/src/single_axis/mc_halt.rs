@@ -48,17 +48,10 @@ impl Block for McHalt {
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self
             .core
-            .scan(inputs.execute, inputs.axis, context, |context, replaces| {
-                let (axis, scope) = context.axis(inputs.axis)?;
+            .scan(inputs.execute, inputs.axis, context, |axis, replaces, scope| {
                 let request = Request {
                     command: Command::Halt {
-                        dynamics: Dynamics {
-                            velocity: 0.0,
-                            acceleration: 0.0,
-                            deceleration: inputs.deceleration,
-                            jerk: inputs.jerk,
-                            snap: inputs.snap,
-                        },
+                        dynamics: Dynamics::braking(inputs.deceleration, inputs.jerk, inputs.snap),
                     },
                     buffer_mode: inputs.buffer_mode,
                     replaces,

@@ -56,15 +56,8 @@ impl Block for McHaltSuperimposed {
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self
             .core
-            .scan(inputs.execute, inputs.axis, context, |context, _| {
-                let (axis, scope) = context.axis(inputs.axis)?;
-                let dynamics = Dynamics {
-                    velocity: 0.0,
-                    acceleration: 0.0,
-                    deceleration: inputs.deceleration,
-                    jerk: inputs.jerk,
-                    snap: inputs.snap,
-                };
+            .scan(inputs.execute, inputs.axis, context, |axis, _, scope| {
+                let dynamics = Dynamics::braking(inputs.deceleration, inputs.jerk, inputs.snap);
                 axis.halt_superimposed(&dynamics, scope)
             });
         Outputs {

@@ -104,15 +104,16 @@ impl<R: Point> ProfileCore<R> {
             self.follow(axis, id, pins, shape, context);
         }
         let (given, seen, continuous) = (&mut self.given, &mut self.seen, &mut self.continuous);
-        self.execute.scan(pins.execute, pins.axis, context, |context, _| {
-            let tables = context.tables;
-            let (axis, scope) = context.axis(pins.axis)?;
-            let id = shape
-                .read(tables, |profile| axis.profile(profile, pins.buffer_mode, scope))
-                .unwrap_or_else(|| Err(unknown(axis, R::PIN, scope)))?;
-            (*given, *seen, *continuous) = (Some(*shape), Some(*shape), pins.continuous_update);
-            Ok(id)
-        })
+        self.execute
+            .scan_among(pins.execute, pins.axis, context, |context, _| {
+                let tables = context.tables;
+                let (axis, scope) = context.axis(pins.axis)?;
+                let id = shape
+                    .read(tables, |profile| axis.profile(profile, pins.buffer_mode, scope))
+                    .unwrap_or_else(|| Err(unknown(axis, R::PIN, scope)))?;
+                (*given, *seen, *continuous) = (Some(*shape), Some(*shape), pins.continuous_update);
+                Ok(id)
+            })
     }
 
     /// Handles a command in progress before its status is read: passes new values, and the points when it

@@ -493,6 +493,16 @@ impl Dynamics {
         }
     }
 
+    /// Those of a command that only comes to rest.
+    pub fn braking(deceleration: f64, jerk: f64, snap: f64) -> Self {
+        Self {
+            deceleration,
+            jerk,
+            snap,
+            ..Self::default()
+        }
+    }
+
     fn bits(&self) -> [u64; 5] {
         let values = [
             self.velocity,

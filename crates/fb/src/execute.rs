@@ -4,7 +4,7 @@
 //! Source: PLCopen Motion Control Part 1, section on Execute/Done; rules R19 to R38.
 
 use crate::Context;
-use standstill_axis::{AxisId, AxisState, CommandId, EdgeWhileBusy, ErrorId, Fate, Planner};
+use standstill_axis::{Axis, AxisId, AxisState, CommandId, EdgeWhileBusy, ErrorId, Fate, Planner, Scope};
 
 /// What an Execute-type block shows: the fate of its command, or nothing. Outputs are derived from it, so two
 /// terminal outputs cannot be TRUE at once (R21).
@@ -87,10 +87,25 @@ impl ExecuteCore {
         self.phase
     }
 
-    /// One call. At a rising edge (R8) `issue` gives the command to `axis`. Its argument is the command the
+    /// One call. At a rising edge (R8) `issue` gives the command to `axis`. Its second argument is the command the
     /// instance held there before, which a retrigger replaces silently (R32).
     #[inline]
     pub fn scan<P: Planner>(
+        &mut self,
+        execute: bool,
+        axis: AxisId,
+        context: &mut Context<'_, P>,
+        issue: impl FnOnce(&mut Axis<P>, Option<CommandId>, &mut Scope<'_>) -> Result<CommandId, ErrorId>,
+    ) -> Phase {
+        self.scan_among(execute, axis, context, |context, replaces| {
+            let (axis, scope) = context.axis(axis)?;
+            issue(axis, replaces, scope)
+        })
+    }
+
+    /// The same for a command that also needs other axes.
+    #[inline]
+    pub fn scan_among<P: Planner>(
         &mut self,
         execute: bool,
         axis: AxisId,
